@@ -1,0 +1,47 @@
+# Every target builds and installs the package into its own virtual environment first.
+# Needs Python 3.11 or later, pip and a Rust toolchain; PYTHON and VENV can be overridden.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+
+.PHONY: build test lint bench docs images check reproduce clean
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+build: $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check ".[plot,test,dev,docs]"
+
+test: build
+	cargo test --workspace --locked
+	$(BIN)/python -m pytest
+
+lint: build
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked -- -D warnings
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy --strict python/hrsafety
+	$(BIN)/python -m mypy.stubtest hrsafety._hrsafety
+
+docs: build
+	$(BIN)/sphinx-build -W --keep-going -b html docs target/docs
+
+check: lint docs
+
+# RECORDING names a table of recorded people for the gallery.
+RECORDING ?= zara01.csv
+
+images: build
+	$(BIN)/python docs/make_images.py $(RECORDING)
+
+bench: build
+	cargo bench --workspace --locked
+	$(BIN)/python -m pytest benches
+
+reproduce: build
+	$(BIN)/hrsafety reproduce
+
+clean:
+	rm -rf .venv target

@@ -1,0 +1,284 @@
+//! Checked parameter objects behind the Python dataclasses.
+
+use pyo3::prelude::*;
+use vff_core::error::{Given, NavigationError};
+use vff_core::forces::side::SideRules;
+use vff_core::forces::stabilizing::Stabilizing;
+use vff_core::gains::Gains;
+use vff_core::measurement::{self, Distribution, Noisy};
+use vff_core::motion::{Motion, Segment};
+use vff_core::obstacle::{self, Limits};
+use vff_core::robots::{self, Wheels};
+use vff_core::scenario::{self, Rules};
+use vff_core::{laws, region};
+
+use crate::errors::CoreResult;
+
+/// Holonomic robot.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct HolonomicRobot(pub robots::HolonomicRobot);
+
+#[pymethods]
+impl HolonomicRobot {
+    #[new]
+    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, wheel_radius, winding_resistance,
+        wheel_inertia, wheel_viscous_friction, wheel_static_friction))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        mass: f64,
+        radius: f64,
+        max_speed: f64,
+        max_acceleration: f64,
+        wheel_radius: f64,
+        winding_resistance: f64,
+        wheel_inertia: [f64; 3],
+        wheel_viscous_friction: [f64; 3],
+        wheel_static_friction: [f64; 3],
+    ) -> CoreResult<Self> {
+        let wheels = Wheels {
+            radius: wheel_radius,
+            resistance: winding_resistance,
+            inertia: wheel_inertia,
+            viscous_friction: wheel_viscous_friction,
+            static_friction: wheel_static_friction,
+        };
+        let robot = robots::HolonomicRobot { mass, radius, max_speed, max_acceleration, wheels };
+        Ok(Self(robot.checked()?))
+    }
+}
+
+/// Differential-drive robot.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct DifferentialDriveRobot(robots::DifferentialDriveRobot);
+
+#[pymethods]
+impl DifferentialDriveRobot {
+    #[new]
+    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, max_angular_acceleration))]
+    fn new(
+        mass: f64,
+        radius: f64,
+        max_speed: f64,
+        max_acceleration: f64,
+        max_angular_acceleration: f64,
+    ) -> CoreResult<Self> {
+        let robot = robots::DifferentialDriveRobot {
+            mass,
+            radius,
+            max_speed,
+            max_acceleration,
+            max_angular_acceleration,
+        };
+        Ok(Self(robot.checked()?))
+    }
+}
+
+/// Obstacle.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Obstacle(obstacle::Obstacle);
+
+#[pymethods]
+impl Obstacle {
+    /// Disc at rest.
+    #[staticmethod]
+    #[pyo3(signature = (*, center, radius, active_radius, critical_radius, max_speed))]
+    fn disc(
+        center: [f64; 2],
+        radius: f64,
+        active_radius: Option<f64>,
+        critical_radius: Option<f64>,
+        max_speed: Option<f64>,
+    ) -> CoreResult<Self> {
+        let limits = Limits { active_radius, critical_radius, max_speed };
+        Ok(Self(obstacle::Obstacle::disc_at_rest(center, radius, limits)?))
+    }
+
+    /// Rectangle at rest.
+    #[staticmethod]
+    #[pyo3(signature = (*, center, length, width, heading, active_radius, critical_radius, max_speed))]
+    fn rectangle(
+        center: [f64; 2],
+        length: f64,
+        width: f64,
+        heading: f64,
+        active_radius: Option<f64>,
+        critical_radius: Option<f64>,
+        max_speed: Option<f64>,
+    ) -> CoreResult<Self> {
+        let limits = Limits { active_radius, critical_radius, max_speed };
+        Ok(Self(obstacle::Obstacle::rectangle(center, [length, width], heading, limits)?))
+    }
+
+    /// Disc with constant acceleration or a sudden stop.
+    #[staticmethod]
+    #[pyo3(signature = (*, start, velocity, acceleration, stop, radius, active_radius, critical_radius, max_speed))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn moving(
+        start: [f64; 2],
+        velocity: [f64; 2],
+        acceleration: [f64; 2],
+        stop: Option<[f64; 2]>,
+        radius: f64,
+        active_radius: Option<f64>,
+        critical_radius: Option<f64>,
+        max_speed: Option<f64>,
+    ) -> CoreResult<Self> {
+        let motion = Motion::moving(start, velocity, acceleration, stop)?;
+        let limits = Limits { active_radius, critical_radius, max_speed };
+        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+    }
+
+    /// Disc with piecewise constant acceleration.
+    #[staticmethod]
+    #[pyo3(signature = (*, start, segments, radius, active_radius, critical_radius, max_speed))]
+    fn piecewise(
+        start: [f64; 2],
+        segments: Vec<(f64, [f64; 2], [f64; 2])>,
+        radius: f64,
+        active_radius: Option<f64>,
+        critical_radius: Option<f64>,
+        max_speed: Option<f64>,
+    ) -> CoreResult<Self> {
+        let segments: Vec<Segment> = segments
+            .into_iter()
+            .map(|(duration, velocity, acceleration)| Segment { duration, velocity, acceleration })
+            .collect();
+        let limits = Limits { active_radius, critical_radius, max_speed };
+        let motion = Motion::piecewise(start, &segments)?;
+        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+    }
+
+    /// Disc that follows a recording.
+    #[staticmethod]
+    #[pyo3(signature = (*, time, position, radius, active_radius, critical_radius, max_speed))]
+    fn recorded(
+        time: Vec<f64>,
+        position: Vec<[f64; 2]>,
+        radius: f64,
+        active_radius: Option<f64>,
+        critical_radius: Option<f64>,
+        max_speed: Option<f64>,
+    ) -> CoreResult<Self> {
+        let limits = Limits { active_radius, critical_radius, max_speed };
+        let motion = Motion::recorded(&time, &position)?;
+        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+    }
+}
+
+/// Measurement error.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Measurement(measurement::Measurement);
+
+#[pymethods]
+impl Measurement {
+    #[new]
+    #[pyo3(signature = (*, scale, distribution, of))]
+    fn new(scale: f64, distribution: &Bound<'_, PyAny>, of: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let kinds = [("uniform", Distribution::Uniform), ("gaussian", Distribution::Gaussian)];
+        let rule = "be \"uniform\" or \"gaussian\"";
+        let distribution = word("distribution", distribution, rule, &kinds)?;
+        let bodies =
+            [("obstacles", Noisy::Obstacles), ("robot", Noisy::Robot), ("both", Noisy::Both)];
+        let noisy = word("of", of, "be \"obstacles\", \"robot\" or \"both\"", &bodies)?;
+        let built = measurement::Measurement::new(scale, distribution, noisy);
+        Ok(Self(built.map_err(crate::errors::CoreError::from)?))
+    }
+}
+
+/// The meaning of a word among a few, or an error that quotes what was given.
+pub fn word<T: Copy>(
+    name: &str,
+    given: &Bound<'_, PyAny>,
+    requirement: &'static str,
+    meanings: &[(&str, T)],
+) -> PyResult<T> {
+    let text = given.extract::<String>().or_else(|_| given.repr().map(|shown| shown.to_string()))?;
+    let known = meanings.iter().find(|(key, _)| *key == text);
+    known.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let error = NavigationError::invalid(name, requirement, Given::Word(text));
+        crate::errors::CoreError::from(error).into()
+    })
+}
+
+/// Scenario.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Scenario(pub scenario::Scenario);
+
+#[pymethods]
+impl Scenario {
+    #[new]
+    #[pyo3(signature = (*, robot, start, goal, obstacles, control_period, time_limit,
+        arrival_tolerance, heading, rest_time, measurement, seed))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    #[allow(clippy::needless_pass_by_value)] // references to Python objects
+    fn new(
+        robot: &HolonomicRobot,
+        start: [f64; 2],
+        goal: [f64; 2],
+        obstacles: Vec<PyRef<'_, Obstacle>>,
+        control_period: f64,
+        time_limit: f64,
+        arrival_tolerance: f64,
+        heading: f64,
+        rest_time: f64,
+        measurement: Option<PyRef<'_, Measurement>>,
+        seed: u64,
+    ) -> CoreResult<Self> {
+        let obstacles = obstacles.iter().map(|obstacle| obstacle.0.clone()).collect();
+        let rules = Rules { control_period, time_limit, arrival_tolerance, rest_time, heading };
+        let scenario = scenario::Scenario::new(robot.0, start, goal, obstacles, rules)?;
+        Ok(Self(scenario.measured(measurement.map(|measurement| measurement.0), seed)))
+    }
+}
+
+/// Law.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct VirtualForceField(pub laws::VirtualForceField);
+
+#[pymethods]
+impl VirtualForceField {
+    #[new]
+    #[pyo3(signature = (*, gains, stabilizing, stabilizing_force_cap, stabilizing_momentum_cap,
+        pass_behind, side_hysteresis))]
+    fn new(
+        gains: [f64; 4],
+        stabilizing: &Bound<'_, PyAny>,
+        stabilizing_force_cap: Option<f64>,
+        stabilizing_momentum_cap: Option<f64>,
+        pass_behind: bool,
+        side_hysteresis: f64,
+    ) -> PyResult<Self> {
+        let mode = stabilizing
+            .extract::<String>()
+            .or_else(|_| stabilizing.repr().map(|shown| shown.to_string()))?;
+        let build = || {
+            let stabilizing =
+                Stabilizing::named(&mode, stabilizing_force_cap, stabilizing_momentum_cap)?;
+            let rules = SideRules { pass_behind, hysteresis: side_hysteresis };
+            laws::VirtualForceField::new(gain_set(gains), stabilizing, rules)
+        };
+        Ok(Self(build().map_err(crate::errors::CoreError::from)?))
+    }
+}
+
+/// A gain set in the order of Python's `GAIN_NAMES`.
+pub fn gain_set([attractive, repulsive, detour, ratio]: [f64; 4]) -> Gains {
+    Gains { attractive, repulsive, detour, ratio }
+}
+
+/// Critical and active radius of an obstacle for a robot.
+#[pyfunction]
+pub fn region_radii(
+    robot: &Bound<'_, PyAny>,
+    obstacle: &Obstacle,
+    control_period: f64,
+    faced_side: Option<f64>,
+) -> PyResult<(f64, f64)> {
+    let limits = match robot.cast::<HolonomicRobot>() {
+        Ok(robot) => robot.get().0.limits(),
+        Err(_) => robot.cast::<DifferentialDriveRobot>()?.get().0.limits(),
+    };
+    let regions = region::radii(&limits, &obstacle.0, control_period, faced_side)
+        .map_err(crate::errors::CoreError::from)?;
+    Ok((regions.critical_radius, regions.active_radius))
+}

@@ -1,0 +1,118 @@
+//! Errors, with the data needed to act on them.
+
+use std::fmt;
+
+/// A value as it was given, for an error message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Given {
+    /// A number.
+    Number(f64),
+    /// Two numbers.
+    Pair([f64; 2]),
+    /// A count or an index.
+    Count(u64),
+    /// A word.
+    Word(String),
+}
+
+impl fmt::Display for Given {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(value) => write!(formatter, "{value:?}"),
+            Self::Pair([x, y]) => write!(formatter, "({x:?}, {y:?})"),
+            Self::Count(count) => write!(formatter, "{count}"),
+            Self::Word(word) => formatter.write_str(word),
+        }
+    }
+}
+
+/// What can go wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NavigationError {
+    /// An argument breaks a rule.
+    #[error("{name} must {requirement}, got {value}")]
+    InvalidParameter {
+        /// Name of the argument.
+        name: String,
+        /// The rule.
+        requirement: &'static str,
+        /// What was given.
+        value: Given,
+    },
+    /// The state of a run is no longer finite.
+    #[error("the state became non-finite at {time} s (run {run})")]
+    NonFinite {
+        /// Index of the run.
+        run: usize,
+        /// When, in s.
+        time: f64,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// The thread pool could not be made.
+    #[error("no thread pool of {threads} threads: {reason}")]
+    Threads {
+        /// Number of threads asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// Result of this crate.
+pub type Result<T> = std::result::Result<T, NavigationError>;
+
+impl NavigationError {
+    /// An argument breaks a rule.
+    pub fn invalid(name: impl Into<String>, requirement: &'static str, value: Given) -> Self {
+        Self::InvalidParameter { name: name.into(), requirement, value }
+    }
+
+    /// The same error with the owner of the argument in front of its name.
+    #[must_use]
+    pub fn within(self, owner: &str) -> Self {
+        match self {
+            Self::InvalidParameter { name, requirement, value } => {
+                Self::InvalidParameter { name: format!("{owner}.{name}"), requirement, value }
+            }
+            other => other,
+        }
+    }
+}
+
+/// Passes a finite number.
+pub(crate) fn finite(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(NavigationError::invalid(name, "be finite", Given::Number(value)))
+    }
+}
+
+/// Passes a finite number above zero.
+pub(crate) fn positive(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(NavigationError::invalid(name, "be finite and positive", Given::Number(value)))
+    }
+}
+
+/// Passes a finite number that is not negative.
+pub(crate) fn not_negative(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(NavigationError::invalid(name, "be finite and not negative", Given::Number(value)))
+    }
+}
+
+/// Passes a finite vector.
+pub(crate) fn finite_pair(name: &str, value: [f64; 2]) -> Result<[f64; 2]> {
+    if value.iter().all(|component| component.is_finite()) {
+        Ok(value)
+    } else {
+        Err(NavigationError::invalid(name, "be finite", Given::Pair(value)))
+    }
+}

@@ -1,0 +1,29 @@
+//! Repulsive force of one obstacle.
+
+use crate::forces::geometry::Approach;
+use crate::gains::GainLanes;
+use crate::lanes::{Real, Vec2};
+
+/// `L` and its damping part `Ld` (5.4.3).
+#[derive(Clone, Copy, Debug)]
+pub struct Repulsion<R> {
+    /// `L = (r2-d)^2/(d-r3)` in m.
+    pub potential: R,
+    /// `Ld = -ddot (r2-d)^2/(d-r3)^2` in m/s.
+    pub rate: R,
+}
+
+impl<R: Real> Repulsion<R> {
+    /// Repulsion at an approach.
+    #[inline(always)]
+    pub fn new(approach: &Approach<R>) -> Self {
+        let potential = approach.depth * approach.depth / approach.margin;
+        Self { potential, rate: -(approach.range_rate * potential) / approach.margin }
+    }
+
+    /// `F_Lambda = K_3 (L + b Ld) u` in N.
+    #[inline(always)]
+    pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vec2<R> {
+        approach.outward.scale(gains.repulsive * (self.potential + gains.ratio * self.rate))
+    }
+}

@@ -1,0 +1,355 @@
+//! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
+
+use crate::error::{Given, NavigationError, Result};
+use crate::forces::attractive::attractive_force;
+use crate::forces::detour::Turning;
+use crate::forces::geometry::{Approach, Body, RobotState};
+use crate::forces::lyapunov;
+use crate::forces::repulsive::Repulsion;
+use crate::forces::side::{self, Detour, SideRules};
+use crate::forces::stabilizing::{Dissipation, Dissipative, Stabilizing};
+use crate::gains::{GainLanes, Gains};
+use crate::lanes::{Mask, Real, Vec2};
+use crate::laws::{Command, Law, Situation};
+use crate::scenario::Scenario;
+
+/// The law of Zeng (2011), chapter 5: gains and options.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VirtualForceField {
+    /// Gains.
+    pub gains: Gains,
+    /// Mode of the stabilizing force.
+    pub stabilizing: Stabilizing,
+    /// Rules for the side of detours.
+    pub rules: SideRules,
+}
+
+impl VirtualForceField {
+    /// Checks gains and hysteresis.
+    ///
+    /// # Errors
+    /// Names the value that is not allowed.
+    pub fn new(gains: Gains, stabilizing: Stabilizing, rules: SideRules) -> Result<Self> {
+        gains.checked()?;
+        let angle = rules.hysteresis;
+        if angle != f64::INFINITY && !(0.0..std::f64::consts::PI).contains(&angle) {
+            let rule = "be an angle from 0 to below pi";
+            return Err(NavigationError::invalid("side_hysteresis", rule, Given::Number(angle)));
+        }
+        Ok(Self { gains, stabilizing, rules })
+    }
+}
+
+/// Forces and geometry of one obstacle in one evaluation.
+#[derive(Clone, Copy, Debug)]
+struct Slot<R: Real> {
+    index: usize,
+    approach: Approach<R>,
+    side: R,
+    detour: Detour<R>,
+    turning: Turning<R>,
+    repulsion: Repulsion<R>,
+    repulsive: Vec2<R>,
+    detouring: Vec2<R>,
+}
+
+/// The law at work on robots side by side. `RECORD`: the Lyapunov function is wanted too.
+#[derive(Clone, Debug)]
+pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
+    gains: GainLanes<R>,
+    stabilizing: Stabilizing,
+    rules: SideRules,
+    goal: Vec2<R>,
+    mass: f64,
+    max_acceleration: f64,
+    control_period: f64,
+    /// Side of each obstacle at the sample before, 0 outside its active region.
+    latched: Vec<R>,
+    slots: Vec<Slot<R>>,
+    dissipation: Dissipation<R>,
+}
+
+impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
+    /// The law for one scenario.
+    #[must_use]
+    pub fn new(law: &VirtualForceField, gains: GainLanes<R>, scenario: &Scenario) -> Self {
+        let count = scenario.obstacles.len();
+        Self {
+            gains,
+            stabilizing: law.stabilizing,
+            rules: law.rules,
+            goal: Vec2::splat(scenario.goal),
+            mass: scenario.robot.mass,
+            max_acceleration: scenario.robot.max_acceleration,
+            control_period: scenario.rules.control_period,
+            latched: vec![R::zero(); count],
+            slots: Vec::with_capacity(count),
+            dissipation: Dissipation::zero(),
+        }
+    }
+
+    /// Sum of repulsion and detour, and lanes inside a critical region; `None` if a side hangs
+    /// on the other obstacles.
+    #[inline(always)]
+    fn sum(&self, situation: &Situation<'_, R>) -> Option<(Vec2<R>, R::Mask)> {
+        let mut total = Vec2::zero();
+        let mut critical = R::Mask::none();
+        for body in situation.bodies {
+            let Some((approach, inside)) = self.near(body, &situation.robot) else { continue };
+            critical = critical | inside;
+            let side = side::decide(&self.rules, body, &approach, &situation.robot, self.goal);
+            let open = approach.active & side.abs().lt(R::splat(0.5));
+            if open.any() {
+                return None;
+            }
+            let detour = side::latch(&self.rules, &approach, side, R::zero());
+            let repulsive = Repulsion::new(&approach).force(&self.gains, &approach);
+            let detouring = Turning::new(&approach, &detour).force(&self.gains, &approach);
+            let both = total + (repulsive + detouring);
+            total = Vec2::select(approach.active, both, total);
+        }
+        Some((total, critical))
+    }
+
+    /// Geometry of an obstacle if any lane is inside its active region, and the lanes inside its
+    /// critical region.
+    #[inline(always)]
+    fn near(&self, body: &Body, robot: &RobotState<R>) -> Option<(Approach<R>, R::Mask)> {
+        if !body.state.present {
+            return None;
+        }
+        let offset = body.offset(robot.position);
+        let (r2, r3) = (body.regions.active_radius, body.regions.critical_radius);
+        let active = offset.distance_squared.lt(R::splat(r2 * r2));
+        if !active.any() {
+            return None;
+        }
+        let critical = offset.distance_squared.le(R::splat(r3 * r3));
+        Some((Approach::new(body, offset, active, robot, self.goal), critical))
+    }
+
+    /// As [`Self::sum`], with the sides of every rule, Omega and the terms kept in the slots.
+    fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vec2<R>, R::Mask) {
+        let critical = self.fill_slots(situation);
+        self.break_ties();
+        let robot = self.dissipative(&situation.robot);
+        let mut total = Vec2::zero();
+        self.dissipation = Dissipation::zero();
+        if self.rules.hysteresis.is_finite() {
+            self.latched.fill(R::zero());
+        }
+        for slot in &mut self.slots {
+            let latched = &mut self.latched[slot.index];
+            let both = total + (slot.repulsive + slot.detouring);
+            total = Vec2::select(slot.approach.active, both, total);
+            *latched = R::select(slot.approach.active, slot.detour.side, R::zero());
+            let seen = (&slot.approach, &slot.repulsion, &slot.turning, &slot.detour);
+            self.dissipation.add(&self.gains, &robot, &situation.bodies[slot.index], seen);
+        }
+        (total, critical)
+    }
+
+    fn fill_slots(&mut self, situation: &Situation<'_, R>) -> R::Mask {
+        let mut critical = R::Mask::none();
+        self.slots.clear();
+        for (index, body) in situation.bodies.iter().enumerate() {
+            let Some((approach, inside)) = self.near(body, &situation.robot) else { continue };
+            critical = critical | inside;
+            let side = side::decide(&self.rules, body, &approach, &situation.robot, self.goal);
+            let detour = side::latch(&self.rules, &approach, side, self.latched[index]);
+            let repulsion = Repulsion::new(&approach);
+            let turning = Turning::new(&approach, &detour);
+            self.slots.push(Slot {
+                index,
+                approach,
+                side: detour.side,
+                detour,
+                turning,
+                repulsion,
+                repulsive: repulsion.force(&self.gains, &approach),
+                detouring: turning.force(&self.gains, &approach),
+            });
+        }
+        critical
+    }
+
+    /// Decides the sides left open, in the order of the list.
+    fn break_ties(&mut self) {
+        let half = R::splat(0.5);
+        let open = |slot: &Slot<R>| slot.approach.active & slot.side.abs().lt(half);
+        if !self.slots.iter().any(|slot| open(slot).any()) {
+            return;
+        }
+        let mut others = Vec2::zero();
+        let mut magnitudes = R::zero();
+        for slot in &self.slots {
+            let decided = slot.approach.active & half.lt(slot.side.abs());
+            let force = slot.detouring;
+            others = Vec2::select(decided, others + force, others);
+            let longer = magnitudes + force.dot(force).sqrt();
+            magnitudes = R::select(decided, longer, magnitudes);
+        }
+        for slot in &mut self.slots {
+            let tied = open(slot);
+            if !tied.any() {
+                continue;
+            }
+            let chosen = side::tie_break(slot.approach.outward, others, magnitudes);
+            slot.side = R::select(tied, chosen, slot.side);
+            let detour = side::latch(&self.rules, &slot.approach, slot.side, R::zero());
+            slot.detour.side = R::select(tied, detour.side, slot.detour.side);
+            slot.detour.turn = R::select(tied, detour.turn, slot.detour.turn);
+            slot.detour.descent = R::select(tied, detour.descent, slot.detour.descent);
+            slot.turning = Turning::new(&slot.approach, &slot.detour);
+            slot.detouring = slot.turning.force(&self.gains, &slot.approach);
+            let force = slot.detouring;
+            others = Vec2::select(tied, others + force, others);
+            magnitudes = R::select(tied, magnitudes + force.dot(force).sqrt(), magnitudes);
+        }
+    }
+
+    fn dissipative(&self, robot: &RobotState<R>) -> Dissipative<R> {
+        let to_goal = self.goal - robot.position;
+        Dissipative { mass: self.mass, to_goal, velocity: robot.velocity }
+    }
+
+    /// Braking along `-V` with `min(a_max, |V|/interval)`, which never reverses the robot.
+    fn braking(&self, velocity: Vec2<R>, interval: f64) -> Vec2<R> {
+        let speed = velocity.dot(velocity).sqrt();
+        let deceleration = (speed / R::splat(interval)).min(R::splat(self.max_acceleration));
+        let force = velocity.scale(R::splat(-self.mass) * deceleration / speed);
+        Vec2::select(speed.gt(R::zero()), force, Vec2::zero())
+    }
+
+    /// Lyapunov function of the slots of the last full evaluation.
+    fn lyapunov(&self, robot: &RobotState<R>) -> R {
+        let to_goal = self.goal - robot.position;
+        let mut value = lyapunov::free_part(&self.gains, self.mass, to_goal, robot.velocity);
+        for slot in &self.slots {
+            let (approach, repulsion, turning) = (&slot.approach, &slot.repulsion, &slot.turning);
+            let part =
+                lyapunov::obstacle_part(&self.gains, self.mass, approach, repulsion, turning);
+            value = R::select(approach.active, value + part, value);
+        }
+        value
+    }
+}
+
+impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
+    #[inline(always)]
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let robot = &situation.robot;
+        let stabilizes = self.stabilizing != Stabilizing::Off;
+        let remembers = self.rules.hysteresis.is_finite();
+        let quick =
+            if RECORD || stabilizes || remembers { None } else { self.sum(situation) };
+        let (obstacles, critical) = match quick {
+            Some(sums) => sums,
+            None => self.sum_in_full(situation),
+        };
+        let attraction = attractive_force(&self.gains, self.goal - robot.position, robot.velocity);
+        let mut command = Command {
+            force: attraction + obstacles,
+            stabilizing: Vec2::zero(),
+            lyapunov: R::splat(f64::NAN),
+        };
+        if stabilizes {
+            let state = self.dissipative(robot);
+            let period = self.control_period;
+            let force = self.dissipation.force(self.stabilizing, &self.gains, &state, period);
+            command.stabilizing = Vec2::select(critical, Vec2::zero(), force);
+            command.force = command.force + force;
+        }
+        if critical.any() {
+            let braking = self.braking(robot.velocity, situation.interval);
+            command.force = Vec2::select(critical, braking, command.force);
+        }
+        if RECORD {
+            let value = self.lyapunov(robot);
+            command.lyapunov = R::select(critical, R::splat(f64::NAN), value);
+        }
+        command
+    }
+}
+
+/// Terms of one obstacle at one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObstacleTerms {
+    /// Repulsive force in N.
+    pub repulsive: [f64; 2],
+    /// Detour force in N.
+    pub detour: [f64; 2],
+    /// Region: `free`, `active`, `critical` or `absent`.
+    pub region: &'static str,
+    /// Side of the detour, 0 when not active.
+    pub side: i8,
+}
+
+/// Every term at one state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldTerms {
+    /// Attractive force in N.
+    pub attractive: [f64; 2],
+    /// Terms of each obstacle.
+    pub obstacles: Vec<ObstacleTerms>,
+    /// Stabilizing force in N.
+    pub stabilizing: [f64; 2],
+    /// Commanded force in N.
+    pub total: [f64; 2],
+    /// Omega in N^2/s.
+    pub omega: f64,
+    /// Lyapunov function in N^2 and its derivative in N^2/s; `None` inside a critical region.
+    pub lyapunov: Option<(f64, f64)>,
+}
+
+impl ForceFieldLaw<f64, true> {
+    /// Every term of one evaluation.
+    pub fn terms(&mut self, situation: &Situation<'_, f64>) -> FieldTerms {
+        let command = self.command(situation);
+        let robot = &situation.robot;
+        let mut terms = FieldTerms {
+            attractive: [0.0; 2],
+            obstacles: situation.bodies.iter().map(|body| idle(body, robot.position)).collect(),
+            stabilizing: command.stabilizing.lane(0),
+            total: command.force.lane(0),
+            omega: self.dissipation.omega,
+            lyapunov: None,
+        };
+        if terms.obstacles.iter().any(|obstacle| obstacle.region == "critical") {
+            terms.omega = 0.0;
+            return terms;
+        }
+        terms.attractive =
+            attractive_force(&self.gains, self.goal - robot.position, robot.velocity).lane(0);
+        for slot in &self.slots {
+            terms.obstacles[slot.index] = ObstacleTerms {
+                repulsive: slot.repulsive.lane(0),
+                detour: slot.detouring.lane(0),
+                region: "active",
+                side: if slot.side > 0.0 { 1 } else { -1 },
+            };
+        }
+        let direction = self.dissipation.direction(&self.gains, robot.velocity);
+        // dV2/dt = -b |v_L|^2 - v_L.F_L + Omega (5.5.6).
+        let derivative = -self.gains.ratio * direction.dot(direction)
+            - direction.dot(command.stabilizing)
+            + self.dissipation.omega;
+        terms.lyapunov = Some((command.lyapunov, derivative));
+        terms
+    }
+}
+
+/// An obstacle without force.
+fn idle(body: &Body, position: Vec2<f64>) -> ObstacleTerms {
+    let squared = body.offset(position).distance_squared;
+    let region = if !body.state.present {
+        "absent"
+    } else if squared <= body.regions.critical_radius * body.regions.critical_radius {
+        "critical"
+    } else if squared < body.regions.active_radius * body.regions.active_radius {
+        "active"
+    } else {
+        "free"
+    };
+    ObstacleTerms { repulsive: [0.0; 2], detour: [0.0; 2], region, side: 0 }
+}

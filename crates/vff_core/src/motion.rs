@@ -1,0 +1,269 @@
+//! How an obstacle moves: pieces of constant acceleration, or a recording.
+
+use crate::error::{Given, NavigationError, Result, finite_pair};
+
+/// Position, velocity and acceleration of a body at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Position in m.
+    pub position: [f64; 2],
+    /// Velocity in m/s.
+    pub velocity: [f64; 2],
+    /// Acceleration in m/s^2.
+    pub acceleration: [f64; 2],
+    /// Whether the body is in the scene.
+    pub present: bool,
+}
+
+/// A piece of motion with constant acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    start: f64,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    acceleration: [f64; 2],
+}
+
+impl Piece {
+    fn at(&self, time: f64) -> ([f64; 2], [f64; 2]) {
+        let t = time - self.start;
+        let along = |i: usize| {
+            self.position[i] + (self.velocity[i] + 0.5 * self.acceleration[i] * t) * t
+        };
+        let speed = |i: usize| self.velocity[i] + self.acceleration[i] * t;
+        ([along(0), along(1)], [speed(0), speed(1)])
+    }
+}
+
+/// Duration in s, velocity at its begin in m/s, acceleration in m/s^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Duration in s; may be infinite.
+    pub duration: f64,
+    /// Velocity at the begin in m/s.
+    pub velocity: [f64; 2],
+    /// Acceleration in m/s^2.
+    pub acceleration: [f64; 2],
+}
+
+/// Motion of a body over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Pieces in order of time; the last one goes on for ever.
+    pieces: Vec<Piece>,
+    /// First and last instant of presence.
+    presence: (f64, f64),
+}
+
+impl Motion {
+    /// A body that never moves.
+    #[must_use]
+    pub fn at_rest(position: [f64; 2]) -> Self {
+        Self::constant(position, [0.0; 2], [0.0; 2])
+    }
+
+    fn constant(position: [f64; 2], velocity: [f64; 2], acceleration: [f64; 2]) -> Self {
+        let piece = Piece { start: 0.0, position, velocity, acceleration };
+        Self { pieces: vec![piece], presence: (f64::NEG_INFINITY, f64::INFINITY) }
+    }
+
+    /// Constant acceleration, or constant velocity until a sudden stop.
+    ///
+    /// # Errors
+    /// A value is not finite, the stop does not lie ahead, or a stop is combined with an
+    /// acceleration.
+    pub fn moving(
+        start: [f64; 2],
+        velocity: [f64; 2],
+        acceleration: [f64; 2],
+        stop: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        finite_pair("start", start)?;
+        finite_pair("velocity", velocity)?;
+        finite_pair("acceleration", acceleration)?;
+        let mut motion = Self::constant(start, velocity, acceleration);
+        if let Some(stop) = stop {
+            finite_pair("stop", stop)?;
+            if acceleration != [0.0; 2] {
+                let rule = "be zero for a body with a stop";
+                return Err(NavigationError::invalid("acceleration", rule, Given::Pair(acceleration)));
+            }
+            let way = [stop[0] - start[0], stop[1] - start[1]];
+            let speed_squared = velocity[0] * velocity[0] + velocity[1] * velocity[1];
+            let along = way[0] * velocity[0] + way[1] * velocity[1];
+            let across = way[0] * velocity[1] - way[1] * velocity[0];
+            let length = way[0].hypot(way[1]);
+            // Half a micrometre of sideways offset a metre is rounding of typed numbers.
+            if !(along > 0.0 && across.abs() <= 5e-7 * length * speed_squared.sqrt()) {
+                let rule = "lie ahead of the start along the velocity";
+                return Err(NavigationError::invalid("stop", rule, Given::Pair(stop)));
+            }
+            motion.pieces.push(Piece {
+                start: along / speed_squared,
+                position: stop,
+                velocity: [0.0; 2],
+                acceleration: [0.0; 2],
+            });
+        }
+        Ok(motion)
+    }
+
+    /// Piecewise constant acceleration; after the last segment the velocity reached is kept.
+    ///
+    /// # Errors
+    /// There is no segment, a duration is not positive, or a value is not finite.
+    pub fn piecewise(start: [f64; 2], segments: &[Segment]) -> Result<Self> {
+        finite_pair("start", start)?;
+        if segments.is_empty() {
+            let none = Given::Word("an empty list".into());
+            return Err(NavigationError::invalid("segments", "hold at least one segment", none));
+        }
+        let mut motion = Self::at_rest(start);
+        motion.pieces.clear();
+        let (mut time, mut position) = (0.0, start);
+        for (index, segment) in segments.iter().enumerate() {
+            let owner = format!("segments[{index}]");
+            finite_pair("velocity", segment.velocity).map_err(|error| error.within(&owner))?;
+            finite_pair("acceleration", segment.acceleration)
+                .map_err(|error| error.within(&owner))?;
+            if !(segment.duration > 0.0) {
+                let name = format!("{owner}.duration");
+                return Err(NavigationError::invalid(name, "be positive", Given::Number(segment.duration)));
+            }
+            let piece = Piece {
+                start: time,
+                position,
+                velocity: segment.velocity,
+                acceleration: segment.acceleration,
+            };
+            motion.pieces.push(piece);
+            if segment.duration == f64::INFINITY {
+                return Ok(motion);
+            }
+            time += segment.duration;
+            let (reached, velocity) = piece.at(time);
+            position = reached;
+            if index + 1 == segments.len() {
+                motion.pieces.push(Piece { start: time, position, velocity, acceleration: [0.0; 2] });
+            }
+        }
+        Ok(motion)
+    }
+
+    /// A recording: linear between samples, absent before the first and after the last.
+    ///
+    /// # Errors
+    /// It is empty, not finite or not strictly increasing in time.
+    pub fn recorded(time: &[f64], position: &[[f64; 2]]) -> Result<Self> {
+        let (Some(first), Some(last)) = (time.first(), time.last()) else {
+            let none = Given::Word("an empty recording".into());
+            return Err(NavigationError::invalid("time", "hold at least one sample", none));
+        };
+        if time.len() != position.len() {
+            let count = Given::Count(position.len() as u64);
+            return Err(NavigationError::invalid("position", "have one row for each time", count));
+        }
+        for (index, (&instant, &place)) in time.iter().zip(position).enumerate() {
+            if !instant.is_finite() {
+                return Err(NavigationError::invalid(
+                    format!("time[{index}]"),
+                    "be finite",
+                    Given::Number(instant),
+                ));
+            }
+            finite_pair(&format!("position[{index}]"), place)?;
+            if index > 0 && instant <= time[index - 1] {
+                let rule = "be later than the sample before";
+                let name = format!("time[{index}]");
+                return Err(NavigationError::invalid(name, rule, Given::Number(instant)));
+            }
+        }
+        let mut pieces: Vec<Piece> = time
+            .windows(2)
+            .zip(position.windows(2))
+            .map(|(t, p)| {
+                let rate = |i: usize| (p[1][i] - p[0][i]) / (t[1] - t[0]);
+                Piece { start: t[0], position: p[0], velocity: [rate(0), rate(1)], acceleration: [0.0; 2] }
+            })
+            .collect();
+        if pieces.is_empty() {
+            let start = *first;
+            pieces.push(Piece { start, position: position[0], velocity: [0.0; 2], acceleration: [0.0; 2] });
+        }
+        Ok(Self { pieces, presence: (*first, *last) })
+    }
+
+    /// Whether the body stands where it is for all time.
+    #[must_use]
+    pub fn is_stationary(&self) -> bool {
+        let stands = |piece: &Piece| piece.velocity == [0.0; 2] && piece.acceleration == [0.0; 2];
+        self.presence == (f64::NEG_INFINITY, f64::INFINITY) && self.pieces.iter().all(stands)
+    }
+
+    /// Largest speed at the begin of any piece, in m/s.
+    #[must_use]
+    pub fn max_initial_speed(&self) -> f64 {
+        let speed = |piece: &Piece| piece.velocity[0].hypot(piece.velocity[1]);
+        self.pieces.iter().map(speed).fold(0.0, f64::max)
+    }
+
+    /// State at an instant. `cursor` remembers the piece; start it at 0.
+    #[must_use]
+    pub fn at(&self, time: f64, cursor: &mut usize) -> BodyState {
+        let mut index = (*cursor).min(self.pieces.len() - 1);
+        while index > 0 && time < self.pieces[index].start {
+            index -= 1;
+        }
+        while index + 1 < self.pieces.len() && time >= self.pieces[index + 1].start {
+            index += 1;
+        }
+        *cursor = index;
+        let piece = &self.pieces[index];
+        let (position, velocity) = piece.at(time);
+        let present = self.presence.0 <= time && time <= self.presence.1;
+        BodyState { position, velocity, acceleration: piece.acceleration, present }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_suddenly_where_it_was_told_to() {
+        let walk = Motion::moving([0.6, 0.6], [1.0, 0.0], [0.0; 2], Some([4.0, 0.6])).unwrap();
+        let mut cursor = 0;
+        assert_eq!(walk.at(1.0, &mut cursor).position, [1.6, 0.6]);
+        let late = walk.at(10.0, &mut cursor);
+        assert_eq!((late.position, late.velocity), ([4.0, 0.6], [0.0, 0.0]));
+        assert_eq!(walk.at(1.0, &mut cursor).velocity, [1.0, 0.0]);
+        assert!(Motion::moving([0.0; 2], [1.0, 0.0], [0.0; 2], Some([-1.0, 0.0])).is_err());
+        assert!(Motion::moving([0.0; 2], [0.0, 0.0], [0.0; 2], Some([1.0, 0.0])).is_err());
+    }
+
+    #[test]
+    fn segments_follow_each_other_without_a_jump() {
+        let still = [0.0; 2];
+        let segments = [
+            Segment { duration: 1.0, velocity: [1.0, 0.0], acceleration: still },
+            Segment { duration: 1.0, velocity: [1.0, 0.0], acceleration: [-1.0, 0.0] },
+            Segment { duration: 1.0, velocity: still, acceleration: [0.0, 1.0] },
+        ];
+        let walk = Motion::piecewise([0.6, 0.0], &segments).unwrap();
+        let mut cursor = 0;
+        let end = walk.at(5.0, &mut cursor);
+        assert_eq!((end.position, end.velocity), ([2.1, 2.5], [0.0, 1.0]));
+    }
+
+    #[test]
+    fn a_recording_is_absent_outside_its_samples() {
+        let walk = Motion::recorded(&[1.0, 2.0], &[[0.0, 0.0], [0.5, 0.0]]).unwrap();
+        let mut cursor = 0;
+        assert!(!walk.at(0.9, &mut cursor).present);
+        let middle = walk.at(1.5, &mut cursor);
+        assert_eq!((middle.position, middle.velocity, middle.present), ([0.25, 0.0], [0.5, 0.0], true));
+        assert!(walk.at(2.0, &mut cursor).present && !walk.at(2.1, &mut cursor).present);
+        assert!(Motion::recorded(&[1.0, 1.0], &[[0.0; 2]; 2]).is_err());
+        assert!(Motion::recorded(&[], &[]).is_err());
+    }
+}

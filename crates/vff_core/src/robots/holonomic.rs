@@ -1,0 +1,210 @@
+//! Three-wheel holonomic robot: point mass with limits, wheel kinematics, feed-forward currents.
+
+use crate::error::{Result, not_negative, positive};
+use crate::lanes::{Mask, Real, Vec2};
+use crate::region::RobotLimits;
+
+/// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
+const WHEEL_STANDSTILL: f64 = 1e-9;
+
+/// Wheels and motors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheels {
+    /// Wheel radius `r_w` in m.
+    pub radius: f64,
+    /// Winding resistance `R_a` in ohm.
+    pub resistance: f64,
+    /// `J/K` of each wheel in A s^2.
+    pub inertia: [f64; 3],
+    /// `B/K` of each wheel in A s.
+    pub viscous_friction: [f64; 3],
+    /// `tau/K` of each wheel in A.
+    pub static_friction: [f64; 3],
+}
+
+/// Robot that accelerates in any direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HolonomicRobot {
+    /// Mass `M_r` in kg.
+    pub mass: f64,
+    /// Radius `rho_r` in m.
+    pub radius: f64,
+    /// Largest speed in m/s.
+    pub max_speed: f64,
+    /// Largest acceleration in m/s^2.
+    pub max_acceleration: f64,
+    /// Wheels and motors.
+    pub wheels: Wheels,
+}
+
+impl Default for HolonomicRobot {
+    /// The robot of Zeng (2011), chapter 6; radius and resistance of the wheels are a calibration.
+    fn default() -> Self {
+        Self {
+            mass: 4.4,
+            radius: 0.2,
+            max_speed: 0.7,
+            max_acceleration: 10.0,
+            wheels: Wheels {
+                radius: 0.10,
+                resistance: 4.86,
+                inertia: [0.0073, 0.0074, 0.0065],
+                viscous_friction: [0.0019, 0.0020, 0.0024],
+                static_friction: [0.19, 0.22, 0.18],
+            },
+        }
+    }
+}
+
+impl HolonomicRobot {
+    /// Passes a robot whose values are in range.
+    ///
+    /// # Errors
+    /// Names the value that is not.
+    pub fn checked(self) -> Result<Self> {
+        positive("mass", self.mass)?;
+        positive("radius", self.radius)?;
+        positive("max_speed", self.max_speed)?;
+        positive("max_acceleration", self.max_acceleration)?;
+        positive("wheel_radius", self.wheels.radius)?;
+        not_negative("winding_resistance", self.wheels.resistance)?;
+        for wheel in 0..3 {
+            not_negative(&format!("wheel_inertia[{wheel}]"), self.wheels.inertia[wheel])?;
+            let friction = self.wheels.viscous_friction[wheel];
+            not_negative(&format!("wheel_viscous_friction[{wheel}]"), friction)?;
+            let friction = self.wheels.static_friction[wheel];
+            not_negative(&format!("wheel_static_friction[{wheel}]"), friction)?;
+        }
+        Ok(self)
+    }
+
+    /// Limits for the size of regions.
+    #[must_use]
+    pub fn limits(&self) -> RobotLimits {
+        RobotLimits {
+            radius: self.radius,
+            max_speed: self.max_speed,
+            max_acceleration: self.max_acceleration,
+            turn_time: 0.0,
+        }
+    }
+
+    /// Acceleration from a commanded force: `F/m`, shortened to the largest acceleration.
+    #[inline(always)]
+    pub fn acceleration<R: Real>(&self, force: Vec2<R>) -> Vec2<R> {
+        limited(force.scale(R::splat(1.0 / self.mass)), self.max_acceleration).0
+    }
+
+    /// Velocity shortened to the largest speed, and the speed that is left.
+    #[inline(always)]
+    pub fn limited_velocity<R: Real>(&self, velocity: Vec2<R>) -> (Vec2<R>, R) {
+        limited(velocity, self.max_speed)
+    }
+}
+
+/// A vector shortened to a largest magnitude, and its magnitude then.
+#[inline(always)]
+fn limited<R: Real>(vector: Vec2<R>, limit: f64) -> (Vec2<R>, R) {
+    let limit = R::splat(limit);
+    let magnitude = vector.dot(vector).sqrt();
+    let over = magnitude.gt(limit);
+    if over.any() {
+        let shortened = vector.scale(limit / magnitude);
+        (Vec2::select(over, shortened, vector), R::select(over, limit, magnitude))
+    } else {
+        (vector, magnitude)
+    }
+}
+
+/// Wheel speeds and currents at one heading.
+#[derive(Clone, Copy, Debug)]
+pub struct WheelModel {
+    /// Wheel speed for a unit velocity along x and y: rows of (D.1.4) divided by `r_w`, in 1/m.
+    rows: [[f64; 2]; 3],
+    wheels: Wheels,
+    /// Motion step in s.
+    step: f64,
+}
+
+impl WheelModel {
+    /// Model of a robot at a constant heading, for one motion step.
+    #[must_use]
+    pub fn new(robot: &HolonomicRobot, heading: f64, step: f64) -> Self {
+        let (sin, cos) = heading.sin_cos();
+        // (D.1.2): v_i = -x' sin z_i + y' cos z_i with z = 120, 240, 0 degrees.
+        let half_root_3 = 0.5 * 3f64.sqrt();
+        let own = [[-half_root_3, -0.5], [half_root_3, -0.5], [0.0, 1.0]];
+        let per_meter = 1.0 / robot.wheels.radius;
+        let rows = own.map(|[forward, left]| {
+            [(forward * cos - left * sin) * per_meter, (forward * sin + left * cos) * per_meter]
+        });
+        Self { rows, wheels: robot.wheels, step }
+    }
+
+    /// Wheel speeds in rad/s.
+    #[inline(always)]
+    pub fn speeds<R: Real>(&self, velocity: Vec2<R>) -> [R; 3] {
+        self.rows.map(|row| velocity.dot(Vec2::splat(row)))
+    }
+
+    /// Motor currents in A from the wheel speeds before and after a step, (D.3.2) with 1 A/V:
+    /// `i = J/K theta'' + B/K theta' + tau/K sgn(theta')`.
+    #[inline(always)]
+    pub fn currents<R: Real>(&self, before: &[R; 3], after: &[R; 3]) -> [R; 3] {
+        let mut currents = *after;
+        for (wheel, current) in currents.iter_mut().enumerate() {
+            let speed = after[wheel];
+            let per_step = R::splat(self.wheels.inertia[wheel] / self.step);
+            let friction = R::splat(self.wheels.static_friction[wheel]).copysign(speed);
+            let moving = R::splat(WHEEL_STANDSTILL).le(speed.abs());
+            let friction = R::select(moving, friction, R::zero());
+            *current = (speed - before[wheel]) * per_step
+                + speed * R::splat(self.wheels.viscous_friction[wheel])
+                + friction;
+        }
+        currents
+    }
+
+    /// Loss for a unit of the sum of squared currents over one step, in J/A^2.
+    #[must_use]
+    pub fn loss_per_square(&self) -> f64 {
+        self.wheels.resistance * self.step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn third_wheel_stands_still_along_x() {
+        let model = WheelModel::new(&HolonomicRobot::default(), 0.0, 0.01);
+        let speeds = model.speeds(Vec2 { x: 0.7, y: 0.0 });
+        assert!((speeds[0] + 6.062_177_826_491_07).abs() < 1e-12 && speeds[2] == 0.0);
+        let currents = model.currents(&speeds, &speeds);
+        assert_eq!(currents[2], 0.0);
+        assert!((currents[0] + 0.0019 * 6.062_177_826_491_07 + 0.19).abs() < 1e-12);
+    }
+
+    #[test]
+    fn heading_turns_the_wheels() {
+        let robot = HolonomicRobot::default();
+        let turned = WheelModel::new(&robot, 0.4, 0.01);
+        let straight = WheelModel::new(&robot, 0.0, 0.01);
+        let (sin, cos) = 0.4f64.sin_cos();
+        let world = turned.speeds(Vec2 { x: 0.3 * cos - 0.2 * sin, y: 0.3 * sin + 0.2 * cos });
+        let own = straight.speeds(Vec2 { x: 0.3, y: 0.2 });
+        for wheel in 0..3 {
+            assert!((world[wheel] - own[wheel]).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn limits_shorten_without_turning() {
+        let robot = HolonomicRobot::default();
+        let acceleration = robot.acceleration(Vec2 { x: 300.0, y: -400.0 });
+        assert!((acceleration.x - 6.0).abs() < 1e-12 && (acceleration.y + 8.0).abs() < 1e-12);
+        let (velocity, speed) = robot.limited_velocity(Vec2 { x: 0.3, y: 0.4 });
+        assert_eq!((velocity.x, velocity.y, speed), (0.3, 0.4, 0.5));
+    }
+}

@@ -1,0 +1,192 @@
+//! A scenario: robot, start, goal, obstacles and the rules of a run.
+
+use crate::error::{Given, NavigationError, Result, finite, finite_pair, positive};
+use crate::measurement::Measurement;
+use crate::obstacle::{Obstacle, Regions};
+use crate::region;
+use crate::robots::HolonomicRobot;
+
+/// An obstacle whose regions are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedObstacle {
+    /// Shape and motion.
+    pub obstacle: Obstacle,
+    /// Region radii.
+    pub regions: Regions,
+    /// Distance `d` at which robot and obstacle touch, in m.
+    pub contact_distance: f64,
+    /// Whether it never moves.
+    pub stationary: bool,
+}
+
+/// The rules of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Control period `T_s` in s.
+    pub control_period: f64,
+    /// Longest simulated time in s.
+    pub time_limit: f64,
+    /// Radius of the circle around the goal that counts as arrival, in m.
+    pub arrival_tolerance: f64,
+    /// Time at rest after which the robot has stopped for good, in s.
+    pub rest_time: f64,
+    /// Heading of the robot in rad.
+    pub heading: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            control_period: 0.06,
+            time_limit: 60.0,
+            arrival_tolerance: 0.12,
+            rest_time: 5.0,
+            heading: 0.0,
+        }
+    }
+}
+
+/// What is simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    pub(crate) robot: HolonomicRobot,
+    pub(crate) start: [f64; 2],
+    pub(crate) goal: [f64; 2],
+    pub(crate) obstacles: Vec<PlacedObstacle>,
+    pub(crate) rules: Rules,
+    pub(crate) measurement: Option<Measurement>,
+    pub(crate) seed: u64,
+}
+
+impl Scenario {
+    /// Checks everything and computes the regions that were not given.
+    ///
+    /// # Errors
+    /// A value is out of range, start and goal are within the arrival tolerance, the robot would
+    /// start in contact with an obstacle, or the goal lies in the active region of a stationary
+    /// one.
+    pub fn new(
+        robot: HolonomicRobot,
+        start: [f64; 2],
+        goal: [f64; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
+        robot.checked()?;
+        finite_pair("start", start)?;
+        finite_pair("goal", goal)?;
+        positive("control_period", rules.control_period)?;
+        positive("time_limit", rules.time_limit)?;
+        positive("arrival_tolerance", rules.arrival_tolerance)?;
+        positive("rest_time", rules.rest_time)?;
+        finite("heading", rules.heading)?;
+        if (start[0] - goal[0]).hypot(start[1] - goal[1]) <= rules.arrival_tolerance {
+            let rule = "be farther from the start than the arrival tolerance";
+            return Err(NavigationError::invalid("goal", rule, Given::Pair(goal)));
+        }
+        let obstacles = obstacles
+            .into_iter()
+            .enumerate()
+            .map(|(index, obstacle)| {
+                place(&robot, obstacle, rules.control_period)
+                    .map_err(|error| error.within(&format!("obstacles[{index}]")))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        for placed in &obstacles {
+            check_ends(placed, start, goal)?;
+        }
+        Ok(Self { robot, start, goal, obstacles, rules, measurement: None, seed: 0 })
+    }
+
+    /// The same scenario with noisy measurements drawn from a seed.
+    #[must_use]
+    pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Self {
+        self.measurement = measurement;
+        self.seed = seed;
+        self
+    }
+
+    /// The same way without obstacles and without noise: what the nominal run uses.
+    #[must_use]
+    pub fn nominal(&self) -> Self {
+        Self { obstacles: Vec::new(), measurement: None, seed: 0, ..self.clone() }
+    }
+
+    /// Number of obstacles.
+    #[must_use]
+    pub fn obstacle_count(&self) -> usize {
+        self.obstacles.len()
+    }
+
+    /// The obstacles with their regions.
+    #[must_use]
+    pub fn obstacles(&self) -> &[PlacedObstacle] {
+        &self.obstacles
+    }
+
+    /// Control period in s.
+    #[must_use]
+    pub fn control_period(&self) -> f64 {
+        self.rules.control_period
+    }
+
+    /// Heading of the robot in rad.
+    #[must_use]
+    pub fn heading(&self) -> f64 {
+        self.rules.heading
+    }
+
+    /// Mass of the robot in kg.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.robot.mass
+    }
+}
+
+fn place(robot: &HolonomicRobot, obstacle: Obstacle, control_period: f64) -> Result<PlacedObstacle> {
+    let limits = obstacle.limits;
+    let regions = match (limits.critical_radius, limits.active_radius) {
+        (Some(critical_radius), Some(active_radius)) => Regions { critical_radius, active_radius },
+        _ => {
+            let computed = region::radii(&robot.limits(), &obstacle, control_period, None)?;
+            Regions {
+                critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
+                active_radius: limits.active_radius.unwrap_or(computed.active_radius),
+            }
+        }
+    };
+    if regions.active_radius <= regions.critical_radius {
+        let rule = "be larger than critical_radius";
+        return Err(NavigationError::invalid(
+            "active_radius",
+            rule,
+            Given::Number(regions.active_radius),
+        ));
+    }
+    let contact_distance = robot.radius + obstacle.shape.inner_radius();
+    if regions.active_radius <= contact_distance {
+        let rule = "be larger than the radii of robot and obstacle together";
+        return Err(NavigationError::invalid(
+            "active_radius",
+            rule,
+            Given::Number(regions.active_radius),
+        ));
+    }
+    let stationary = obstacle.motion.is_stationary();
+    Ok(PlacedObstacle { obstacle, regions, contact_distance, stationary })
+}
+
+fn check_ends(placed: &PlacedObstacle, start: [f64; 2], goal: [f64; 2]) -> Result<()> {
+    let state = placed.obstacle.motion.at(0.0, &mut 0);
+    let distance = placed.obstacle.distance(state.position, start);
+    if state.present && distance <= placed.contact_distance {
+        let rule = "not be in contact with an obstacle";
+        return Err(NavigationError::invalid("start", rule, Given::Pair(start)));
+    }
+    let distance = placed.obstacle.distance(state.position, goal);
+    if placed.stationary && distance < placed.regions.active_radius {
+        let rule = "lie outside the active region of every stationary obstacle";
+        return Err(NavigationError::invalid("goal", rule, Given::Pair(goal)));
+    }
+    Ok(())
+}

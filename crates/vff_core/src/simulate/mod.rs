@@ -1,0 +1,68 @@
+//! Runs: control period, integrators, outcomes; one run, or many at once.
+
+mod batch;
+mod options;
+mod record;
+mod rollout;
+
+pub use batch::{BatchOptions, ScoredRun, Width, run_batch};
+pub use options::{Integrator, Options};
+pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
+pub use rollout::{CONTACT_SPEED, Contact, Outcome, RunSummary, run_lanes};
+
+use crate::error::Result;
+use crate::forces::geometry::{Body, RobotState};
+use crate::gains::GainLanes;
+use crate::lanes::Vec2;
+use crate::laws::{FieldTerms, ForceFieldLaw, Situation, VirtualForceField};
+use crate::scenario::Scenario;
+
+/// Asked now and then whether to stop.
+pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// One run with everything recorded.
+///
+/// # Errors
+/// An option is out of range, the state became non-finite, or the caller asked to stop.
+pub fn simulate(
+    scenario: &Scenario,
+    law: &VirtualForceField,
+    options: &Options,
+    interrupted: Interrupted<'_>,
+) -> Result<(RunSummary, Trajectory)> {
+    let gains = GainLanes::<f64>::gather(law.gains, &[]);
+    let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
+    let mut recorder = TrajectoryRecorder::new(scenario);
+    let mut summaries = run_lanes(scenario, &mut field, options, &mut recorder, interrupted)?;
+    Ok((summaries.swap_remove(0), recorder.finish()))
+}
+
+/// Every force term at one state.
+///
+/// # Errors
+/// A value is not finite or the time is negative.
+pub fn terms_at(
+    scenario: &Scenario,
+    law: &VirtualForceField,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    time: f64,
+) -> Result<FieldTerms> {
+    crate::error::finite_pair("position", position)?;
+    crate::error::finite_pair("velocity", velocity)?;
+    crate::error::not_negative("time", time)?;
+    let bodies: Vec<Body> = scenario
+        .obstacles
+        .iter()
+        .map(|placed| Body {
+            shape: placed.obstacle.shape,
+            regions: placed.regions,
+            state: placed.obstacle.motion.at(time, &mut 0),
+        })
+        .collect();
+    let gains = GainLanes::<f64>::gather(law.gains, &[]);
+    let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
+    let robot = RobotState { position: Vec2::splat(position), velocity: Vec2::splat(velocity) };
+    let interval = scenario.rules.control_period;
+    Ok(field.terms(&Situation { bodies: &bodies, robot, interval }))
+}

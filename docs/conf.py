@@ -1,0 +1,40 @@
+"""Settings of the documentation site."""
+
+from __future__ import annotations
+
+import hrsafety
+
+project = "hrsafety"
+author = copyright = "hrsafety developers"
+version = release = hrsafety.__version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.viewcode",
+]
+
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+exclude_patterns = ["_build"]
+
+# `name` in a docstring is a link where it can be one.
+default_role = "py:obj"
+add_module_names = False
+
+myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_heading_anchors = 3
+
+autosummary_generate = True
+autosummary_ignore_module_all = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings say it, with units
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+
+html_theme = "furo"
+html_title = "hrsafety"
+html_show_sphinx = False
+html_copy_source = False

@@ -1,0 +1,52 @@
+"""Numbers, pictures and evidence for robots that work near people.
+
+`navigation` simulates mobile robots under virtual force fields among people and things and
+scores how well and how safely they reach their goal. Sub-modules load on first use, so
+importing the package costs little more than importing numpy.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+from hrsafety.errors import (
+    HrsafetyError,
+    InvalidParameterError,
+    ShapeError,
+    SimulationError,
+)
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from hrsafety import datasets, navigation, plotting, reproduce, scenarios
+
+__all__ = [
+    "HrsafetyError",
+    "InvalidParameterError",
+    "ShapeError",
+    "SimulationError",
+    "__version__",
+    "datasets",
+    "navigation",
+    "plotting",
+    "reproduce",
+    "scenarios",
+]
+
+__version__ = "0.1.0"
+
+_LAZY = frozenset({"datasets", "navigation", "plotting", "reproduce", "scenarios"})
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Import a sub-module the first time it is asked for."""
+    if name in _LAZY:
+        return importlib.import_module(f"hrsafety.{name}")
+    raise AttributeError(f"module 'hrsafety' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """List the public names, loaded or not."""
+    return sorted(__all__)

@@ -1,0 +1,191 @@
+"""Command line ``hrsafety``: reproduce the published results, simulate scenarios and crowds."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from hrsafety import __version__
+from hrsafety.errors import HrsafetyError
+
+__all__ = ["main"]
+
+_REPRODUCE_EXAMPLE = """example:
+  hrsafety reproduce --out reproduction
+  hrsafety reproduce --only tables-6 --only figures-6
+"""
+_SIMULATE_EXAMPLE = """examples:
+  hrsafety simulate my_first_crossing.toml --out crossing --animate crossing/run.gif
+  hrsafety simulate my_first_crossing.toml --gains 4.3 20.3 240.7 0.68 --stabilizing off
+  hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
+
+A people file has the columns frame, t_s, ped_id, x_m, y_m. The robot crosses the main flow
+of people, who walk as recorded; start times are those with most traffic on its way.
+"""
+
+
+class _UsageError(HrsafetyError):
+    """The command line itself is wrong."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Parser whose errors are exceptions, so that all errors look the same."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of printing the usage and leaving."""
+        raise _UsageError(f"{message} (see {self.prog} --help)")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    argv : sequence of str or None
+        Arguments without the name of the program; those of the process when ``None``.
+
+    Returns
+    -------
+    int
+        0 when done, 2 after an error (one line on stderr says which), 130 after Ctrl-C.
+
+    Examples
+    --------
+    >>> from hrsafety.cli import main
+    >>> main(["--version"])
+    hrsafety 0.1.0
+    0
+    """
+    try:
+        options = _parser().parse_args(argv)
+        _COMMANDS[options.command](options)
+        sys.stdout.flush()
+    except SystemExit as exit_request:
+        return exit_request.code if isinstance(exit_request.code, int) else 0
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        _forget_output()
+        return 1
+    except HrsafetyError as error:
+        return _fail(str(error))
+    except OSError as error:
+        return _fail(f"{error.filename or 'file'}: {error.strerror or error}")
+    except ModuleNotFoundError as error:
+        return _fail(str(error))
+    return 0
+
+
+def _fail(message: str) -> int:
+    print(f"hrsafety: error: {' '.join(message.split())}", file=sys.stderr)
+    return 2
+
+
+def _forget_output() -> None:
+    """Keep the interpreter from flushing into a closed pipe on its way out."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError):
+        sys.stdout = None
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="hrsafety", description="Robots that work near people: simulate, score, reproduce.")
+    parser.add_argument("--version", action="version", version=f"hrsafety {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _add_reproduce(commands)
+    _add_simulate(commands)
+    return parser
+
+
+def _add_command(commands: Any, name: str, *, summary: str, example: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=summary,
+        description=f"{summary[0].upper()}{summary[1:]}.",
+        epilog=example,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    return parser
+
+
+def _add_reproduce(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "reproduce",
+        summary="make every published table and figure again, measured beside printed",
+        example=_REPRODUCE_EXAMPLE,
+    )
+    parser.add_argument("--only", metavar="NAME", action="append", help="make this part only; can be repeated")
+    parser.add_argument("--out", metavar="DIR", default="reproduction", help="folder to write into [%(default)s]")
+
+
+def _add_simulate(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "simulate",
+        summary="run a robot in a scenario file or across recorded people",
+        example=_SIMULATE_EXAMPLE,
+    )
+    parser.add_argument("scenario", nargs="?", metavar="SCENARIO.toml", help="scenario file")
+    parser.add_argument("--out", metavar="DIR", help="folder for tables (CSV) and pictures")
+    parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
+    law = parser.add_argument_group("law (what is not given comes from the scenario file, else from the defaults)")
+    law.add_argument("--law", choices=["virtual-force-field"], default="virtual-force-field", help="[%(default)s]")
+    law.add_argument(
+        "--gains",
+        nargs=4,
+        type=float,
+        metavar=("K1", "K3", "K5", "B"),
+        help="N/m, N/m, N/m^2, s: attraction, repulsion, detour, and damping of each as a share of its gain",
+    )
+    law.add_argument("--stabilizing", choices=["off", "capped", "full"], help="stabilizing force")
+    stepping = parser.add_argument_group("stepping")
+    stepping.add_argument(
+        "--integrator", choices=["semi_implicit_euler", "rk4"], default="semi_implicit_euler", help="[%(default)s]"
+    )
+    stepping.add_argument("--step", type=float, default=0.01, metavar="S", help="motion step in s [%(default)s]")
+    stepping.add_argument(
+        "--no-hold", dest="hold", action="store_false", help="compute the force at every step, not every control period"
+    )
+    people = parser.add_argument_group("recorded people (instead of a scenario file)")
+    people.add_argument("--people", metavar="FILE.csv", help="recorded people to cross")
+    people.add_argument("--runs", type=int, metavar="N", help="number of start times [24]")
+    people.add_argument(
+        "--selection", choices=["busiest", "even"], help="start times with most traffic, or evenly spaced [busiest]"
+    )
+    people.add_argument("--animate-run", type=int, metavar="K", help="animate run K, not the one that met most people")
+    people.add_argument("--json", metavar="FILE", help="all results as JSON")
+
+
+def _reproduce(options: argparse.Namespace) -> None:
+    from hrsafety import reproduce
+
+    page = reproduce.run(options.out, only=options.only, progress=_progress)
+    print(f"summary page  {page}")
+
+
+def _progress(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
+
+
+def _simulate(options: argparse.Namespace) -> None:
+    if (options.scenario is None) == (options.people is None):
+        raise _UsageError("simulate needs either a scenario file or --people FILE.csv (see hrsafety simulate --help)")
+    if options.people is not None:
+        from hrsafety.cli.people import simulate_people
+
+        simulate_people(options)
+        return
+    for name in ("runs", "selection", "animate_run", "json"):
+        if getattr(options, name) is not None:
+            raise _UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
+    from hrsafety.cli.one_run import simulate_file
+
+    simulate_file(options)
+
+
+_COMMANDS = {"reproduce": _reproduce, "simulate": _simulate}

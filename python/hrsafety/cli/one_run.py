@@ -1,0 +1,114 @@
+"""``hrsafety simulate SCENARIO.toml``: one run, printed, and written if asked for."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.cli import output
+from hrsafety.cli.output import decimal
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["simulate_file"]
+
+OUTCOME_WORDS = {
+    "arrived": "arrived without a contact",
+    "collided": "touched an obstacle",
+    "timed_out": "timed out",
+    "stopped": "stopped before the goal",
+}
+
+
+def simulate_file(options: argparse.Namespace) -> None:
+    """Run a scenario file and report.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety simulate``.
+    """
+    try:
+        described = scenarios.load(options.scenario)
+    except InvalidParameterError as error:
+        if error.argument == "path":
+            raise
+        where = f"{options.scenario}: {error.argument}"
+        raise InvalidParameterError(where, error.requirement, error.value) from None
+    scenario, law = described.scenario, output.with_options(described.law, options)
+    place = None if options.out is None else output.folder(options.out)
+    score = nav.evaluate(scenario, law, integrator=options.integrator, step=options.step, hold=options.hold)
+    print(f"scenario  {options.scenario}")
+    print(f"law       {output.law_words(law)}")
+    print(f"stepping  {output.stepping_words(options, scenario.control_period)}")
+    print()
+    print("\n".join(_summary(score)))
+    if scenario.obstacles:
+        print()
+        print(_obstacle_table(score.trajectory))
+    written = [] if place is None else list(_write(score.trajectory, place))
+    if options.animate is not None:
+        written.append(output.animation(score.trajectory, options.animate))
+    if written:
+        print()
+        print("\n".join(f"wrote {path}" for path in written))
+
+
+def _summary(score: nav.Performance) -> Iterator[str]:
+    run = score.trajectory
+    arrival = f"{run.arrival_time:.2f} s" if run.arrival_time == run.arrival_time else "-"
+    parts = f"time H_T {score.arrival_time:.3f}, H_D {score.avoidance:.3f}, H_E {score.energy_saving:.3f}"
+    yield f"outcome        {OUTCOME_WORDS[run.outcome]}"
+    yield f"arrival time   {arrival}"
+    yield f"simulated      {run.time[-1]:.2f} s"
+    yield f"path length    {run.path_length:.2f} m"
+    yield f"energy         {run.energy:.2f} J"
+    yield f"performance H  {score.total:.3f}  ({parts})"
+
+
+def _obstacle_table(run: nav.Trajectory) -> str:
+    names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", "first contact", "robot speed then")
+    units = ("", "", "m", "m", "m", "m", "s", "m/s")
+    rows = [
+        (
+            index,
+            type(obstacle).__name__,
+            decimal(obstacle.critical_radius, 3),  # type: ignore[attr-defined]  # every obstacle has regions
+            decimal(obstacle.active_radius, 3),  # type: ignore[attr-defined]
+            decimal(float(run.min_distance[index]), 3),
+            decimal(float(run.min_clearance[index]), 3),
+            decimal(float(run.contact_time[index])),
+            decimal(float(run.contact_speed[index])),
+        )
+        for index, obstacle in enumerate(run.scenario.obstacles)
+    ]
+    return output.aligned((names, units), rows, left=(1,))
+
+
+def _write(run: nav.Trajectory, place: Path) -> Iterator[Path]:
+    """Write the trajectory and its pictures."""
+    yield output.write_csv(place / "trajectory.csv", _columns(run), _rows(run))
+    from hrsafety import plotting
+
+    yield output.write_picture(place / "paths.png", plotting.paths([run]))
+    yield output.write_picture(place / "time_sequence.png", plotting.time_sequence(run))
+    yield output.write_picture(place / "distances.png", plotting.distances([run]))
+    yield output.write_picture(place / "energy.png", plotting.energy([run]))
+
+
+def _columns(run: nav.Trajectory) -> list[str]:
+    names = ["t_s", "x_m", "y_m", "vx_m_per_s", "vy_m_per_s", "force_x_N", "force_y_N", "heading_rad"]
+    names += [f"current_{wheel}_A" for wheel in range(run.wheel_current.shape[1])]
+    for index in range(len(run.scenario.obstacles)):
+        names += [f"obstacle_{index}_x_m", f"obstacle_{index}_y_m", f"distance_{index}_m"]
+    return names
+
+
+def _rows(run: nav.Trajectory) -> Iterator[list[float]]:
+    for k in range(len(run.time)):
+        row = [run.time[k], *run.position[k], *run.velocity[k], *run.force[k], run.heading[k], *run.wheel_current[k]]
+        for index in range(len(run.scenario.obstacles)):
+            row += [*run.obstacle_position[k, index], run.distance[k, index]]
+        yield [float(value) for value in row]

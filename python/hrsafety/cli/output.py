@@ -1,0 +1,134 @@
+"""What the commands print and write: aligned tables, CSV, pictures."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError
+from hrsafety.reproduce.atomic import write_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "aligned",
+    "animation",
+    "decimal",
+    "folder",
+    "law_words",
+    "stepping_words",
+    "with_options",
+    "write_csv",
+    "write_picture",
+    "write_text",
+]
+
+
+def aligned(headers: Sequence[Sequence[str]], rows: Iterable[Sequence[object]], *, left: Sequence[int] = ()) -> str:
+    """Return a table as text, numbers to the right.
+
+    Parameters
+    ----------
+    headers : sequence of sequence of str
+        One or more header lines; the last one carries the units.
+    rows : iterable of sequence
+        Cells, formatted already or printed as they are.
+    left : sequence of int
+        Columns that are aligned to the left.
+
+    Returns
+    -------
+    str
+        Lines without a final newline.
+    """
+    lines = [[str(cell) for cell in row] for row in (*headers, *rows)]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
+    text = []
+    for line in lines:
+        cells = (
+            cell.ljust(width) if column in left else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(line, widths, strict=True))
+        )
+        text.append("  ".join(cells).rstrip())
+    text.insert(len(headers), "  ".join("-" * width for width in widths))
+    return "\n".join(text)
+
+
+def decimal(value: float, digits: int = 2) -> str:
+    """Return a number with fixed digits, or a dash where there is none."""
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
+
+
+def with_options(law: nav.VirtualForceField, options: argparse.Namespace) -> nav.VirtualForceField:
+    """Return the law with what the command line changes."""
+    changes: dict[str, object] = {}
+    if options.gains is not None:
+        changes |= dict(zip(law.GAIN_NAMES, options.gains, strict=True))
+    if options.stabilizing is not None:
+        changes["stabilizing"] = options.stabilizing
+        if options.stabilizing != "capped":
+            changes |= {"stabilizing_force_cap": None, "stabilizing_momentum_cap": None}
+    return replace(law, **changes)  # type: ignore[arg-type]  # checked by the constructor
+
+
+def law_words(law: nav.VirtualForceField) -> str:
+    """Return the law in one line."""
+    attraction, repulsion, detour, ratio = (f"{gain:g}" for gain in law.gains)
+    return (
+        f"virtual force field, K_1 {attraction} N/m, K_3 {repulsion} N/m, K_5 {detour} N/m^2, b {ratio} s, "
+        f"stabilizing force {law.stabilizing}"
+    )
+
+
+def stepping_words(options: argparse.Namespace, control_period: float) -> str:
+    """Return the time stepping in one line."""
+    force = f"force held for {control_period:g} s" if options.hold else "force at every step"
+    return f"{options.integrator}, step {options.step:g} s, {force}"
+
+
+def folder(path: str) -> Path:
+    """Return a folder that exists."""
+    place = Path(path)
+    if place.exists() and not place.is_dir():
+        raise InvalidParameterError("--out", "be a folder or not exist", path)
+    place.mkdir(parents=True, exist_ok=True)
+    return place
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a text file whole or not at all, with its folder."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return write_file(path, text)
+
+
+def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]]) -> Path:
+    """Write a table; what is not a finite number is left empty."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(header)
+    for row in rows:
+        writer.writerow(["" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row])
+    return write_text(path, buffer.getvalue())
+
+
+def write_picture(path: Path, figure: Figure) -> Path:
+    """Write a picture as PNG."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    return write_file(path, buffer.getvalue())
+
+
+def animation(trajectory: nav.Trajectory, path: str) -> Path:
+    """Write an animation of a run, with its folder."""
+    from hrsafety import plotting
+
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    return plotting.animate(trajectory, path)

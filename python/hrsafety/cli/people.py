@@ -1,0 +1,271 @@
+"""``hrsafety simulate --people FILE.csv``: a robot across recorded people, many times."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import datasets, scenarios
+from hrsafety import navigation as nav
+from hrsafety.cli import output
+from hrsafety.cli.output import decimal
+from hrsafety.errors import InvalidParameterError
+from hrsafety.scenarios.crossings import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
+
+__all__ = ["simulate_people"]
+
+Array = npt.NDArray[np.float64]
+DEFAULT_RUNS = 24
+MANY = 5
+"""A run meets many people when so many enter the active region."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Encounters:
+    """Least distance of every person in every run, one row each."""
+
+    run: npt.NDArray[np.int64]
+    person: npt.NDArray[np.int64]
+    distance: Array
+    contact: float
+    critical: float
+    active: float
+
+
+def simulate_people(options: argparse.Namespace) -> None:
+    """Cross the main flow of recorded people at many start times and report.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety simulate``.
+    """
+    runs = DEFAULT_RUNS if options.runs is None else options.runs
+    shown = options.animate_run
+    if shown is not None and not 0 <= shown < runs:
+        raise InvalidParameterError("--animate-run", f"be from 0 to {runs - 1}", shown)
+    place = None if options.out is None else output.folder(options.out)
+    law = output.with_options(nav.VirtualForceField(), options)
+    recording = datasets.load_pedestrians(options.people)
+    crossings = scenarios.crossings(recording, runs=runs, selection=options.selection or "busiest")
+    stepping = {"integrator": options.integrator, "step": options.step, "hold": options.hold}
+    summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
+    met = _encounters(crossings, summary)
+    print("\n".join(_heading(options, recording, crossings, law)))
+    print()
+    print(_run_table(crossings, summary))
+    print()
+    print("\n".join(_totals(summary, met)))
+    written = []
+    if options.json is not None:
+        report = json.dumps(_report(recording, crossings, law, summary, met), indent=1, allow_nan=False)
+        written.append(output.write_text(Path(options.json), report + "\n"))
+    if place is not None or options.animate is not None:
+        index = int(np.argmax(summary.entered_active)) if shown is None else shown
+        trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
+        written += [] if place is None else _write(crossings, summary, met, trajectory, place)
+        if options.animate is not None:
+            print(f"\nanimated run  {index}")
+            written.append(output.animation(trajectory, options.animate))
+    if written:
+        print()
+        print("\n".join(f"wrote {path}" for path in written))
+
+
+def _encounters(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> _Encounters:
+    """Return the least distances of everybody who was in view during the run."""
+    rows, people, distances = [], [], []
+    for row, crossing in enumerate(crossings):
+        least = summary.min_distance[row, : len(crossing.people)]
+        seen = np.isfinite(least)
+        rows.append(np.full(int(seen.sum()), row))
+        people.append(np.array(crossing.people, dtype=np.int64)[seen])
+        distances.append(least[seen])
+    return _Encounters(
+        run=np.concatenate(rows),
+        person=np.concatenate(people),
+        distance=np.concatenate(distances),
+        contact=crossings[0].scenario.robot.radius + PERSON_RADIUS,
+        critical=CRITICAL_RADIUS,
+        active=ACTIVE_RADIUS,
+    )
+
+
+def _heading(
+    options: argparse.Namespace,
+    recording: datasets.Recording,
+    crossings: Sequence[scenarios.Crossing],
+    law: nav.VirtualForceField,
+) -> Iterator[str]:
+    flow, scenario = recording.main_flow(), crossings[0].scenario
+    way = [f"({x:.2f}, {y:.2f})" for x, y in (scenario.start, scenario.goal)]
+    single = len(recording.momentary(float(recording.time_s[0]), duration=max(recording.duration, 1.0) + 1.0))
+    left_out = f", {single} of them at one instant only and left out" if single else ""
+    yield f"people    {options.people}: {len(recording.people())} people in {recording.duration:.1f} s{left_out}"
+    yield (
+        f"flow      through ({flow.center[0]:.2f}, {flow.center[1]:.2f}) m at {math.degrees(flow.angle):.0f} degrees, "
+        f"spread {flow.spread:.2f} m"
+    )
+    yield f"robot     from {way[0]} to {way[1]} m, {math.dist(scenario.start, scenario.goal):.2f} m across the flow"
+    yield f"law       {output.law_words(law)}"
+    yield f"stepping  {output.stepping_words(options, scenario.control_period)}"
+
+
+RUN_HEADER = (
+    ("run", "start", "people", "entered", "outcome", "arrival", "least", "contacts", "contacts"),
+    ("", "time", "seen", "active", "", "time", "clearance", "robot", "robot"),
+    ("", "s", "", "region", "", "s", "m", "moving", "standing"),
+)
+
+
+def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> str:
+    rows = [
+        (
+            row,
+            f"{crossing.start_time:.1f}",
+            int(np.isfinite(summary.min_distance[row]).sum()),
+            summary.entered_active[row],
+            summary.outcome[row],
+            decimal(float(summary.arrival_time[row])),
+            decimal(float(summary.min_clearance[row])),
+            summary.contacts_moving[row],
+            summary.contacts_standing[row],
+        )
+        for row, crossing in enumerate(crossings)
+    ]
+    return output.aligned(RUN_HEADER, rows, left=(4,))
+
+
+def _totals(summary: nav.BatchSummary, met: _Encounters) -> Iterator[str]:
+    arrived = np.isfinite(summary.arrival_time)
+    touched = summary.outcome == "collided"
+    while_moving = touched & (summary.contacts_moving > 0)
+    entered = summary.entered_active
+    near = np.sort(met.distance[met.distance < met.active])
+    yield f"runs       {len(summary)}: {int(arrived.sum())} reached the goal"
+    for word in ("arrived", "collided", "timed_out", "stopped"):
+        yield f"  {word:<10} {int((summary.outcome == word).sum()):4d}{_OUTCOME_NOTES[word]}"
+    yield (
+        f"  of those that collided, {int((touched & arrived).sum())} reached the goal; at a contact the robot moved "
+        f"in {int(while_moving.sum())} and only stood in {int((touched & ~while_moving).sum())}"
+    )
+    yield f"contacts   {int(summary.contacts_moving.sum())} with the robot moving"
+    yield f"           {int(summary.contacts_standing.sum())} with the robot standing (a person walked into it)"
+    yield (
+        f"people     {len(met.distance)} seen in all runs, {int(entered.sum())} entered the active region: per run "
+        f"{int(entered.min())} to {int(entered.max())}, median {np.median(entered):g}, "
+        f"{MANY} or more in {int((entered >= MANY).sum())} runs"
+    )
+    if len(near):
+        quantiles = np.quantile(near, (0.0, 0.05, 0.25, 0.5))
+        words = ", ".join(
+            f"{name} {value:.2f}" for name, value in zip(("least", "5 %", "25 %", "median"), quantiles, strict=True)
+        )
+        yield f"distance   center to center in m, of the {len(near)} below {met.active:g} m: {words}"
+        yield (
+            f"           {int((met.distance <= met.contact).sum())} at most {met.contact:g} m (contact), "
+            f"{int((met.distance <= met.critical).sum())} at most {met.critical:g} m (critical region)"
+        )
+
+
+_OUTCOME_NOTES = {
+    "arrived": "  reached the goal without a contact",
+    "collided": "  touched somebody, whatever came after",
+    "timed_out": "",
+    "stopped": "",
+}
+
+
+PERSON_COLUMNS = ("run", "start_time_s", "ped_id", "min_distance_m", "min_clearance_m")
+RUN_COLUMNS = {
+    "outcome": "outcome",
+    "end_time": "end_time_s",
+    "arrival_time": "arrival_time_s",
+    "min_clearance": "min_clearance_m",
+    "entered_active": "entered_active",
+    "contacts_moving": "contacts_moving",
+    "contacts_standing": "contacts_standing",
+    "path_length": "path_length_m",
+    "energy": "energy_J",
+}
+
+
+def _run_records(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> list[dict[str, Any]]:
+    """Return one record for each run, with units in the keys."""
+    records = []
+    for row, crossing in enumerate(crossings):
+        record: dict[str, Any] = {
+            "run": row,
+            "start_time_s": crossing.start_time,
+            "planned_time_s": crossing.planned_time,
+            "traffic": crossing.traffic,
+            "people_seen": int(np.isfinite(summary.min_distance[row]).sum()),
+        }
+        record |= {name: getattr(summary, key)[row].item() for key, name in RUN_COLUMNS.items()}
+        records.append(record)
+    return records
+
+
+def _person_records(crossings: Sequence[scenarios.Crossing], met: _Encounters) -> list[dict[str, Any]]:
+    """Return one record for each person in each run."""
+    rows = zip(met.run.tolist(), met.person.tolist(), met.distance.tolist(), strict=True)
+    values = ((run, crossings[run].start_time, person, away, away - met.contact) for run, person, away in rows)
+    return [dict(zip(PERSON_COLUMNS, row, strict=True)) for row in values]
+
+
+def _report(
+    recording: datasets.Recording,
+    crossings: Sequence[scenarios.Crossing],
+    law: nav.VirtualForceField,
+    summary: nav.BatchSummary,
+    met: _Encounters,
+) -> dict[str, Any]:
+    flow, scenario = recording.main_flow(), crossings[0].scenario
+    words, counts = np.unique(summary.outcome, return_counts=True)
+    records = _run_records(crossings, summary)
+    return {
+        "flow": {
+            "center_m": flow.center,
+            "direction": flow.direction,
+            "angle_rad": flow.angle,
+            "spread_m": flow.spread,
+        },
+        "robot": {"start_m": scenario.start, "goal_m": scenario.goal, "radius_m": scenario.robot.radius},
+        "law": {"stabilizing": law.stabilizing, **dict(zip(law.GAIN_NAMES, law.gains, strict=True))},
+        "outcomes": dict(zip(words.tolist(), counts.tolist(), strict=True)),
+        "contacts_moving": int(summary.contacts_moving.sum()),
+        "contacts_standing": int(summary.contacts_standing.sum()),
+        "runs": [{key: _finite_or_none(value) for key, value in record.items()} for record in records],
+        "people": _person_records(crossings, met),
+    }
+
+
+def _finite_or_none(value: object) -> object:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _write(
+    crossings: Sequence[scenarios.Crossing],
+    summary: nav.BatchSummary,
+    met: _Encounters,
+    trajectory: nav.Trajectory,
+    place: Path,
+) -> list[Path]:
+    """Write both tables and the pictures of one run."""
+    from hrsafety import plotting
+
+    runs, people = _run_records(crossings, summary), _person_records(crossings, met)
+    return [
+        output.write_csv(place / "runs.csv", list(runs[0]), (list(record.values()) for record in runs)),
+        output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people)),
+        output.write_picture(place / "paths.png", plotting.paths([trajectory])),
+        output.write_picture(place / "time_sequence.png", plotting.time_sequence(trajectory)),
+    ]

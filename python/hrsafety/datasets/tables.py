@@ -1,0 +1,193 @@
+"""Tables of recorded positions: strict comma-separated files with units in the header."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety.datasets.recording import Recording
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["load_pedestrians", "load_track"]
+
+Array = npt.NDArray[np.float64]
+
+PEDESTRIAN_COLUMNS = ("frame", "t_s", "ped_id", "x_m", "y_m")
+TRACK_COLUMNS = ("t_s", "x_m", "y_m")
+
+_INTEGER_COLUMNS = frozenset({"frame", "ped_id"})
+
+
+def load_pedestrians(path: str | PathLike[str]) -> Recording:
+    r"""Read a table of recorded people.
+
+    The file is comma-separated UTF-8 text with the columns ``frame`` (integer video frame),
+    ``t_s`` (s), ``ped_id`` (integer), ``x_m`` and ``y_m`` (m) in any order and no others. Rows
+    are sorted by frame, then by id; all rows of a frame carry the same time, and time grows
+    from frame to frame.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    Recording
+        Its rows.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read or breaks a rule; the message names line and column.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import datasets
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     table = pathlib.Path(folder, "walk.csv")
+    ...     _ = table.write_text("frame,t_s,ped_id,x_m,y_m\n0,0.0,7,0.0,1.0\n10,0.4,7,0.5,1.0\n")
+    ...     datasets.load_pedestrians(table).duration
+    0.4
+    """
+    rows = _read(Path(path), PEDESTRIAN_COLUMNS, _check_pedestrian_rows)
+    table = np.array(rows, dtype=np.float64)
+    return Recording(
+        time_s=table[:, 1], person=np.array([row[2] for row in rows], dtype=np.int64), position=table[:, 3:]
+    )
+
+
+def load_track(path: str | PathLike[str]) -> tuple[Array, Array]:
+    r"""Read the recorded way of one person or thing.
+
+    The file is comma-separated UTF-8 text with the columns ``t_s`` (s, strictly increasing),
+    ``x_m`` and ``y_m`` (m) in any order and no others.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    time : ndarray, shape (n,)
+        Instants in s.
+    position : ndarray, shape (n, 2)
+        Positions in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read or breaks a rule; the message names line and column.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import datasets
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     table = pathlib.Path(folder, "walk.csv")
+    ...     _ = table.write_text("t_s,x_m,y_m\n0.0,0.0,1.0\n0.4,0.5,1.0\n")
+    ...     time, position = datasets.load_track(table)
+    >>> time.tolist()
+    [0.0, 0.4]
+    """
+    table = np.array(_read(Path(path), TRACK_COLUMNS, _check_track_rows), dtype=np.float64)
+    return table[:, 0].copy(), table[:, 1:].copy()
+
+
+Row = tuple[float, ...]
+OrderCheck = Callable[[str, Row, Row], None]
+
+
+def _check_pedestrian_rows(line: str, before: Row, row: Row) -> None:
+    """Check the order of two rows (frame, t_s, ped_id, x_m, y_m)."""
+    if row[0] < before[0]:
+        raise InvalidParameterError(
+            f"{line}, column frame", f"not be before frame {before[0]} of the row above", row[0]
+        )
+    if row[0] > before[0]:
+        if not row[1] > before[1]:
+            rule = f"be later than {before[1]}, the time of the frame before"
+            raise InvalidParameterError(f"{line}, column t_s", rule, row[1])
+        return
+    if row[1] != before[1]:
+        raise InvalidParameterError(f"{line}, column t_s", f"be {before[1]} as in the row of the same frame", row[1])
+    if row[2] == before[2]:
+        raise InvalidParameterError(f"{line}, column ped_id", "have one row for each instant", f"{row[2]} twice")
+    if row[2] < before[2]:
+        raise InvalidParameterError(f"{line}, column ped_id", f"follow {before[2]} within the frame", row[2])
+
+
+def _check_track_rows(line: str, before: Row, row: Row) -> None:
+    """Check the order of two rows (t_s, x_m, y_m)."""
+    if not row[0] > before[0]:
+        raise InvalidParameterError(f"{line}, column t_s", f"be later than {before[0]}, the time before", row[0])
+
+
+def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck) -> list[Row]:
+    """Return the rows of a table, values in the order of ``columns``."""
+    if not path.is_file():
+        raise InvalidParameterError("path", "name a readable file", str(path))
+    rows: list[Row] = []
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file, strict=True)
+            order = _header(path, next(reader, []), columns)
+            for fields in reader:
+                line = f"{path.name}, line {reader.line_num}"
+                row = _row(line, fields, columns, order)
+                if rows:
+                    check_order(line, rows[-1], row)
+                rows.append(row)
+    except UnicodeDecodeError as error:
+        raise InvalidParameterError(path.name, "be UTF-8 text", f"byte {error.object[error.start]:#04x}") from None
+    except csv.Error as error:
+        raise InvalidParameterError(path.name, "be comma-separated text", str(error)) from None
+    except OSError as error:
+        raise InvalidParameterError("path", "name a readable file", f"{path} ({error.strerror})") from None
+    if not rows:
+        raise InvalidParameterError(path.name, "hold at least one row", "the header only")
+    return rows
+
+
+def _header(path: Path, header: list[str], columns: tuple[str, ...]) -> list[int]:
+    """Return where each column stands."""
+    names = [name.strip() for name in header]
+    where = f"{path.name}, line 1"
+    if not any(names):
+        raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", "nothing")
+    for name in columns:
+        if names.count(name) != 1:
+            found = "none" if name not in names else f"{names.count(name)}"
+            raise InvalidParameterError(where, f"have one column {name}", found)
+    for name in names:
+        if name not in columns:
+            raise InvalidParameterError(where, f"have no other columns than {', '.join(columns)}", name or "a blank")
+    return [names.index(name) for name in columns]
+
+
+def _row(line: str, fields: list[str], columns: tuple[str, ...], order: list[int]) -> Row:
+    if len(fields) != len(columns):
+        raise InvalidParameterError(line, f"have {len(columns)} fields", len(fields))
+    return tuple(_value(line, name, fields[index].strip()) for name, index in zip(columns, order, strict=True))
+
+
+def _value(line: str, column: str, text: str) -> float:
+    """Return one field as a number; an integer stays exact."""
+    rule = "be an integer" if column in _INTEGER_COLUMNS else "be a finite number"
+    try:
+        if "_" in text:
+            raise ValueError
+        value = int(text) if column in _INTEGER_COLUMNS else float(text)
+        if not abs(value) < 2**63:
+            raise ValueError
+    except ValueError:
+        shown = text if len(text) <= 40 else f"{text[:37]}..."
+        raise InvalidParameterError(f"{line}, column {column}", rule, repr(shown)) from None
+    return value

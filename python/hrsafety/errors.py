@@ -1,0 +1,74 @@
+"""Exceptions raised by the package.
+
+Every error derives from `HrsafetyError`, so one ``except`` clause catches them all.
+"""
+
+from __future__ import annotations
+
+__all__ = ["HrsafetyError", "InvalidParameterError", "ShapeError", "SimulationError"]
+
+
+class HrsafetyError(Exception):
+    """Base class of every error this package raises on purpose."""
+
+
+class InvalidParameterError(HrsafetyError, ValueError):
+    """An argument breaks a rule.
+
+    Parameters
+    ----------
+    argument : str
+        Name of the argument (or of the file key).
+    requirement : str
+        The rule it must obey.
+    value : object
+        What was given.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> try:
+    ...     nav.HolonomicRobot(mass=-1.0)
+    ... except nav.InvalidParameterError as error:
+    ...     print(error)
+    mass must be finite and positive, got -1.0
+    """
+
+    def __init__(self, argument: str, requirement: str, value: object) -> None:
+        super().__init__(argument, requirement, value)
+        self.argument = argument
+        self.requirement = requirement
+        self.value = value
+
+    def __str__(self) -> str:
+        """Return the sentence that names argument, rule and value."""
+        shown = self.value if isinstance(self.value, str) else repr(self.value)
+        return f"{self.argument} must {self.requirement}, got {shown}"
+
+
+class ShapeError(HrsafetyError, ValueError):
+    """An array argument has the wrong shape.
+
+    Parameters
+    ----------
+    argument : str
+        Name of the argument.
+    expected : str
+        Shape that is needed, for example ``"(n, 2)"``.
+    actual : tuple of int
+        Shape that was given.
+    """
+
+    def __init__(self, argument: str, expected: str, actual: tuple[int, ...]) -> None:
+        super().__init__(argument, expected, actual)
+        self.argument = argument
+        self.expected = expected
+        self.actual = actual
+
+    def __str__(self) -> str:
+        """Return the sentence that names argument, rule and shape."""
+        return f"{self.argument} must have shape {self.expected}, got {self.actual}"
+
+
+class SimulationError(HrsafetyError):
+    """A run could not be carried out, for example because its state became non-finite."""

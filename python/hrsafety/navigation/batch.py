@@ -1,0 +1,223 @@
+"""Many runs in one call, over all cores and vector lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation._parameters import number
+from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.scenario import Scenario, _require
+from hrsafety.navigation.simulation import Array, Integrator, check_weights
+
+__all__ = ["BatchSummary", "simulate_batch"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class BatchSummary:
+    """Summary columns of a batch, one row for each (gains, scenario).
+
+    Rows run over the scenarios fastest: row = gain_index * number of scenarios +
+    scenario_index.
+
+    Attributes
+    ----------
+    gain_index, scenario_index : ndarray of int, shape (rows,)
+        Which gain set and which scenario.
+    gains : ndarray, shape (rows, 4)
+        K_1, K_3, K_5, b of the row.
+    outcome : ndarray of str, shape (rows,)
+        ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``.
+    end_time : ndarray, shape (rows,)
+        When the run ended, in s.
+    arrival_time : ndarray, shape (rows,)
+        In s; NaN without arrival.
+    energy, path_length : ndarray, shape (rows,)
+        In J and m.
+    min_distance : ndarray, shape (rows, obstacles)
+        Least distance to each obstacle in m; infinite if it was never present, NaN beyond the
+        obstacles of the row's scenario.
+    min_clearance : ndarray, shape (rows,)
+        Least distance of the surfaces over all obstacles, in m; infinite without any.
+    entered_active : ndarray of int, shape (rows,)
+        Number of obstacles whose active region the robot entered.
+    contacts_moving, contacts_standing : ndarray of int, shape (rows,)
+        Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
+        contact), and while it stood.
+    performance_total, performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (rows,)
+        H, H_T, H_D, H_E; H is 0 after a contact or without arrival.
+    descent_share : ndarray, shape (rows,)
+        Share of the control periods, begun and ended outside every critical region, over
+        which the Lyapunov function did not grow; NaN unless asked for.
+    force_evaluations : ndarray of int, shape (rows,)
+        Number of control periods.
+    """
+
+    gain_index: npt.NDArray[np.int64]
+    scenario_index: npt.NDArray[np.int64]
+    gains: Array
+    outcome: npt.NDArray[np.str_]
+    end_time: Array
+    arrival_time: Array
+    energy: Array
+    path_length: Array
+    min_distance: Array
+    min_clearance: Array
+    entered_active: npt.NDArray[np.int64]
+    contacts_moving: npt.NDArray[np.int64]
+    contacts_standing: npt.NDArray[np.int64]
+    performance_total: Array
+    performance_arrival_time: Array
+    performance_avoidance: Array
+    performance_energy_saving: Array
+    descent_share: Array
+    force_evaluations: npt.NDArray[np.int64]
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.outcome)
+
+    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+        """Return one-dimensional columns by name, ready for a data frame.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Gains and distances are split into one column each.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> table = nav.simulate_batch([scenarios.configuration("c1")], nav.VirtualForceField()).columns()
+        >>> round(float(table["min_distance_0"][0]), 3)
+        0.488
+        """
+        table: dict[str, npt.NDArray[np.generic]] = {}
+        for entry in fields(self):
+            values = getattr(self, entry.name)
+            if entry.name == "gains":
+                table |= {name: values[:, i] for i, name in enumerate(VirtualForceField.GAIN_NAMES)}
+            elif values.ndim == 2:
+                table |= {f"{entry.name}_{i}": values[:, i] for i in range(values.shape[1])}
+            else:
+                table[entry.name] = values
+        return table
+
+
+def simulate_batch(
+    scenarios: Sequence[Scenario],
+    law: VirtualForceField,
+    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
+    integrator: Integrator = "semi_implicit_euler",
+    step: float = 0.01,
+    hold: bool = True,
+    stop_on_contact: bool = False,
+    descent: bool = False,
+    threads: int | None = None,
+    lanes: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> BatchSummary:
+    """Run every gain set in every scenario: one call, all cores, same bits on any machine.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        Where.
+    law : VirtualForceField
+        The law; its own gains are used when ``gains`` is ``None``.
+    gains : array_like of shape (n, 4), mapping, or None
+        Gain sets in the order of ``VirtualForceField.GAIN_NAMES``, or arrays by these names
+        that broadcast, the missing ones taken from the law.
+    weights : sequence of float
+        Weights of time, distance and energy in H.
+    integrator, step, hold, stop_on_contact
+        As for `simulate`.
+    descent : bool
+        Whether ``descent_share`` is computed; costs time.
+    threads : int or None
+        Number of threads; all cores when ``None``.
+    lanes : int or None
+        Gain sets that are stepped side by side: 1, 4, 8 or 16; chosen when ``None``. Never
+        changes a bit of the result.
+    progress : callable or None
+        Called with (runs done, runs in all) about ten times a second.
+
+    Returns
+    -------
+    BatchSummary
+        One row for each (gains, scenario).
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no scenario or no gain set, a gain is negative or not finite, or an option
+        is out of range.
+    ShapeError
+        If gains is not (n, 4).
+    SimulationError
+        If the state of a run became non-finite.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> table = nav.simulate_batch(
+    ...     [scenarios.configuration(name) for name in ("c1", "c2", "c3")],
+    ...     nav.VirtualForceField(), {"attractive_gain": [2.0, 3.0, 4.0]},
+    ... )
+    >>> len(table), set(table.outcome.tolist())
+    (9, {'arrived'})
+    """
+    scenarios = list(scenarios)
+    for index, scenario in enumerate(scenarios):
+        _require(f"scenarios[{index}]", scenario, Scenario)
+    _require("law", law, VirtualForceField)
+    if not scenarios:
+        raise InvalidParameterError("scenarios", "hold at least one scenario", "an empty list")
+    for name, value in (("threads", threads), ("lanes", lanes)):
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
+            raise InvalidParameterError(name, "be a positive integer or None", value)
+    columns = _hrsafety.simulate_batch(
+        [scenario._native for scenario in scenarios],
+        law._native,
+        _gain_sets(law, gains),
+        check_weights(weights),
+        integrator=integrator,
+        step=number("step", step),
+        hold=bool(hold),
+        stop_on_contact=bool(stop_on_contact),
+        descent=bool(descent),
+        threads=threads,
+        lanes=lanes,
+        progress=progress,
+    )
+    return BatchSummary(**columns)
+
+
+def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
+    """Return the gain sets as a contiguous (n, 4) array."""
+    if gains is None:
+        return np.array([law.gains])
+    if isinstance(gains, Mapping):
+        unknown = sorted(set(gains) - set(law.GAIN_NAMES))
+        if unknown:
+            raise InvalidParameterError("gains", f"have keys among {', '.join(law.GAIN_NAMES)}", unknown[0])
+        columns = [np.asarray(gains.get(name, own), dtype=np.float64) for name, own in zip(law.GAIN_NAMES, law.gains, strict=True)]
+        try:
+            columns = list(np.broadcast_arrays(*columns))
+        except ValueError:
+            shapes = tuple(len(column) if column.ndim else 1 for column in columns)
+            raise ShapeError("gains", "arrays that broadcast", shapes) from None
+        return np.ascontiguousarray(np.stack([column.ravel() for column in columns], axis=1))
+    array = np.ascontiguousarray(gains, dtype=np.float64)
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ShapeError("gains", "(n, 4)", array.shape)
+    return array

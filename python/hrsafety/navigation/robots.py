@@ -1,0 +1,143 @@
+"""Mobile robots: mass, shape, limits, wheels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from hrsafety import _hrsafety
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation._parameters import Parameters, number
+
+__all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
+
+Triple = tuple[float, float, float]
+
+
+def _triple(name: str, value: object) -> Triple:
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or len(value) != 3:
+        raise InvalidParameterError(name, "be three numbers, one for each wheel", value)
+    first, second, third = value  # type: ignore[misc]  # length checked above
+    return (number(name, first), number(name, second), number(name, third))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HolonomicRobot(Parameters):
+    """Three-wheel robot that can accelerate in any direction.
+
+    The motion is that of a point mass with limited speed and acceleration; the wheels give
+    the motor currents, by (D.1.4) and (D.3.2) of Zeng (2011), and so the energy. Defaults are
+    the robot of that thesis.
+
+    Parameters
+    ----------
+    mass : float
+        Mass M_r in kg.
+    radius : float
+        Radius of the disc that models the robot, in m.
+    max_speed : float
+        Largest speed, in m/s.
+    max_acceleration : float
+        Largest acceleration and deceleration, in m/s^2.
+    wheel_radius : float
+        Wheel radius r_w in m. The default is a calibration of the published energies, see
+        `winding_resistance`.
+    winding_resistance : float
+        Effective winding resistance R_a in ohm. The thesis gives no value; 4.86 ohm together
+        with a wheel radius of 0.10 m fits its 16 printed energies best (rms 0.52 J). Energy
+        scores need ratios only and do not depend on it.
+    wheel_inertia : tuple of float
+        Feed-forward J/K of each wheel, in A s^2.
+    wheel_viscous_friction : tuple of float
+        Feed-forward B/K of each wheel, in A s.
+    wheel_static_friction : tuple of float
+        Feed-forward tau/K of each wheel, in A.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite, or negative or zero where it must not be.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.HolonomicRobot().max_speed
+    0.7
+    """
+
+    mass: float = 4.4
+    radius: float = 0.2
+    max_speed: float = 0.7
+    max_acceleration: float = 10.0
+    wheel_radius: float = 0.10
+    winding_resistance: float = 4.86
+    wheel_inertia: Triple = (0.0073, 0.0074, 0.0065)
+    wheel_viscous_friction: Triple = (0.0019, 0.0020, 0.0024)
+    wheel_static_friction: Triple = (0.19, 0.22, 0.18)
+    _native: _hrsafety.HolonomicRobot = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        scalars = ("mass", "radius", "max_speed", "max_acceleration", "wheel_radius")
+        self._set(**{name: number(name, getattr(self, name)) for name in scalars})
+        self._set(winding_resistance=number("winding_resistance", self.winding_resistance))
+        wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
+        self._set(**{name: _triple(name, getattr(self, name)) for name in wheels})
+        self._set(
+            _native=_hrsafety.HolonomicRobot(
+                mass=self.mass,
+                radius=self.radius,
+                max_speed=self.max_speed,
+                max_acceleration=self.max_acceleration,
+                wheel_radius=self.wheel_radius,
+                winding_resistance=self.winding_resistance,
+                wheel_inertia=self.wheel_inertia,
+                wheel_viscous_friction=self.wheel_viscous_friction,
+                wheel_static_friction=self.wheel_static_friction,
+            )
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DifferentialDriveRobot(Parameters):
+    """Limits of a two-wheel robot that has to turn before it can go sideways.
+
+    `region_radii` sizes the regions for it; its motion is not simulated in this release.
+    Defaults are the robot of chapter 7 of Zeng (2011).
+
+    Parameters
+    ----------
+    mass : float
+        Mass in kg.
+    radius : float
+        Radius of the disc that models the robot, in m.
+    max_speed : float
+        Largest speed, in m/s.
+    max_acceleration : float
+        Largest acceleration and deceleration, in m/s^2.
+    max_angular_acceleration : float
+        Largest angular acceleration alpha_max, in rad/s^2.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite and positive.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.DifferentialDriveRobot().mass
+    3.7
+    """
+
+    mass: float = 3.7
+    radius: float = 0.2
+    max_speed: float = 0.7
+    max_acceleration: float = 10.0
+    max_angular_acceleration: float = 70.0
+    _native: _hrsafety.DifferentialDriveRobot = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        names = ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration")
+        values = {name: number(name, getattr(self, name)) for name in names}
+        self._set(**values, _native=_hrsafety.DifferentialDriveRobot(**values))

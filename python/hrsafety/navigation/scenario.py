@@ -1,0 +1,239 @@
+"""A scenario: robot, start, goal, obstacles and the rules of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
+
+from hrsafety import _hrsafety
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation._parameters import Pair, Parameters, number, pair
+from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
+
+__all__ = ["Measurement", "Regions", "Scenario", "region_radii"]
+
+
+class Regions(NamedTuple):
+    """Radii of the regions of one obstacle.
+
+    Attributes
+    ----------
+    critical_radius : float
+        Radius r_3 of the critical region, in m.
+    active_radius : float
+        Radius r_2 of the active region, in m.
+    """
+
+    critical_radius: float
+    active_radius: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measurement(Parameters):
+    """Noisy positions, measured once a control period; velocities are backward differences.
+
+    Positions of obstacles at rest are known exactly. The noise is drawn from the seed of the
+    scenario, one stream for the robot and one for each obstacle.
+
+    Parameters
+    ----------
+    scale : float
+        Half width of the uniform error of x and y each, or its standard deviation for
+        ``"gaussian"``, in m.
+    distribution : {"uniform", "gaussian"}
+        Kind of error. A Gaussian error is drawn again beyond 8 standard deviations, so it is
+        bounded; a scale of 0.0032 m has the mean error of 4 mm of the source's camera.
+    of : {"obstacles", "robot", "both"}
+        Which positions are noisy: those of moving obstacles, that of the robot, or both.
+
+    Raises
+    ------
+    InvalidParameterError
+        If scale is negative or not finite, or a word is unknown.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.Measurement(scale=0.025).distribution
+    'uniform'
+    """
+
+    scale: float = 0.025
+    distribution: Literal["uniform", "gaussian"] = "uniform"
+    of: Literal["obstacles", "robot", "both"] = "obstacles"
+    _native: _hrsafety.Measurement = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._set(scale=number("scale", self.scale))
+        native = _hrsafety.Measurement(scale=self.scale, distribution=self.distribution, of=self.of)
+        self._set(_native=native)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scenario(Parameters):
+    """A robot that starts at rest, its goal, and what stands or walks between them.
+
+    Parameters
+    ----------
+    start, goal : tuple of float
+        Positions (x, y) in m.
+    obstacles : iterable of Obstacle
+        Discs, rectangles, people, moving discs. Kept as a tuple with the radii of all regions
+        filled in.
+    robot : HolonomicRobot
+        The robot.
+    control_period : float
+        Time T_s between two evaluations of the force, in s.
+    time_limit : float
+        Longest simulated time, in s.
+    arrival_tolerance : float
+        The robot has arrived when it is this close to the goal for the first time, in m.
+    heading : float
+        Constant heading of the robot in rad; it matters for wheel speeds and energy only.
+    rest_time : float
+        A robot that has been at rest for this long has stopped for good, in s.
+    measurement : Measurement or None
+        Noise of the measured positions; ``None``: everything is known exactly.
+    seed : int
+        Seed of the noise, 0 <= seed < 2**64.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, the robot would start in contact with an
+        obstacle, the goal lies in the active region of a stationary obstacle, or start and
+        goal are within the arrival tolerance.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> scene = nav.Scenario(
+    ...     start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1)]
+    ... )
+    >>> round(scene.obstacles[0].critical_radius, 4)
+    0.3665
+    """
+
+    start: Pair
+    goal: Pair
+    obstacles: tuple[Obstacle, ...] = ()
+    robot: HolonomicRobot = field(default_factory=HolonomicRobot)
+    control_period: float = 0.06
+    time_limit: float = 60.0
+    arrival_tolerance: float = 0.12
+    heading: float = 0.0
+    rest_time: float = 5.0
+    measurement: Measurement | None = None
+    seed: int = 0
+    _native: _hrsafety.Scenario = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values and compute the regions that were not given."""
+        self._set(start=pair("start", self.start), goal=pair("goal", self.goal))
+        numbers = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
+        values = {name: number(name, getattr(self, name)) for name in numbers}
+        self._set(**values)
+        _require("robot", self.robot, HolonomicRobot)
+        if self.measurement is not None:
+            _require("measurement", self.measurement, Measurement)
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
+            raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
+        obstacles = _with_regions(self.robot, self.obstacles, self.control_period)
+        native = _hrsafety.Scenario(
+            robot=self.robot._native,
+            start=self.start,
+            goal=self.goal,
+            obstacles=[obstacle._native for obstacle in obstacles],
+            measurement=None if self.measurement is None else self.measurement._native,
+            seed=self.seed,
+            **values,
+        )
+        self._set(obstacles=obstacles, _native=native)
+
+
+def _require(name: str, value: object, *kinds: type) -> None:
+    if not isinstance(value, kinds):
+        words = " or ".join(kind.__name__ for kind in kinds)
+        raise InvalidParameterError(name, f"be a {words}", value)
+
+
+def _with_regions(
+    robot: HolonomicRobot, obstacles: Iterable[Obstacle], control_period: float
+) -> tuple[Obstacle, ...]:
+    """Return the obstacles with every region radius filled in."""
+    complete = []
+    for index, obstacle in enumerate(obstacles):
+        _require(f"obstacles[{index}]", obstacle, Obstacle)
+        if None in (obstacle.active_radius, obstacle.critical_radius):  # type: ignore[attr-defined]  # every obstacle has both
+            radii = region_radii(robot, obstacle, control_period)
+            obstacle = _sized(obstacle, radii)
+        complete.append(obstacle)
+    return tuple(complete)
+
+
+def _sized(obstacle: Obstacle, radii: Regions) -> Obstacle:
+    missing = {
+        name: value for name, value in radii._asdict().items() if getattr(obstacle, name) is None
+    }
+    return replace(obstacle, **missing)  # type: ignore[type-var]  # obstacles are dataclasses
+
+
+def region_radii(
+    robot: HolonomicRobot | DifferentialDriveRobot,
+    obstacle: Obstacle,
+    control_period: float = 0.06,
+    faced_side: float | None = None,
+) -> Regions:
+    """Return the smallest safe regions of an obstacle, Zeng (2011), section 5.3.
+
+    The robot stops within ``delta_r = V T_s + a dt1^2 / 2`` with ``dt1 = V/a``, while a moving
+    obstacle comes ``delta_o = V_o (dt1 + T_s)`` closer::
+
+        disc, person   r_3 = delta_r + delta_o + rho_o + rho_r
+                       r_2 = (V + V_o) (dt2 + T_s),   dt2 = (r_3 - a t_a^2 / 2)/V + t_a
+        rectangle      r_3 = delta_r + rho_r
+                       r_2 = V (dt2 + T_s),   dt2 = (r_3 + B - a t_a^2 / 2)/V + t_a
+
+    with ``t_a = V/a`` and B half the side that is faced. A differential-drive robot needs
+    ``sqrt(pi / alpha_max)`` more for the turn.
+
+    Parameters
+    ----------
+    robot : HolonomicRobot or DifferentialDriveRobot
+        Its limits.
+    obstacle : Obstacle
+        Radii that the obstacle has already are not looked at.
+    control_period : float
+        Control period T_s in s.
+    faced_side : float or None
+        Side of a rectangle that the robot faces, in m; the longer one when ``None``.
+
+    Returns
+    -------
+    Regions
+        critical_radius and active_radius in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite and positive, or faced_side is given for a round obstacle.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> radii = nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), velocity=(1, 0)))
+    >>> [round(radius, 4) for radius in radii]
+    [0.7965, 2.0959]
+    """
+    _require("robot", robot, HolonomicRobot, DifferentialDriveRobot)
+    _require("obstacle", obstacle, Obstacle)
+    critical, active = _hrsafety.region_radii(
+        robot._native,
+        obstacle._native,
+        number("control_period", control_period),
+        None if faced_side is None else number("faced_side", faced_side),
+    )
+    return Regions(critical, active)

@@ -1,0 +1,26 @@
+"""Pictures of results."""
+
+from hrsafety.plotting.animation import animate
+from hrsafety.plotting.energies import energy
+from hrsafety.plotting.fields import force_field, potential_valley
+from hrsafety.plotting.histories import distances, lyapunov
+from hrsafety.plotting.layouts import layout
+from hrsafety.plotting.scenes import paths
+from hrsafety.plotting.sequences import time_sequence
+from hrsafety.plotting.studies import clearances, outcomes
+from hrsafety.plotting.style import MissingExtraError
+
+__all__ = [
+    "MissingExtraError",
+    "animate",
+    "clearances",
+    "distances",
+    "energy",
+    "force_field",
+    "layout",
+    "lyapunov",
+    "outcomes",
+    "paths",
+    "potential_valley",
+    "time_sequence",
+]

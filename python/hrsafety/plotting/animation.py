@@ -1,0 +1,263 @@
+"""Moving pictures of a run, as GIF or MP4."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hrsafety.errors import InvalidParameterError
+from hrsafety.plotting import inputs, movies, shapes, style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.simulation import Trajectory
+
+__all__ = ["animate"]
+
+DPI = 90
+MARGIN = 1.2  # free space around the path of the robot, in m
+FASTEST_GIF = 50  # frames per second; viewers slow down anything faster
+MOST_FRAMES = 6000
+SMALLEST_BODY_WITH_ID = 0.15  # m, radius of a body into which an id fits
+ROBOT_COLOR = style.RUN_COLORS[0]
+
+
+@style.styled
+def animate(
+    trajectory: Trajectory,
+    path: str | os.PathLike[str],
+    *,
+    frames_per_second: float = 20,
+    speed: float = 1.0,
+    names: Sequence[str] | None = None,
+    regions: bool = True,
+    title: str | None = None,
+) -> Path:
+    """Write an animation of a run to a GIF or MP4 file.
+
+    Shown are the robot with its trail, its goal, every obstacle that is present, with an id in
+    each moving one, and a clock. Stationary obstacles show their regions all the time, moving
+    ones while the robot is inside their active region. A contact leaves a red cross. The view
+    follows the whole path of the robot with a margin; whoever walks outside is out of view.
+    The file appears under its name only when it is complete.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    path : str or path-like
+        Where to write; ``.gif`` needs Pillow, ``.mp4`` the program ffmpeg.
+    frames_per_second : float
+        Frames in a second of viewing time; at most 50 for a GIF.
+    speed : float
+        Simulated time over viewing time: 2 plays twice as fast.
+    names : sequence of str or None
+        Short id of each obstacle, written into moving ones; their number from 1 when ``None``.
+    regions : bool
+        Whether active and critical regions are shown.
+    title : str or None
+        Title above the scene.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is not positive and finite, the suffix is neither ``.gif`` nor ``.mp4``,
+        the folder does not exist, the number of names is wrong, or more than 6000 frames
+        would be needed.
+    MissingExtraError
+        If matplotlib, Pillow or ffmpeg is needed and missing.
+    HrsafetyError
+        If ffmpeg fails.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import navigation as nav, plotting, scenarios
+    >>> run = nav.simulate(scenarios.configuration("c2"), nav.VirtualForceField())
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = plotting.animate(run, pathlib.Path(folder) / "c2.gif", frames_per_second=5)
+    ...     file.name, file.stat().st_size < 1_000_000
+    ('c2.gif', True)
+    """
+    run = inputs.checked_trajectory("trajectory", trajectory)
+    target = _checked_target(path)
+    rows = _checked_rows(run, target, frames_per_second, speed)
+    count = len(run.scenario.obstacles)
+    ids = inputs.checked_labels(names if names is not None else [str(i + 1) for i in range(count)], count, name="names")
+    frames = _frames(run, rows, ids, regions=regions, title=title)
+    with movies.complete_or_absent(target) as partial:
+        if target.suffix.lower() == ".gif":
+            movies.write_gif(partial, frames, frames_per_second)
+        else:
+            movies.write_mp4(partial, frames, frames_per_second)
+    return target
+
+
+def _checked_target(path: str | os.PathLike[str]) -> Path:
+    """Return the path of an animation that can be written."""
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in {".gif", ".mp4"}:
+        raise InvalidParameterError("path", "end in .gif or .mp4", str(target))
+    if not target.parent.is_dir():
+        raise InvalidParameterError("path", "lie in a folder that exists", str(target))
+    if suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise style.MissingExtraError("an MP4 file needs the program ffmpeg, which was not found; a GIF file does not")
+    if suffix == ".gif":
+        try:
+            import PIL  # noqa: F401  # the import is the check
+        except ImportError:
+            raise style.MissingExtraError("a GIF file needs Pillow: pip install hrsafety[plot]") from None
+    return target
+
+
+def _checked_rows(run: Trajectory, target: Path, frames_per_second: float, speed: float) -> list[int]:
+    """Return the rows of a run that are shown, the last one included."""
+    for name, value in (("frames_per_second", frames_per_second), ("speed", speed)):
+        if isinstance(value, (bool, str)) or not (math.isfinite(value) and value > 0.0):
+            raise InvalidParameterError(name, "be finite and positive", value)
+    if target.suffix.lower() == ".gif" and frames_per_second > FASTEST_GIF:
+        raise InvalidParameterError("frames_per_second", f"be at most {FASTEST_GIF} for a GIF", frames_per_second)
+    step = speed / frames_per_second
+    end = float(run.time[-1])
+    if end / step > MOST_FRAMES:
+        raise InvalidParameterError("speed", f"be high enough for at most {MOST_FRAMES} frames", speed)
+    instants = np.arange(0.0, end, step)
+    return [*(inputs.row_at(run, float(instant)) for instant in instants), len(run.time) - 1]
+
+
+class _Stage:
+    """What moves in the picture of a run: its artists, and how they show one row."""
+
+    def __init__(self, axes: Axes, run: Trajectory, ids: Sequence[str], *, regions: bool) -> None:
+        self.run = run
+        self.regions = regions
+        self.bodies: list[tuple[int, Any, Any, list[Any]]] = []
+        self.fixed: list[Any] = []  # drawn again in each frame, above the regions of what moves
+        obstacles = run.scenario.obstacles
+        for index, (obstacle, look) in enumerate(zip(obstacles, shapes.looks(obstacles), strict=True)):
+            if shapes.is_mobile(obstacle):
+                self.bodies.append(self._add_moving(axes, index, look.color, ids[index]))
+            else:
+                edges: style.Properties = {"edgecolor": "white", "linewidth": 0.8, "zorder": 3.0, "animated": True}
+                self.fixed.append(shapes.body(obstacle, shapes.first_position(obstacle), facecolor=look.color, **edges))
+        shapes.add(axes, self.fixed)
+        trail: style.Properties = {"color": ROBOT_COLOR, "linewidth": 2.0, "zorder": 4.0, "animated": True}
+        self.trail = axes.plot([], [], **trail)[0]
+        contact: style.Properties = {
+            "marker": "X",
+            "color": style.CONTACT_COLOR,
+            "markersize": 11,
+            "markeredgecolor": "white",
+        }
+        self.contacts = axes.plot([], [], linestyle="none", zorder=7.0, animated=True, **contact)[0]
+        self.robot = _add_circle(axes, run.scenario.robot.radius, facecolor=ROBOT_COLOR, edgecolor="white", zorder=5.0)
+        box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+        place: style.Properties = {"x": 0.015, "y": 0.975, "transform": axes.transAxes, "ha": "left", "va": "top"}
+        self.clock = axes.text(s="", **place, bbox=box, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
+
+    def _add_moving(self, axes: Axes, index: int, color: str, name: str) -> tuple[int, Any, Any, list[Any]]:
+        """Add body, id and regions of a moving obstacle, all hidden."""
+        obstacle: Any = self.run.scenario.obstacles[index]
+        body = _add_circle(axes, obstacle.radius, facecolor=color, edgecolor="white", zorder=3.2)
+        letters: style.Properties = {
+            "ha": "center",
+            "va": "center_baseline",
+            "color": "white",
+            "fontsize": 9.0,
+            "clip_on": True,
+        }
+        shown_name = name if obstacle.radius >= SMALLEST_BODY_WITH_ID else ""
+        text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=3.3, animated=True, **letters)
+        rings = []
+        if self.regions:
+            rings = shapes.region_patches(obstacle, (0.0, 0.0), color)
+            for ring in rings:
+                ring.set_animated(True)
+            shapes.add(axes, rings)
+        return index, body, text, rings
+
+    def artists(self) -> list[Artist]:
+        """Return everything that moves, from back to front."""
+        moving = [artist for _, body, text, rings in self.bodies for artist in (body, text, *rings)]
+        every = [*self.fixed, *moving, self.trail, self.contacts, self.robot, self.clock]
+        return sorted(every, key=lambda artist: float(artist.get_zorder()))
+
+    def show(self, row: int) -> None:
+        """Put everything where it is at one row of the run."""
+        run = self.run
+        for index, body, text, rings in self.bodies:
+            place = run.obstacle_position[row, index]
+            present = bool(np.isfinite(place).all())
+            active, _ = shapes.region_radii(run.scenario.obstacles[index])
+            met = present and bool(run.distance[row, index] < active)
+            body.set_visible(present)
+            text.set_visible(present)
+            for ring in rings:
+                ring.set_visible(met)
+            if present:
+                text.set_position(place)
+                for patch in (body, *rings):
+                    patch.set_center(place)
+        self.trail.set_data(run.position[: row + 1, 0], run.position[: row + 1, 1])
+        self.robot.set_center(run.position[row])
+        touched = run.contact_time[run.contact_time <= run.time[row]]
+        rows = [inputs.row_at(run, float(instant)) for instant in touched]
+        self.contacts.set_data(run.position[rows, 0], run.position[rows, 1])
+        self.clock.set_text(f"{run.time[row]:5.2f} s")
+
+
+def _add_circle(axes: Axes, radius: float, **look: Any) -> Any:
+    """Add a circle at the origin that will be moved."""
+    from matplotlib.patches import Circle
+
+    return axes.add_patch(Circle((0.0, 0.0), radius, linewidth=1.0, animated=True, **look))
+
+
+def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[Figure, Axes]:
+    """Return a figure with everything that does not move."""
+    scenario = run.scenario
+    limits = inputs.view_limits([run.position, scenario.start, scenario.goal], margin=MARGIN, least_ratio=0.5)
+    height = style.scene_height(limits, titled=title is not None)
+    figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
+    axes = figure.subplots()
+    style.frame_scene(axes, limits)
+    for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
+        if regions and not shapes.is_mobile(obstacle):
+            shapes.add(axes, shapes.region_patches(obstacle, shapes.first_position(obstacle), look.color))
+    shapes.add_start_and_goal(axes, scenario)
+    return figure, axes
+
+
+def _frames(
+    run: Trajectory, rows: Sequence[int], ids: Sequence[str], *, regions: bool, title: str | None
+) -> Iterator[movies.Frame]:
+    """Yield pictures, shape (height, width, 3): only what moves is drawn again."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure, axes = _background(run, regions=regions, title=title)
+    canvas: Any = FigureCanvasAgg(figure)
+    stage = _Stage(axes, run, ids, regions=regions)
+    artists = stage.artists()
+    canvas.draw()
+    empty = canvas.copy_from_bbox(figure.bbox)
+    for row in rows:
+        canvas.restore_region(empty)
+        stage.show(row)
+        for artist in artists:
+            axes.draw_artist(artist)
+        yield np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]

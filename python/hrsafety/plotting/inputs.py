@@ -1,0 +1,104 @@
+"""What the pictures accept: checks of results and labels, instants and view limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.simulation import Trajectory
+from hrsafety.plotting.style import Limits
+
+Array = npt.NDArray[np.float64]
+
+
+def checked_trajectory(name: str, value: object) -> Trajectory:
+    """Return ``value`` if it is a trajectory."""
+    if not isinstance(value, Trajectory):
+        raise InvalidParameterError(name, "be a Trajectory", type(value).__name__)
+    return value
+
+
+def checked_runs(trajectories: Trajectory | Sequence[Trajectory]) -> list[Trajectory]:
+    """Return one or several trajectories as a list."""
+    if isinstance(trajectories, Trajectory):
+        return [trajectories]
+    if isinstance(trajectories, (str, bytes)) or not isinstance(trajectories, Sequence):
+        requirement = "be a Trajectory or a sequence of them"
+        raise InvalidParameterError("trajectories", requirement, type(trajectories).__name__)
+    if len(trajectories) == 0:
+        raise InvalidParameterError("trajectories", "hold at least one Trajectory", "an empty sequence")
+    return [checked_trajectory(f"trajectories[{i}]", run) for i, run in enumerate(trajectories)]
+
+
+def checked_scenario(value: object) -> Scenario:
+    """Return ``value`` if it is a scenario."""
+    if not isinstance(value, Scenario):
+        raise InvalidParameterError("scenario", "be a Scenario", type(value).__name__)
+    return value
+
+
+def checked_labels(labels: Sequence[str] | None, count: int, *, name: str = "labels", stem: str = "run") -> list[str]:
+    """Return one label for each of ``count`` things."""
+    if labels is None:
+        return [stem] if count == 1 else [f"{stem} {i + 1}" for i in range(count)]
+    if isinstance(labels, str) or len(labels) != count:
+        raise InvalidParameterError(name, f"be {count} strings", labels)
+    return [str(label) for label in labels]
+
+
+def check_same_scene(runs: Sequence[Trajectory]) -> None:
+    """Raise unless all runs have the goal and the obstacles of the first, or no obstacles."""
+    first = runs[0].scenario
+    for index, run in enumerate(runs[1:], start=1):
+        same = run.scenario.obstacles in {(), first.obstacles}
+        if run.scenario.goal != first.goal or not same:
+            requirement = "share goal and obstacles with the first run, because they are drawn in one scene"
+            raise InvalidParameterError(f"trajectories[{index}]", requirement, run.scenario)
+
+
+def row_at(run: Trajectory, instant: float) -> int:
+    """Return the row that is nearest to an instant in s."""
+    after = int(np.searchsorted(run.time, instant))
+    if after == 0:
+        return 0
+    if after == len(run.time):
+        return after - 1
+    return after if run.time[after] - instant <= instant - run.time[after - 1] else after - 1
+
+
+def closest_row(run: Trajectory, obstacle: int) -> int | None:
+    """Return the row of the closest approach to an obstacle, or ``None`` if it never appeared."""
+    distance = run.distance[:, obstacle]
+    return None if np.all(np.isnan(distance)) else int(np.nanargmin(distance))
+
+
+def view_limits(points: Sequence[npt.ArrayLike], *, margin: float, least_ratio: float = 0.4) -> Limits:
+    """Return limits in m that hold all points and a margin, neither too flat nor too narrow.
+
+    Parameters
+    ----------
+    points : sequence of array_like, shape (n, 2)
+        What must be in view, in m; rows with NaN are left out.
+    margin : float
+        Free space around the points in m.
+    least_ratio : float
+        Least height over width; the height is never more than 1.1 times the width.
+    """
+    stacked = np.concatenate([np.asarray(group, dtype=np.float64).reshape(-1, 2) for group in points])
+    stacked = stacked[np.isfinite(stacked).all(axis=1)]
+    low, high = stacked.min(axis=0) - margin, stacked.max(axis=0) + margin
+    width, height = high - low
+    center = (low + high) / 2.0
+    width, height = max(width, height / 1.1), max(height, least_ratio * width)
+    x = (float(center[0] - width / 2.0), float(center[0] + width / 2.0))
+    y = (float(center[1] - height / 2.0), float(center[1] + height / 2.0))
+    return x, y
+
+
+def time_limit(runs: Sequence[Trajectory]) -> float:
+    """Return an upper limit of the time axis, in s, that leaves the last instant visible."""
+    return 1.01 * max(float(run.time[-1]) for run in runs)

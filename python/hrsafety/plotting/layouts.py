@@ -1,0 +1,141 @@
+"""A scenario before any run, seen from above."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hrsafety.navigation.obstacles import Human, MovingDisc
+from hrsafety.plotting import inputs, shapes, style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.scenario import Scenario
+
+__all__ = ["layout"]
+
+MARGIN = 0.35  # free space around what must be in view, in m
+SECOND = 1.0
+SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which an arrow would point anywhere
+LEGEND_COLUMNS = 4
+
+
+@style.styled
+def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None) -> Figure:
+    """Draw a scenario before any run: start, goal, obstacles, and how they will move.
+
+    An arrow at a moving obstacle shows the way of one second at its initial velocity, a
+    dotted line the way to its stop or its recorded path.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What to draw.
+    regions : bool
+        Whether active and critical regions are drawn.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture, with equal scales in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If ``scenario`` is not a Scenario.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import plotting, scenarios
+    >>> len(plotting.layout(scenarios.configuration("c4")).axes)
+    1
+    """
+    inputs.checked_scenario(scenario)
+    limits = _limits_of_layout(scenario, regions=regions)
+    handles = _layout_handles(scenario, regions=regions)
+    legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
+    height = style.scene_height(limits, legend_rows=legend_rows, titled=title is not None)
+    figure = style.new_figure(height, title=title, compressed=True)
+    axes = figure.subplots()
+    style.frame_scene(axes, limits)
+    axes.plot(*zip(scenario.start, scenario.goal, strict=True), color="#B0B0B0", linewidth=1.0, zorder=1.5)
+    for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
+        shapes.add_obstacle(axes, obstacle, shapes.first_position(obstacle), look.color, regions=regions)
+        if isinstance(obstacle, (Human, MovingDisc)):
+            _draw_motion(axes, obstacle, look.color)
+    shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
+    shapes.add_start_and_goal(axes, scenario)
+    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    return figure
+
+
+def _motion_points(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
+    """Return where a moving obstacle is known to pass: its recording, or start and stop."""
+    if obstacle.path is not None:
+        return list(obstacle.path[1])
+    x, y = shapes.first_position(obstacle)
+    second = (x + obstacle.velocity[0] * SECOND, y + obstacle.velocity[1] * SECOND)
+    return [(x, y), obstacle.stop if obstacle.stop is not None else second]
+
+
+def _limits_of_layout(scenario: Scenario, *, regions: bool) -> style.Limits:
+    """Return limits that hold start, goal, obstacles and, for a few obstacles, their ways."""
+    points: list[Any] = [scenario.start, scenario.goal]
+    for obstacle in scenario.obstacles:
+        active, critical = shapes.region_radii(obstacle)
+        radius = (critical if shapes.is_mobile(obstacle) else active) if regions else 0.0
+        if len(scenario.obstacles) > shapes.MOST_COLORS and shapes.is_mobile(obstacle):
+            continue
+        place = shapes.first_position(obstacle)
+        points.append(shapes.body(obstacle, place).get_extents().get_points())
+        points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
+        if isinstance(obstacle, (Human, MovingDisc)):
+            points.append(_motion_points(obstacle))
+    return inputs.view_limits(points, margin=MARGIN)
+
+
+def _draw_motion(axes: Axes, obstacle: Human | MovingDisc, color: str) -> None:
+    """Draw the way of one second as an arrow, and the known way as a dotted line."""
+    from matplotlib.patches import FancyArrowPatch
+
+    way = np.asarray(_motion_points(obstacle), dtype=np.float64)
+    axes.plot(way[:, 0], way[:, 1], ":", color=color, linewidth=1.6, zorder=2.5)
+    if obstacle.stop is not None:
+        axes.plot(*obstacle.stop, "|", markersize=12, markeredgewidth=2.0, color=color, zorder=3.2)
+    if obstacle.path is not None and len(way) > 1:
+        velocity = (way[1] - way[0]) / (obstacle.path[0][1] - obstacle.path[0][0])
+    else:
+        velocity = np.asarray(obstacle.velocity)
+    if np.hypot(*velocity) > SLOWEST_WITH_DIRECTION:
+        tip = way[0] + velocity * SECOND
+        arrow: style.Properties = {
+            "arrowstyle": "-|>",
+            "mutation_scale": 14,
+            "color": "black",
+            "linewidth": 1.5,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        }
+        axes.add_patch(FancyArrowPatch(tuple(way[0]), tuple(tip), zorder=4.5, **arrow))
+
+
+def _layout_handles(scenario: Scenario, *, regions: bool) -> list[Artist]:
+    """Return the legend of a layout."""
+    from matplotlib.lines import Line2D
+
+    robot: style.Properties = {"marker": "o", "markersize": 10, "color": style.RUN_COLORS[0], "linestyle": "none"}
+    handles: list[Artist] = [Line2D([], [], label="robot", **robot), *shapes.start_and_goal_handles()]
+    handles += shapes.obstacle_handles(scenario.obstacles, regions=regions)
+    if any(shapes.is_mobile(obstacle) for obstacle in scenario.obstacles):
+        arrow: style.Properties = {"marker": ">", "color": "black", "markersize": 7, "markevery": [1]}
+        handles.append(Line2D([0, 1], [0, 0], label="way of 1 s", **arrow))
+    return handles

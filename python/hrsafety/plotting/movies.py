@@ -1,0 +1,96 @@
+"""Files of moving pictures: GIF through Pillow, MP4 through ffmpeg."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety.errors import HrsafetyError
+from hrsafety.plotting import style
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Frame = npt.NDArray[np.uint8]
+
+LAST_FRAME_TIME = 1.2  # s, for which the end of the run is held
+GIF_TICK_MS = 10  # a GIF counts time in hundredths of a second
+COLORS = 128
+
+
+@contextmanager
+def complete_or_absent(target: Path) -> Iterator[Path]:
+    """Give a temporary path beside ``target`` that takes its name when all went well."""
+    partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix}")
+    try:
+        yield partial
+        partial.replace(target)
+    finally:
+        with suppress(FileNotFoundError):
+            partial.unlink()
+
+
+def write_gif(path: Path, frames: Iterator[Frame], frames_per_second: float) -> None:
+    """Write pictures with one palette and durations that keep time."""
+    from PIL import Image
+
+    pictures = [Image.fromarray(frame) for frame in frames]
+    palette = _palette(pictures)
+    indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    ends = np.round(np.arange(1, len(indexed) + 1) * 1000.0 / frames_per_second / GIF_TICK_MS) * GIF_TICK_MS
+    durations = [int(duration) for duration in np.diff(ends, prepend=0.0)]
+    durations[-1] = int(LAST_FRAME_TIME * 1000.0)
+    look: style.Properties = {"loop": 0, "optimize": False, "disposal": 1}
+    indexed[0].save(path, save_all=True, append_images=indexed[1:], duration=durations, **look)
+
+
+def _palette(pictures: Sequence[Image]) -> Image:
+    """Return a picture with a palette for all pictures, made from a few of them."""
+    from PIL import Image
+
+    chosen = [pictures[i] for i in np.unique(np.linspace(0, len(pictures) - 1, 5).astype(int))]
+    width, height = chosen[0].size
+    sheet = Image.new("RGB", (width, height * len(chosen)))
+    for index, picture in enumerate(chosen):
+        sheet.paste(picture, (0, index * height))
+    palette = sheet.quantize(colors=COLORS, method=Image.Quantize.MEDIANCUT)
+    colors = np.array(palette.getpalette(), dtype=np.int64).reshape(-1, 3)
+    colors[np.argmax(colors.sum(axis=1))] = 255  # the cut grays the background a little
+    palette.putpalette(colors.ravel().tolist())
+    return palette
+
+
+def write_mp4(path: Path, frames: Iterator[Frame], frames_per_second: float) -> None:
+    """Pipe pictures into ffmpeg."""
+    first = next(frames)
+    height, width = (size - size % 2 for size in first.shape[:2])  # the codec wants even numbers
+    source = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {frames_per_second:g} -i -"
+    codec = "-an -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart"
+    command = ["ffmpeg", "-y", "-loglevel", "error", *source.split(), *codec.split(), str(path)]
+    held = max(1, round(LAST_FRAME_TIME * frames_per_second))
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stderr is not None
+        with suppress(BrokenPipeError):  # ffmpeg tells why below
+            last = first
+            for last in _with_first(first, frames):
+                process.stdin.write(np.ascontiguousarray(last[:height, :width]).tobytes())
+            for _ in range(held):
+                process.stdin.write(np.ascontiguousarray(last[:height, :width]).tobytes())
+            process.stdin.close()
+        reason = process.stderr.read().decode(errors="replace").strip()
+    if process.returncode != 0:
+        raise HrsafetyError(f"ffmpeg could not write {path.name}: {reason or f'exit status {process.returncode}'}")
+
+
+def _with_first(first: Frame, rest: Iterator[Frame]) -> Iterator[Frame]:
+    """Yield a picture that was taken already, then the rest."""
+    yield first
+    yield from rest

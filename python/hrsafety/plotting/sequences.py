@@ -1,0 +1,183 @@
+"""Small pictures of one scene at chosen instants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hrsafety.errors import InvalidParameterError
+from hrsafety.plotting import inputs, shapes, style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.simulation import Trajectory
+
+__all__ = ["time_sequence"]
+
+MARGIN = 0.6  # free space around the path of the robot, in m
+COLUMNS = 3
+MOST_INSTANTS = 24
+LEAST_SPEED = 0.02  # m/s, below which no velocity arrow is drawn
+ROBOT_COLOR = style.RUN_COLORS[0]
+LEGEND_COLUMNS = 4
+
+
+@style.styled
+def time_sequence(
+    trajectory: Trajectory,
+    *,
+    instants: int | Sequence[float] = 6,
+    regions: bool = True,
+    title: str | None = None,
+) -> Figure:
+    """Draw the scene of one run at several instants, side by side.
+
+    Each panel shows the robot, its path so far and every obstacle that is present, with
+    arrows for the way of one second at the present velocity (that of an obstacle by
+    differences of its positions). The view follows the path of the robot: obstacles far away
+    from it may be out of view.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The run.
+    instants : int or sequence of float
+        How many instants, evenly spaced from begin to end, or which, in s. The nearest row of
+        the run is drawn, and its time written above the panel.
+    regions : bool
+        Whether active and critical regions are drawn; those of a moving obstacle only while
+        the robot is inside its active region.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture, one axes for each instant.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an instant lies outside the run, or there are none or more than 24.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, plotting, scenarios
+    >>> run = nav.simulate(scenarios.configuration("c4"), nav.VirtualForceField())
+    >>> [axes.get_title() for axes in plotting.time_sequence(run, instants=[0.0, 2.5]).axes]
+    ['t = 0.00 s', 't = 2.50 s']
+    """
+    run = inputs.checked_trajectory("trajectory", trajectory)
+    chosen = _checked_instants(run, instants)
+    limits = inputs.view_limits([run.position, run.scenario.start, run.scenario.goal], margin=MARGIN, least_ratio=0.75)
+    columns = min(COLUMNS, len(chosen))
+    rows = math.ceil(len(chosen) / columns)
+    handles = _handles(run, regions=regions)
+    legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
+    height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=legend_rows, titled=title is not None)
+    figure = style.new_figure(height, title=title, compressed=True)
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes, instant in zip(panels.flat, chosen, strict=False):
+        row = inputs.row_at(run, instant)
+        style.frame_scene(axes, limits)
+        axes.label_outer()
+        axes.set_title(f"t = {run.time[row]:.2f} s")
+        _draw_instant(axes, run, row, regions=regions)
+    for axes in panels.flat[len(chosen) :]:
+        axes.remove()
+    for axes in panels[-1, :] if rows == 1 else panels[-2, len(chosen) - (rows - 1) * columns :]:
+        axes.set_xlabel("x (m)")
+        axes.tick_params(labelbottom=True)
+    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    return figure
+
+
+def _checked_instants(run: Trajectory, instants: int | Sequence[float]) -> list[float]:
+    """Return the instants in s."""
+    end = float(run.time[-1])
+    if isinstance(instants, (int, np.integer)) and not isinstance(instants, bool):
+        if not 1 <= instants <= MOST_INSTANTS:
+            raise InvalidParameterError("instants", f"be from 1 to {MOST_INSTANTS}", instants)
+        return [float(instant) for instant in np.linspace(0.0, end, int(instants))]
+    try:
+        chosen = np.asarray(instants, dtype=np.float64)
+    except (TypeError, ValueError):
+        chosen = np.empty((0, 0))
+    if chosen.ndim != 1 or not 1 <= len(chosen) <= MOST_INSTANTS:
+        raise InvalidParameterError(
+            "instants", f"be a number or a sequence of 1 to {MOST_INSTANTS} times in s", instants
+        )
+    for index, instant in enumerate(chosen.tolist()):
+        if not 0.0 <= instant <= end:
+            raise InvalidParameterError(f"instants[{index}]", f"be from 0 to the end of the run at {end:g} s", instant)
+    return [float(instant) for instant in chosen]
+
+
+def _draw_instant(axes: Axes, run: Trajectory, row: int, *, regions: bool) -> None:
+    """Draw everything that is there at one row of a run."""
+    scenario = run.scenario
+    for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
+        place = run.obstacle_position[row, index]
+        if not np.isfinite(place).all():
+            continue
+        active, _ = shapes.region_radii(obstacle)
+        shown = regions and (not shapes.is_mobile(obstacle) or bool(run.distance[row, index] < active))
+        shapes.add_obstacle(axes, obstacle, place, look.color, regions=shown)
+        if shapes.is_mobile(obstacle):
+            _draw_velocity(axes, place, obstacle_velocity(run, row, index))
+    axes.plot(run.position[: row + 1, 0], run.position[: row + 1, 1], color=ROBOT_COLOR, linewidth=1.5, zorder=3.8)
+    shapes.add_robot(axes, scenario, run.position[row], ROBOT_COLOR)
+    _draw_velocity(axes, run.position[row], run.velocity[row])
+    shapes.add_start_and_goal(axes, scenario)
+
+
+def obstacle_velocity(run: Trajectory, row: int, index: int) -> inputs.Array:
+    """Return the velocity of an obstacle in m/s by the difference to the next row, else to the row before.
+
+    NaN where neither neighbor holds a position.
+    """
+    place = run.obstacle_position[:, index]
+    for first, second in ((row, row + 1), (row - 1, row)):
+        if first >= 0 and second < len(run.time) and np.isfinite(place[first : second + 1]).all():
+            velocity: inputs.Array = (place[second] - place[first]) / (run.time[second] - run.time[first])
+            return velocity
+    return np.full(2, np.nan)
+
+
+def _draw_velocity(axes: Axes, place: inputs.Array, velocity: inputs.Array) -> None:
+    """Draw the way of one second as an arrow."""
+    from matplotlib.patches import FancyArrowPatch
+
+    if not np.hypot(*velocity) > LEAST_SPEED:
+        return
+    look: style.Properties = {
+        "arrowstyle": "-|>",
+        "mutation_scale": 11,
+        "color": "black",
+        "linewidth": 1.3,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
+    axes.add_patch(FancyArrowPatch(tuple(place), tuple(place + velocity), zorder=7.0, **look))
+
+
+def _handles(run: Trajectory, *, regions: bool) -> list[Artist]:
+    """Return the legend of a time sequence."""
+    from matplotlib.lines import Line2D
+
+    robot: style.Properties = {"marker": "o", "markersize": 9, "color": ROBOT_COLOR, "linewidth": 1.5}
+    arrow: style.Properties = {"marker": ">", "color": "black", "markersize": 7, "markevery": [1]}
+    return [
+        Line2D([], [], label="robot, path so far", **robot),
+        Line2D([0, 1], [0, 0], label="way of 1 s", **arrow),
+        *shapes.start_and_goal_handles(),
+        *shapes.obstacle_handles(run.scenario.obstacles, regions=regions),
+    ]

@@ -1,0 +1,201 @@
+"""Obstacles on axes: names, colors, bodies and regions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.plotting import style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
+
+Array = npt.NDArray[np.float64]
+
+MOST_COLORS = 6  # more obstacles than this cannot be told apart by color
+_ARC_POINTS = 17
+
+
+class Look(NamedTuple):
+    """How one obstacle is shown."""
+
+    name: str
+    color: str
+
+
+def kind(obstacle: Obstacle) -> str:
+    """Return the word for an obstacle."""
+    if isinstance(obstacle, Human):
+        return "person"
+    if isinstance(obstacle, MovingDisc):
+        return "moving disc"
+    return "rectangle" if isinstance(obstacle, Rectangle) else "disc"
+
+
+def is_mobile(obstacle: Obstacle) -> bool:
+    """Return whether an obstacle belongs to a class that can move."""
+    return isinstance(obstacle, (Human, MovingDisc))
+
+
+def looks(obstacles: Sequence[Obstacle]) -> list[Look]:
+    """Return name and color of each obstacle; many obstacles share those of their kind."""
+    kinds = [kind(obstacle) for obstacle in obstacles]
+    many = len(obstacles) > MOST_COLORS
+    total, seen = Counter(kinds), Counter[str]()
+    stationary = 0
+    result = []
+    for word in kinds:
+        if word in {"person", "moving disc"}:
+            palette, index = (style.PERSON_COLORS if word == "person" else style.MOVING_COLORS), seen[word]
+        else:
+            palette, index = style.STATIONARY_COLORS, stationary
+            stationary += 1
+        seen[word] += 1
+        name = f"{word} {seen[word]}" if total[word] > 1 else word
+        result.append(Look(name, palette[0] if many else palette[index % len(palette)]))
+    return result
+
+
+def first_position(obstacle: Obstacle) -> tuple[float, float]:
+    """Return where an obstacle is at first, in m."""
+    if isinstance(obstacle, Human):
+        return obstacle.start
+    center: tuple[float, float] = obstacle.center  # type: ignore[attr-defined]  # every other obstacle has one
+    return center
+
+
+def rectangle_outline(rectangle: Rectangle, center: npt.ArrayLike, offset: float = 0.0) -> Array:
+    """Return the points at a distance ``offset`` from the contour of a rectangle, shape (n, 2)."""
+    arcs = []
+    for quarter, (sign_x, sign_y) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
+        angle = np.linspace(0.0, np.pi / 2.0, _ARC_POINTS if offset > 0.0 else 1) + quarter * np.pi / 2.0
+        corner = np.array([sign_x * rectangle.length, sign_y * rectangle.width]) / 2.0
+        arcs.append(corner + offset * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    cosine, sine = np.cos(rectangle.heading), np.sin(rectangle.heading)
+    turned: Array = np.concatenate(arcs) @ np.array([[cosine, sine], [-sine, cosine]])
+    return turned + np.asarray(center, dtype=np.float64)
+
+
+def body(obstacle: Obstacle, position: npt.ArrayLike, **look: Any) -> Patch:
+    """Return the patch of an obstacle's body at a position in m."""
+    from matplotlib.patches import Circle, Polygon
+
+    if isinstance(obstacle, Rectangle):
+        return Polygon(rectangle_outline(obstacle, position), closed=True, **look)
+    x, y = np.asarray(position, dtype=np.float64)
+    return Circle((x, y), obstacle.radius, **look)  # type: ignore[attr-defined]  # round obstacles have one
+
+
+def region(obstacle: Obstacle, position: npt.ArrayLike, radius: float, **look: Any) -> Patch:
+    """Return the patch of a region: a disc around the center, or the rounded contour of a rectangle."""
+    from matplotlib.patches import Circle, Polygon
+
+    if isinstance(obstacle, Rectangle):
+        return Polygon(rectangle_outline(obstacle, position, radius), closed=True, **look)
+    x, y = np.asarray(position, dtype=np.float64)
+    return Circle((x, y), radius, **look)
+
+
+def region_radii(obstacle: Obstacle) -> tuple[float, float]:
+    """Return active and critical radius of an obstacle that belongs to a scenario, in m."""
+    return obstacle.active_radius, obstacle.critical_radius  # type: ignore[attr-defined]  # filled in by the scenario
+
+
+def region_patches(obstacle: Obstacle, position: npt.ArrayLike, color: str, *, filled: bool = True) -> list[Patch]:
+    """Return the patches of the active (light) and the critical (darker) region."""
+    patches = []
+    active, critical = region_radii(obstacle)
+    shown = ((active, style.ACTIVE_ALPHA, "--", 1.0), (critical, style.CRITICAL_ALPHA, ":", 1.1))
+    for radius, alpha, dashes, zorder in shown:
+        if filled:
+            face: style.Properties = {"facecolor": color, "alpha": alpha, "edgecolor": "none"}
+            patches.append(region(obstacle, position, radius, zorder=zorder, **face))
+        edge: style.Properties = {"edgecolor": color, "linestyle": dashes, "linewidth": 0.9, "alpha": 0.75}
+        patches.append(region(obstacle, position, radius, fill=False, zorder=zorder + 0.05, **edge))
+    return patches
+
+
+def add(axes: Axes, patches: Iterable[Patch]) -> None:
+    """Add patches without changing the view."""
+    for patch in patches:
+        axes.add_patch(patch)
+
+
+def add_obstacle(
+    axes: Axes, obstacle: Obstacle, position: npt.ArrayLike, color: str, *, regions: bool, edge: str | None = None
+) -> None:
+    """Draw an obstacle, and its regions if wanted, at a position in m."""
+    if not np.all(np.isfinite(np.asarray(position, dtype=np.float64))):
+        return
+    if regions:
+        add(axes, region_patches(obstacle, position, color))
+    zorder = 3.2 if is_mobile(obstacle) else 3.0
+    look: style.Properties = {
+        "facecolor": color,
+        "edgecolor": edge or "white",
+        "linewidth": 1.6 if edge else 0.8,
+        "zorder": zorder,
+    }
+    add(axes, [body(obstacle, position, **look)])
+
+
+def add_robot(axes: Axes, scenario: Scenario, position: npt.ArrayLike, color: str, *, filled: bool = True) -> None:
+    """Draw the disc of the robot at a position in m."""
+    from matplotlib.patches import Circle
+
+    x, y = np.asarray(position, dtype=np.float64)
+    face = color if filled else "none"
+    look: style.Properties = {
+        "facecolor": face,
+        "edgecolor": "white" if filled else color,
+        "linewidth": 1.0,
+        "zorder": 4.0,
+    }
+    axes.add_patch(Circle((x, y), scenario.robot.radius, **look))
+
+
+def add_start_and_goal(axes: Axes, scenario: Scenario, starts: Iterable[tuple[float, float]] | None = None) -> None:
+    """Draw where runs start, the goal and its tolerance circle."""
+    from matplotlib.patches import Circle
+
+    for x, y in starts or [scenario.start]:
+        axes.plot(x, y, "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=3.9)
+    look: style.Properties = {"facecolor": style.GOAL_COLOR, "alpha": 0.25, "zorder": 2.0}
+    axes.add_patch(Circle(scenario.goal, scenario.arrival_tolerance, **look))
+    axes.plot(*scenario.goal, "*", markersize=13, color=style.GOAL_COLOR, markeredgecolor="white", zorder=6.0)
+
+
+def start_and_goal_handles() -> list[Artist]:
+    """Return legend entries for start and goal."""
+    from matplotlib.lines import Line2D
+
+    start: style.Properties = {"marker": "o", "markerfacecolor": "white", "markeredgecolor": "black", "markersize": 7}
+    goal: style.Properties = {"marker": "*", "color": style.GOAL_COLOR, "markersize": 12}
+    return [
+        Line2D([], [], linestyle="none", label="start", **start),
+        Line2D([], [], linestyle="none", label="goal, tolerance", **goal),
+    ]
+
+
+def obstacle_handles(obstacles: Sequence[Obstacle], *, regions: bool) -> list[Artist]:
+    """Return legend entries for the obstacles and their regions."""
+    from matplotlib.patches import Patch
+
+    entries: dict[str, str] = {}
+    for obstacle, shown in zip(obstacles, looks(obstacles), strict=True):
+        entries.setdefault(shown.name if len(obstacles) <= MOST_COLORS else kind(obstacle), shown.color)
+    handles: list[Artist] = [Patch(facecolor=color, label=name) for name, color in entries.items()]
+    if regions and obstacles:
+        looks_of_regions = (("active region, $r_2$", style.ACTIVE_ALPHA, "--"), ("critical region, $r_3$", 0.45, ":"))
+        for name, alpha, dashes in looks_of_regions:
+            look: style.Properties = {"facecolor": (0.25, 0.25, 0.25, alpha), "linestyle": dashes}
+            handles.append(Patch(edgecolor=style.NEUTRAL, label=name, **look))
+    return handles

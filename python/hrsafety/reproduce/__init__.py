@@ -1,0 +1,122 @@
+"""Published tables and figures made again: every printed value beside the measured one.
+
+`run` simulates, compares, draws and writes one summary page that needs no network.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from hrsafety.errors import InvalidParameterError
+from hrsafety.reproduce import figures, page, study, tables, trends
+from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.published import published_tables
+
+__all__ = ["PARTS", "Cell", "published_tables", "run"]
+
+PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "stabilizing")
+"""What `run` can make, in the order of the page."""
+
+
+def run(
+    out: str | Path = "reproduction",
+    only: str | Iterable[str] | None = None,
+    progress: Callable[[str], object] | None = None,
+) -> Path:
+    """Make the published tables and figures again and write a page about them.
+
+    Parameters
+    ----------
+    out : str or Path
+        Folder to write into; made if needed. Files of an earlier run are replaced, others are
+        left alone.
+    only : str, iterable of str, or None
+        Parts to make, among `PARTS`; ``None`` makes all.
+    progress : callable or None
+        Called with a line of text when a part begins.
+
+    Returns
+    -------
+    Path
+        The summary page, ``summary.html``. Beside it lie ``tables.csv`` and ``tables.json``
+        with every value, ``stabilizing.csv`` and ``stabilizing.json`` with the comparison of
+        the stabilizing modes, and the pictures in ``figures``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a part is unknown, none is named, or ``out`` is an existing file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hrsafety import reproduce
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     reproduce.run(folder, only="tables-6").name
+    'summary.html'
+    """
+    parts = _parts(only)
+    folder = Path(out)
+    if folder.exists() and not folder.is_dir():
+        raise InvalidParameterError("out", "be a folder or not exist", str(out))
+    folder.mkdir(parents=True, exist_ok=True)
+    say = progress if progress is not None else _silent
+    begin = time.perf_counter()
+    report = page.Report(command=_command(out, only), parts=parts)
+    for part in parts:
+        say(f"{part}: {_TITLES[part]}")
+        if part == "figures-6":
+            report.pictures.extend(figures.make())
+        elif part == "stabilizing":
+            report.study = study.compare(say)
+            report.study_pictures.extend(figures.of_study(report.study))
+        else:
+            report.cells.extend(_TABLES[part]())
+    if {"tables-c", "figures-6"} <= set(parts):
+        report.pictures.extend(trends.make(report.cells))
+    report.seconds = time.perf_counter() - begin
+    say("writing the page")
+    return page.write(report, folder)
+
+
+_TABLES: dict[str, Callable[[], list[Cell]]] = {
+    "tables-6": tables.chapter_6,
+    "tables-7": tables.chapter_7,
+    "table-5.1": tables.unpredictable_human,
+    "tables-c": tables.appendix_c,
+}
+_TITLES = {
+    "tables-6": "Tables 6.1 to 6.5",
+    "tables-7": "Tables 7.1 to 7.4",
+    "table-5.1": "Table 5.1",
+    "tables-c": "Tables C.1 to C.9",
+    "figures-6": "Figures 6.3 to 6.18",
+    "stabilizing": "stabilizing force off, capped and full",
+}
+
+
+def _silent(_: str) -> None:
+    """Say nothing."""
+
+
+def _parts(only: str | Iterable[str] | None) -> tuple[str, ...]:
+    """Return the parts to make, in the order of the page."""
+    if only is None:
+        return PARTS
+    named = [only] if isinstance(only, str) else list(only)
+    choice = f"be among {', '.join(PARTS)}"
+    for name in named:
+        if name not in PARTS:
+            raise InvalidParameterError("only", choice, name)
+    if not named:
+        raise InvalidParameterError("only", choice, "nothing")
+    return tuple(part for part in PARTS if part in named)
+
+
+def _command(out: str | Path, only: str | Iterable[str] | None) -> str:
+    """Return the command line that makes the same page."""
+    named = () if only is None else (only,) if isinstance(only, str) else tuple(only)
+    words = ["hrsafety", "reproduce", *(word for name in named for word in ("--only", name)), "--out", str(out)]
+    return " ".join(f'"{word}"' if " " in word else word for word in words)

@@ -1,0 +1,181 @@
+"""One printed value beside the measured one, and when they count as equal."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+__all__ = ["Cell", "Tolerance", "tolerance_of"]
+
+# A deviation that sits on its bound in decimal must not fall off it in binary.
+_ROUNDING = 1e-9
+
+
+class Tolerance(NamedTuple):
+    """Largest deviation that counts as agreement.
+
+    Attributes
+    ----------
+    limit : float
+        The bound.
+    relative : bool
+        Whether it is a share of the printed value, or in the unit of the value.
+    """
+
+    limit: float
+    relative: bool
+
+
+# Arrival times, distances to single stationary obstacles, scores and energies of the published
+# tables agree this well with an implementation of the corrected equations wherever the source
+# gives everything that the value depends on. Energies depend on a motor resistance that is
+# calibrated, hence the wide bound.
+ARRIVAL_TIME = Tolerance(0.05, relative=True)
+DISTANCE = Tolerance(0.06, relative=True)
+SCORE = Tolerance(0.03, relative=False)
+ENERGY = Tolerance(0.25, relative=True)
+
+
+def tolerance_of(column: str) -> Tolerance:
+    """Return the tolerance of a column by its name.
+
+    Parameters
+    ----------
+    column : str
+        Name as in the published tables, for example ``"T_arrive_2"``.
+
+    Returns
+    -------
+    Tolerance
+        Bound and kind.
+    """
+    for prefix, tolerance in (("T_", ARRIVAL_TIME), ("d_", DISTANCE), ("H", SCORE), ("L_", ENERGY)):
+        if column.startswith(prefix):
+            return tolerance
+    raise KeyError(column)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cell:
+    """One printed value and what was measured for it.
+
+    Attributes
+    ----------
+    table : str
+        Number of the published table, for example ``"6.2"``.
+    row : str
+        Method, or change of the gain.
+    column : str
+        Quantity as named in the table.
+    printed : float or str
+        Value as printed; words where the table has words.
+    measured : float, str or None
+        Own result; ``None`` where there is none.
+    deviation : float or None
+        measured - printed, as a share of the printed value if ``relative``.
+    relative : bool
+        Whether deviation and tolerance are shares of the printed value.
+    unit : str
+        Unit of both values.
+    tolerance : float or None
+        Largest deviation that counts as agreement; ``None`` if there is nothing to judge.
+    within : bool or None
+        Whether the deviation is within the tolerance; ``None`` if there is nothing to judge.
+    reason : str
+        Why the values differ, why there is no measured value, or what the reader must know.
+    """
+
+    table: str
+    row: str
+    column: str
+    printed: float | str
+    measured: float | str | None
+    deviation: float | None
+    relative: bool
+    unit: str
+    tolerance: float | None
+    within: bool | None
+    reason: str
+
+    @classmethod
+    def compared(
+        cls,
+        *,
+        table: str,
+        row: str,
+        column: str,
+        printed: float,
+        measured: float,
+        tolerance: Tolerance,
+        unit: str,
+    ) -> Cell:
+        """Return the cell of a measured value, judged; its reason is still empty.
+
+        Parameters
+        ----------
+        table, row, column : str
+            Place.
+        printed, measured : float
+            Values in ``unit``; a measured NaN (no arrival) is never within.
+        tolerance : Tolerance
+            What counts as agreement.
+        unit : str
+            Unit of both values.
+
+        Returns
+        -------
+        Cell
+            With deviation and verdict.
+        """
+        deviation = measured - printed
+        if tolerance.relative:
+            deviation /= printed
+        known = math.isfinite(deviation)
+        return cls(
+            table=table,
+            row=row,
+            column=column,
+            printed=printed,
+            measured=measured if known else "no arrival",
+            deviation=deviation if known else None,
+            relative=tolerance.relative,
+            unit=unit,
+            tolerance=tolerance.limit,
+            within=known and abs(deviation) <= tolerance.limit + _ROUNDING,
+            reason="",
+        )
+
+    @classmethod
+    def listed(cls, *, table: str, row: str, column: str, printed: float | str, unit: str, reason: str) -> Cell:
+        """Return the cell of a printed value that nothing was measured for.
+
+        Parameters
+        ----------
+        table, row, column : str
+            Place.
+        printed : float or str
+            Value as printed.
+        unit : str
+            Its unit.
+        reason : str
+            Why there is no measured value.
+
+        Returns
+        -------
+        Cell
+            Without measured value and verdict.
+        """
+        return cls(
+            table=table,
+            row=row,
+            column=column,
+            printed=printed,
+            measured=None,
+            deviation=None,
+            relative=False,
+            unit=unit,
+            tolerance=None,
+            within=None,
+            reason=reason,
+        )

@@ -1,0 +1,272 @@
+"""Own pictures for the figures of chapter 6: gain sets and stabilizing modes side by side.
+
+The source draws its simulations beside its experiments. The experiment curves are not
+available as numbers, so these pictures compare the two gain sets, and the stabilizing force
+off and capped.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety import plotting, scenarios
+from hrsafety.reproduce.measured import GAIN_SETS
+from hrsafety.reproduce.names import GAIN_LABELS
+from hrsafety.reproduce.study import MODES, NOISE_SCALE, Outcomes, Study
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["Picture", "make", "of_study", "picture"]
+
+DOTS_PER_INCH = 120
+SCENES = {
+    "c1": "a stationary disc",
+    "c2": "a person who comes the other way",
+    "c3": "a disc and a rectangle",
+    "c4": "a person, a disc and a rectangle",
+}
+
+COMPARED_MODES = ("off", "capped, 10 N", "capped, 0.1 m|V|/T_s")
+# Numbers of the source's figures: paths and distances with several laws, and of the new law alone.
+PATHS = {"c1": ("6.4", "6.6"), "c2": ("6.8", "6.8"), "c3": ("6.10", "6.13"), "c4": ("6.15", "6.17")}
+DISTANCES = {"c1": ("6.5", "6.7"), "c2": ("6.9", "6.9"), "c3": ("6.11", "6.14"), "c4": ("6.16", "6.18")}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Picture:
+    """One picture of the page.
+
+    Attributes
+    ----------
+    name : str
+        File name without ending.
+    caption : str
+        What it shows.
+    png : bytes
+        The picture.
+    """
+
+    name: str
+    caption: str
+    png: bytes
+
+
+def make() -> list[Picture]:
+    """Draw every picture.
+
+    Returns
+    -------
+    list of Picture
+        In the order of the source's figures.
+    """
+    return [picture(name, caption, draw()) for name, caption, draw in _pictures()]
+
+
+def of_study(study: Study) -> list[Picture]:
+    """Draw outcomes and clearances of the experiments with many runs.
+
+    Parameters
+    ----------
+    study : Study
+        The comparison of the stabilizing modes.
+
+    Returns
+    -------
+    list of Picture
+        Two pictures for each kind of crowd and one for each kind of noise.
+    """
+    pictures = []
+    for experiment, by_gains in study.runs.items():
+        groups = {
+            f"{GAIN_LABELS[gains]}, {mode}": own for gains, modes in by_gains.items() for mode, own in modes.items()
+        }
+        runs = len(next(iter(groups.values())).outcome)
+        if runs == 1:
+            continue
+        name = "".join(letter if letter.isalnum() else "-" for letter in experiment).replace("--", "-")
+        caption = f"How {runs} runs ended, {experiment}, by gain set and mode of the stabilizing force."
+        pictures.append(picture(f"outcomes-{name}", caption, _outcomes(groups)))
+        if experiment.startswith("crowds"):
+            for gains, modes in by_gains.items():
+                caption = (
+                    f"Least clearance, {runs} {experiment}, {GAIN_LABELS[gains]}, by mode of the stabilizing force."
+                )
+                drawn = plotting.clearances({mode: own.clearance for mode, own in modes.items()})
+                pictures.append(picture(f"clearances-{name}-{gains.replace('_', '-')}", caption, drawn))
+    return pictures
+
+
+def _outcomes(groups: Mapping[str, Outcomes]) -> Figure:
+    return plotting.outcomes(
+        {name: own.outcome for name, own in groups.items()},
+        contacts_moving={name: own.moving.astype(np.int64) for name, own in groups.items()},
+        contacts_standing={name: own.standing.astype(np.int64) for name, own in groups.items()},
+    )
+
+
+def picture(name: str, caption: str, figure: Figure) -> Picture:
+    """Return a figure as a picture of the page.
+
+    Parameters
+    ----------
+    name : str
+        File name without ending.
+    caption : str
+        What it shows.
+    figure : matplotlib.figure.Figure
+        What to render.
+
+    Returns
+    -------
+    Picture
+        Rendered as PNG.
+    """
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=DOTS_PER_INCH)
+    return Picture(name=name, caption=caption, png=content.getvalue())
+
+
+Drawing = tuple[str, str, Callable[[], "Figure"]]
+
+
+def _law(gains: str, mode: str = "off") -> nav.VirtualForceField:
+    parameters: dict[str, Any] = dict(zip(nav.VirtualForceField.GAIN_NAMES, GAIN_SETS[gains], strict=True))
+    return nav.VirtualForceField(**parameters, **MODES[mode])
+
+
+def _pictures() -> Iterator[Drawing]:
+    """Yield name, caption and drawing function of every picture."""
+    for name, words in SCENES.items():
+        yield (
+            f"figure-6.3-{name}",
+            f"Configuration {name[1]} (as Fig. 6.3): {words}, with the active and critical regions.",
+            partial(plotting.layout, scenarios.configuration(name)),
+        )
+    for name, words in SCENES.items():
+        yield from _gain_sets(name, words)
+        yield from _modes(name, words)
+        if name == "c2":
+            yield _measured_speed()
+        if name == "c3":
+            yield _valley()
+    yield from _more()
+
+
+def _gain_sets(name: str, words: str) -> Iterator[Drawing]:
+    """Yield paths and distances with both gain sets."""
+    scenario = scenarios.configuration(name)
+    runs = [nav.simulate(scenario, _law(gains)) for gains in GAIN_SETS]
+    labels = [GAIN_LABELS[gains] for gains in GAIN_SETS]
+    where = f"configuration {name[1]}, {words}; gains as in Table 6.1 and optimized (*), stabilizing force off"
+    yield (
+        f"figure-{PATHS[name][0]}-paths-{name}-gains",
+        f"Paths (as Fig. {PATHS[name][0]}): {where}.",
+        partial(plotting.paths, runs, labels=labels),
+    )
+    yield (
+        f"figure-{DISTANCES[name][0]}-distances-{name}-gains",
+        f"Distance to goal and obstacles over time (as Fig. {DISTANCES[name][0]}): {where}.",
+        partial(plotting.distances, runs, labels=labels),
+    )
+
+
+def _modes(name: str, words: str) -> Iterator[Drawing]:
+    """Yield paths and distances with the stabilizing force off and capped."""
+    scenario = scenarios.configuration(name)
+    runs = [nav.simulate(scenario, _law("new_vff", mode)) for mode in COMPARED_MODES]
+    where = f"configuration {name[1]}, {words}; New VFF, stabilizing force off and capped"
+    yield (
+        f"figure-{PATHS[name][1]}-paths-{name}-stabilizing",
+        f"Paths (in place of Fig. {PATHS[name][1]}): {where}.",
+        partial(plotting.paths, runs, labels=COMPARED_MODES),
+    )
+    yield (
+        f"figure-{DISTANCES[name][1]}-distances-{name}-stabilizing",
+        f"Distance to goal and obstacles over time (in place of Fig. {DISTANCES[name][1]}): {where}.",
+        partial(plotting.distances, runs, labels=COMPARED_MODES),
+    )
+
+
+def _valley() -> Drawing:
+    """Return the repulsive force between the two obstacles of configuration 3."""
+    scenario = scenarios.configuration("c3")
+    x, y = np.meshgrid(np.linspace(1.0, 3.6, 131), np.linspace(-0.4, 2.3, 136))
+    field = nav.force_field(
+        _law("new_vff"), scenario, position=np.column_stack([x.ravel(), y.ravel()]), velocity=(-0.7, 0.0)
+    )
+    caption = (
+        "Magnitude of the repulsive force of the disc and the rectangle of configuration 3 for a robot at "
+        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Left blank inside the critical regions."
+    )
+    return "figure-6.12-valley", caption, partial(plotting.potential_valley, field, scenario, term="repulsive")
+
+
+def _measured_speed() -> Drawing:
+    """Return the speed of the walking person as a camera would measure it."""
+    scenario = scenarios.configuration("c2")
+    run = nav.simulate(scenario, _law("new_vff"))
+    caption = (
+        "Velocity of the person of configuration 2 by backward difference of positions that are wrong by up to "
+        "0.025 m, every 0.06 s (as Fig. 6.9): the spread of about 0.8 m/s is that of the measurements."
+    )
+
+    def draw() -> Figure:
+        periods = np.arange(0.0, run.time[-1], scenario.control_period)
+        true = np.interp(periods, run.time, run.obstacle_position[:, 0, 0])
+        error = np.random.default_rng(scenario.seed).uniform(-NOISE_SCALE, NOISE_SCALE, len(periods))
+        measured = np.diff(true + error) / scenario.control_period
+        return _speed_figure(periods[1:], measured, np.diff(true) / scenario.control_period)
+
+    return "figure-6.9-measured-speed", caption, draw
+
+
+def _speed_figure(time: np.ndarray, measured: np.ndarray, true: np.ndarray) -> Figure:
+    """Draw measured and true velocity over time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    axes = figure.subplots()
+    axes.step(time, measured, where="pre", color="#D55E00", linewidth=1.0, label="measured")
+    axes.step(time, true, where="pre", color="black", linewidth=1.8, label="true")
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("velocity of the person along x (m/s)")
+    axes.set_xlim(0.0, float(time[-1]))
+    axes.grid(color="#E3E3E3", linewidth=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, loc="upper right")
+    return figure
+
+
+def _more() -> Iterator[Drawing]:
+    """Yield what the source describes in words: sequences, energy, Lyapunov function."""
+    for name in ("c2", "c4"):
+        run = nav.simulate(scenarios.configuration(name), _law("new_vff"))
+        yield (
+            f"sequence-{name}",
+            f"Configuration {name[1]} at six instants: New VFF, stabilizing force off.",
+            partial(plotting.time_sequence, run),
+        )
+    for name, words in SCENES.items():
+        scenario = scenarios.configuration(name)
+        runs = [nav.simulate(scenario, _law("new_vff", mode)) for mode in COMPARED_MODES]
+        yield (
+            f"lyapunov-{name}",
+            f"Lyapunov function over time, configuration {name[1]}, {words}: stabilizing force off and capped.",
+            partial(plotting.lyapunov, runs, labels=COMPARED_MODES),
+        )
+    for name in ("c1", "c4"):
+        scenario = scenarios.configuration(name)
+        both = [nav.simulate(scenario, _law(gains)) for gains in GAIN_SETS]
+        yield (
+            f"energy-{name}",
+            f"Wheel currents and accumulated loss, configuration {name[1]}: both gain sets, stabilizing force off.",
+            partial(plotting.energy, both, labels=[GAIN_LABELS[gains] for gains in GAIN_SETS]),
+        )

@@ -1,0 +1,263 @@
+"""Fragments of the summary page: tables of cells, figures, the comparison of modes."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Sequence
+from html import escape
+from itertools import groupby
+
+from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.figures import Picture
+from hrsafety.reproduce.names import TABLE_TITLES, column_label, row_label
+
+__all__ = ["by_table", "counts", "figure", "head", "scroll", "table_of_cells"]
+
+# Columns of words, aligned left.
+_LEFT = frozenset({"Table", "Row", "Quantity", "Reason", "Change", "Where", "Gains", "Mode", "Least d (m)"})
+_UNITS_OF_RESULTS = frozenset({"s", "J", "m"})
+# Class and words of a verdict; the mark says the same as the color.
+_VERDICTS = {None: ("none", "&ndash;"), True: ("good", "&#10003; yes"), False: ("bad", "&#10007; no")}
+
+
+def by_table(cells: Iterable[Cell]) -> dict[str, list[Cell]]:
+    """Return cells grouped by the table they belong to.
+
+    Parameters
+    ----------
+    cells : iterable of Cell
+        Any cells.
+
+    Returns
+    -------
+    dict of str to list of Cell
+        In the order of first appearance.
+    """
+    groups: dict[str, list[Cell]] = {}
+    for cell in cells:
+        groups.setdefault(cell.table, []).append(cell)
+    return groups
+
+
+def counts(cells: Sequence[Cell]) -> str:
+    """Return the table that counts agreements by published table.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        All cells.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    rows = [_count_row(_link(table), group) for table, group in by_table(cells).items()]
+    header = head(["Table", "Printed", "Judged", "Within", "Listed only"])
+    judged = [cell for cell in cells if cell.within is not None]
+    within = sum(bool(cell.within) for cell in judged)
+    return (
+        f"<p><strong>{within} of {len(judged)} judged values are within tolerance.</strong> Tolerances: arrival time "
+        "5 %, distance 6 %, energy 25 %, score H 0.03; a sensitivity must agree within the rounding of the printed "
+        "scores that it comes from; outcomes in words must agree. Gains, experiments and laws that are not simulated "
+        "are listed without a verdict.</p>"
+        + scroll(f'<table class="counts">{header}<tbody>{"".join(rows)}{_count_row("All", cells)}</tbody></table>')
+    )
+
+
+def _link(table: str) -> str:
+    return f'<a href="#table-{table}">{table}</a> {TABLE_TITLES[table]}'
+
+
+def _count_row(name: str, cells: Sequence[Cell]) -> str:
+    judged = [cell for cell in cells if cell.within is not None]
+    numbers = (len(cells), len(judged), sum(bool(cell.within) for cell in judged), len(cells) - len(judged))
+    return f'<tr><th scope="row">{name}</th>' + "".join(f"<td>{number}</td>" for number in numbers) + "</tr>"
+
+
+def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
+    """Return one published table: printed, measured, deviation, verdict and reason.
+
+    Parameters
+    ----------
+    table : str
+        Its number.
+    cells : sequence of Cell
+        Its cells.
+
+    Returns
+    -------
+    str
+        HTML. Tables C.2 to C.9 come as a matrix first and as a folded list.
+    """
+    judged = [cell for cell in cells if cell.within is not None]
+    within = sum(bool(cell.within) for cell in judged)
+    verdict = f"{within} of {len(judged)} within tolerance" if judged else "inputs"
+    heading = f'<h3 id="table-{table}">Table {table}: {TABLE_TITLES[table]} ({verdict})</h3>'
+    if not any(cell.row.endswith("%") for cell in cells):
+        return heading + _list(cells)
+    folded = f"<details><summary>All {len(cells)} values one by one</summary>{_list(cells)}</details>"
+    return heading + _matrix(cells) + _reasons(cells) + folded
+
+
+def _list(cells: Sequence[Cell]) -> str:
+    """Return cells line by line; a reason that several lines of a row share is given once."""
+    header = head(["Row", "Quantity", "Printed", "Measured", "Deviation", "Tolerance", "Within", "Reason"])
+    lines = []
+    for row, group in groupby(cells, key=lambda cell: cell.row):
+        own = list(group)
+        names = [f'<th scope="rowgroup" rowspan="{len(own)}">{escape(row_label(row))}</th>', *[""] * (len(own) - 1)]
+        for cell, name, reason in zip(own, names, _merged(own), strict=True):
+            lines.append(f"<tr{' class=group' if name else ''}>{name}{_values(cell)}{reason}</tr>")
+    return scroll(f"<table>{header}<tbody>{''.join(lines)}</tbody></table>")
+
+
+def _merged(cells: Sequence[Cell]) -> list[str]:
+    """Return the entries of the column of reasons, equal neighbors as one entry."""
+    entries: list[str] = []
+    for reason, group in groupby(cells, key=lambda cell: cell.reason):
+        size = len(list(group))
+        entries += [f'<td class="reason" rowspan="{size}">{escape(reason)}</td>', *[""] * (size - 1)]
+    return entries
+
+
+def _values(cell: Cell) -> str:
+    """Return the entries of a line between its name and its reason."""
+    look, verdict = _VERDICTS[cell.within]
+    tolerance = "&ndash;" if cell.tolerance is None else f"&plusmn;{_signed(cell.tolerance, cell, sign=False)}"
+    entries = "".join(f"<td>{text}</td>" for text in (_printed(cell), _measured(cell), _deviation(cell), tolerance))
+    return f'<td class="text">{column_label(cell.column, cell.unit)}</td>{entries}<td class="{look}">{verdict}</td>'
+
+
+def _matrix(cells: Sequence[Cell]) -> str:
+    """Return cells as rows by columns: measured above, printed and deviation below."""
+    columns = list(dict.fromkeys((cell.column, cell.unit) for cell in cells if not cell.column.startswith("outcome")))
+    lines = []
+    for row in dict.fromkeys(cell.row for cell in cells):
+        own = {cell.column: cell for cell in cells if cell.row == row}
+        words = [cell for cell in own.values() if cell.column.startswith("outcome")]
+        entries = [_words(words, len(columns))] if words else [_entry(own.get(column)) for column, _ in columns]
+        lines.append(f'<tr><th scope="row">{escape(row_label(row))}</th>{"".join(entries)}</tr>')
+    header = head(["Change", *(column_label(column, unit) for column, unit in columns)], escaped=True)
+    key = "<p>Measured value; below it the printed one and the deviation. Green is within tolerance.</p>"
+    return key + scroll(f'<table class="matrix">{header}<tbody>{"".join(lines)}</tbody></table>')
+
+
+def _entry(cell: Cell | None) -> str:
+    if cell is None:
+        return '<td class="none">&ndash;</td>'
+    look, _ = _VERDICTS[cell.within]
+    return f'<td class="{look}">{_measured(cell)}<small>{_printed(cell)}</small><small>{_deviation(cell)}</small></td>'
+
+
+def _words(cells: Sequence[Cell], width: int) -> str:
+    """Return the row that the source has in words, over the full width."""
+    parts = []
+    for cell in cells:
+        look = "good" if cell.within else "bad"
+        parts.append(
+            f'<span class="{look}">c{cell.column[-1]}: {escape(str(cell.measured))}</span> '
+            f"<small>printed: {escape(str(cell.printed))}</small>"
+        )
+    return f'<td class="text" colspan="{width}">{"".join(parts)}</td>'
+
+
+def _reasons(cells: Sequence[Cell]) -> str:
+    """Return the reasons, each with the cells that it is given for."""
+    groups: dict[str, list[Cell]] = {}
+    for cell in cells:
+        if cell.reason:
+            groups.setdefault(cell.reason.split(" The printed T, L and d give")[0], []).append(cell)
+    items = []
+    for reason, group in groups.items():
+        columns = dict.fromkeys(column_label(cell.column) for cell in group)
+        items.append(f"<li>{escape(reason)} <small>({len(group)} values: {'; '.join(columns)})</small></li>")
+    return f'<ul class="reasons">{"".join(items)}</ul>' if items else ""
+
+
+def _digits(cell: Cell) -> int:
+    if cell.table.startswith("C.") and cell.unit == "1":
+        return 4
+    return 2 if cell.unit in {"s", "J", "%"} else 3
+
+
+def _printed(cell: Cell) -> str:
+    if isinstance(cell.printed, str):
+        return escape(cell.printed)
+    whole = cell.unit in _UNITS_OF_RESULTS and cell.printed.is_integer()
+    return f"{cell.printed:.1f}" if whole else f"{cell.printed:g}"
+
+
+def _measured(cell: Cell) -> str:
+    if cell.measured is None:
+        return "&ndash;"
+    return escape(cell.measured) if isinstance(cell.measured, str) else f"{cell.measured:.{_digits(cell)}f}"
+
+
+def _deviation(cell: Cell) -> str:
+    return "&ndash;" if cell.deviation is None else _signed(cell.deviation, cell)
+
+
+def _signed(value: float, cell: Cell, *, sign: bool = True) -> str:
+    plus = "+" if sign else ""
+    if cell.relative:
+        return f"{100.0 * value:{plus}.1f} %" if sign else f"{100.0 * value:g} %"
+    return f"{value:{plus}.3f}"
+
+
+def head(names: Sequence[str], *, escaped: bool = False) -> str:
+    """Return the head of a table.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the columns.
+    escaped : bool
+        Whether they are HTML already.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    looks = (' class="text"' if name in _LEFT else "" for name in names)
+    titles = (name if escaped else escape(name) for name in names)
+    cells = "".join(f'<th scope="col"{look}>{title}</th>' for look, title in zip(looks, titles, strict=True))
+    return f"<thead><tr>{cells}</tr></thead>"
+
+
+def scroll(content: str) -> str:
+    """Return wide content in a box that scrolls sideways on a small screen.
+
+    Parameters
+    ----------
+    content : str
+        HTML.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    return f'<div class="scroll">{content}</div>'
+
+
+def figure(picture: Picture) -> str:
+    """Return a picture with its caption, embedded.
+
+    Parameters
+    ----------
+    picture : Picture
+        What to show.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    data = base64.b64encode(picture.png).decode("ascii")
+    caption = escape(picture.caption)
+    return (
+        f'<figure id="{escape(picture.name)}"><img loading="lazy" alt="{caption}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{caption}</figcaption></figure>"
+    )

@@ -1,0 +1,127 @@
+"""Runs of the force field under the published configurations, under the names of the tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+
+__all__ = ["GAIN_SETS", "Measured", "measure", "score_of_parts"]
+
+Gains = tuple[float, float, float, float]
+
+GAIN_SETS: Mapping[str, Gains] = {
+    "new_vff": (3.0, 20.0, 17.0, 0.25),
+    "new_vff_optimised": (4.3, 20.3, 240.7, 0.68),
+}
+"""K_1, K_3, K_5, b of the rows "New VFF" and "New VFF*" of the tables."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measured:
+    """Result of one run.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        By column name of the tables: ``T_arrive`` in s (NaN without arrival), ``L_energy`` in
+        J, ``d_circle_min``, ``d_human_min``, ``d_rectangle_min`` in m, ``H``.
+    arrived, contact : bool
+        Whether the goal was reached, and whether anything was touched.
+    nominal_time, nominal_energy : float
+        T* in s and L* in J of the same law without obstacles.
+    scenario : Scenario
+        Where.
+    """
+
+    values: dict[str, float]
+    arrived: bool
+    contact: bool
+    nominal_time: float
+    nominal_energy: float
+    scenario: nav.Scenario
+
+    @property
+    def outcome(self) -> str:
+        """What happened, in the words of the published outcomes."""
+        if self.contact:
+            return "contact"
+        return "arrival, no contact" if self.arrived else "no arrival, no contact"
+
+
+def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]]:
+    """Run every gain set in every configuration, stabilizing force off, in one batch.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Configurations, see `hrsafety.scenarios.configuration`.
+    gains : iterable of tuple
+        Gain sets K_1, K_3, K_5, b.
+
+    Returns
+    -------
+    list of list of Measured
+        Indexed by gain set, then configuration.
+    """
+    places = [scenarios.configuration(name) for name in names]
+    sets = np.array(list(gains), dtype=np.float64)
+    summary = nav.simulate_batch(places, nav.VirtualForceField(stabilizing="off"), sets)
+    rows = [_row(summary, index, places[index % len(places)]) for index in range(len(summary))]
+    return [rows[begin : begin + len(places)] for begin in range(0, len(rows), len(places))]
+
+
+def _row(summary: nav.BatchSummary, index: int, scenario: nav.Scenario) -> Measured:
+    time = float(summary.arrival_time[index])
+    energy = float(summary.energy[index])
+    values = {"T_arrive": time, "L_energy": energy, "H": float(summary.performance_total[index])}
+    for obstacle, distance in zip(scenario.obstacles, summary.min_distance[index].tolist(), strict=False):
+        column = f"d_{_kind(obstacle)}_min"
+        values[column] = min(distance, values.get(column, math.inf))
+    return Measured(
+        values=values,
+        arrived=math.isfinite(time),
+        contact=bool(summary.contacts_moving[index] + summary.contacts_standing[index]),
+        nominal_time=float(summary.performance_arrival_time[index]) * time,
+        nominal_energy=float(summary.performance_energy_saving[index]) * energy,
+        scenario=scenario,
+    )
+
+
+def _kind(obstacle: nav.Obstacle) -> str:
+    if isinstance(obstacle, nav.Human):
+        return "human"
+    return "rectangle" if isinstance(obstacle, nav.Rectangle) else "circle"
+
+
+def score_of_parts(run: Measured, *, time: float, energy: float, distances: Mapping[str, float]) -> float:
+    """Return the score H that given times, energies and distances would have.
+
+    ``H = (T*/T + mean of min(d_s/d_s*, 1) + L*/L) / 3`` with the T* and L* of the run.
+
+    Parameters
+    ----------
+    run : Measured
+        Gives T*, L* and the regions of the obstacles.
+    time, energy : float
+        T in s, L in J.
+    distances : mapping of str to float
+        Least distances in m by column name.
+
+    Returns
+    -------
+    float
+        The score.
+    """
+    shares = []
+    for obstacle in run.scenario.obstacles:
+        size = run.scenario.robot.radius + getattr(obstacle, "radius", 0.0)
+        active = getattr(obstacle, "active_radius", None)
+        if active is not None:
+            shares.append(min((distances[f"d_{_kind(obstacle)}_min"] - size) / (active - size), 1.0))
+    return (run.nominal_time / time + float(np.mean(shares)) + run.nominal_energy / energy) / 3.0

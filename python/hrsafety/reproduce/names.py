@@ -1,0 +1,90 @@
+"""Names of rows and columns of the published tables as a reader knows them."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["GAIN_LABELS", "TABLE_TITLES", "column_label", "row_label"]
+
+GAIN_LABELS = {"new_vff": "New VFF", "new_vff_optimised": "New VFF*"}
+"""Gain sets; the star marks the optimized ones, as in the source."""
+
+TABLE_TITLES = {
+    "5.1": "A person who stops and turns",
+    "6.1": "Gains",
+    "6.2": "Configuration 1, a disc",
+    "6.3": "Configuration 2, a person",
+    "6.4": "Configuration 3, a disc and a rectangle",
+    "6.5": "Configuration 4, a person, a disc and a rectangle",
+    "7.1": "Configuration 1, a disc",
+    "7.2": "Configuration 2, a person",
+    "7.3": "Configuration 3, a disc and a rectangle",
+    "7.4": "Configuration 4, a person, a disc and a rectangle",
+    "C.1": "Optimized gains",
+    "C.2": "Change of K<sub>1</sub>: time, energy, distance",
+    "C.3": "Change of K<sub>1</sub>: score and sensitivity",
+    "C.4": "Change of K<sub>3</sub>: time, energy, distance",
+    "C.5": "Change of K<sub>3</sub>: score and sensitivity",
+    "C.6": "Change of K<sub>5</sub>: time, energy, distance",
+    "C.7": "Change of K<sub>5</sub>: score and sensitivity",
+    "C.8": "Change of b: time, energy, distance",
+    "C.9": "Change of b: score and sensitivity",
+}
+"""What each published table is about, in HTML."""
+
+_ROWS = GAIN_LABELS | {
+    "masoud": "Masoud*",
+    "ge_cui": "Ge & Cui*",
+    "new_vff_experiment": "New VFF, experiment",
+    "holonomic": "Holonomic",
+    "nonholonomic": "Nonholonomic",
+    "nonholonomic_experiment": "Nonholonomic, experiment",
+}
+_COLUMNS = {
+    "T_arrive": "T",
+    "L_energy": "L",
+    "d_min": "d to person",
+    "d_human_min": "d to person",
+    "d_circle_min": "d to disc",
+    "d_rectangle_min": "d to rectangle",
+    "H_mean": "H mean",
+    "sensitivity_percent": "Sensitivity",
+    "outcome": "Outcome",
+}
+
+
+def row_label(row: str) -> str:
+    """Return the name of a row.
+
+    Parameters
+    ----------
+    row : str
+        Key of the row in the published tables, or a change in percent.
+
+    Returns
+    -------
+    str
+        Plain text.
+    """
+    return _ROWS.get(row, row)
+
+
+def column_label(column: str, unit: str = "") -> str:
+    """Return the name of a column, with its unit if it has one.
+
+    Parameters
+    ----------
+    column : str
+        Key of the column in the published tables.
+    unit : str
+        Unit; none is shown for ``"1"`` and for empty ones.
+
+    Returns
+    -------
+    str
+        Plain text that needs no escaping in HTML.
+    """
+    match = re.fullmatch(r"((?:T|L|d|outcome).*?)_([123])", column)
+    stem, where = (match[1], f", c{match[2]}") if match else (column, "")
+    name = _COLUMNS.get(stem, re.sub(r"_(\d)", r"<sub>\1</sub>", stem)) + where
+    return f"{name} ({unit})" if unit not in {"", "1"} else name

@@ -1,0 +1,186 @@
+"""The summary page and the files beside it."""
+
+from __future__ import annotations
+
+import datetime
+import importlib.metadata
+import platform
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from html import escape
+from importlib import resources
+from pathlib import Path
+
+from hrsafety.reproduce import evidence, markup, records
+from hrsafety.reproduce.atomic import write_file
+from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.figures import Picture
+from hrsafety.reproduce.study import Study
+
+__all__ = ["Report", "write"]
+
+
+@dataclass(kw_only=True, slots=True)
+class Report:
+    """What goes on the page.
+
+    Attributes
+    ----------
+    command : str
+        Command line that makes the same page.
+    parts : tuple of str
+        Names of the parts that were made.
+    cells : list of Cell
+        Every printed value of the tables.
+    pictures : list of Picture
+        Pictures in their order.
+    study : Study or None
+        Comparison of the stabilizing modes.
+    study_pictures : list of Picture
+        Pictures of that comparison.
+    seconds : float
+        How long simulations and pictures took, in s.
+    """
+
+    command: str
+    parts: tuple[str, ...]
+    cells: list[Cell] = field(default_factory=list)
+    pictures: list[Picture] = field(default_factory=list)
+    study: Study | None = None
+    study_pictures: list[Picture] = field(default_factory=list)
+    seconds: float = 0.0
+
+
+def write(report: Report, folder: Path) -> Path:
+    """Write the page, the values and the pictures, each file whole or not at all.
+
+    Parameters
+    ----------
+    report : Report
+        What was measured.
+    folder : Path
+        Existing folder.
+
+    Returns
+    -------
+    Path
+        The page, written last.
+    """
+    pictures = [*report.pictures, *report.study_pictures]
+    if pictures:
+        (folder / "figures").mkdir(exist_ok=True)
+    for picture in pictures:
+        write_file(folder / "figures" / f"{picture.name}.png", picture.png)
+    if report.cells:
+        write_file(folder / "tables.csv", records.cells_csv(report.cells))
+        write_file(folder / "tables.json", records.cells_json(report.cells))
+    if report.study is not None:
+        write_file(folder / "stabilizing.csv", records.study_csv(report.study))
+        write_file(folder / "stabilizing.json", records.study_json(report.study))
+    return write_file(folder / "summary.html", html(report))
+
+
+def html(report: Report) -> str:
+    """Return the page: style and pictures inside, nothing loaded from elsewhere.
+
+    Parameters
+    ----------
+    report : Report
+        What was measured.
+
+    Returns
+    -------
+    str
+        A complete HTML document.
+    """
+    style = resources.files("hrsafety.reproduce").joinpath("page.css").read_text(encoding="utf-8")
+    return "\n".join(
+        [
+            "<!DOCTYPE html>",
+            '<html lang="en"><head><meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            "<title>Published tables and figures, measured again</title>",
+            f"<style>{style}</style></head><body><main>",
+            *_head(report),
+            *_sections(report),
+            *_foot(report),
+            "</main></body></html>\n",
+        ]
+    )
+
+
+_PARTS = {
+    "tables-6": "Chapter 6",
+    "tables-7": "Chapter 7",
+    "table-5.1": "Section 5.7",
+    "tables-c": "Appendix C",
+    "stabilizing": "Stabilizing force",
+    "figures-6": "Pictures",
+}
+
+
+def _head(report: Report) -> Iterator[str]:
+    yield "<h1>Published tables and figures, measured again</h1>"
+    yield (
+        "<p>Every printed value of the new virtual force field in L. Zeng, <cite>Design and control of human-friendly "
+        "robots</cite> (PhD thesis, McMaster University, 2011), beside the value measured here with the corrected "
+        "equations. Nothing is tuned to the printed values; where a value differs, the reason stands beside it.</p>"
+    )
+    links = " ".join(f'<a href="#{part}">{escape(_PARTS[part])}</a>' for part in _PARTS if part in report.parts)
+    yield f'<nav>{links} <a href="#made">How it was made</a></nav>'
+    if report.cells:
+        yield markup.counts(report.cells)
+    if report.study is not None:
+        yield (
+            '<p class="banner">Recommended mode of the stabilizing force, from all runs with noise or crowds: '
+            f"<strong>{escape(report.study.recommended)}</strong> "
+            '(<a href="#stabilizing">evidence</a>).</p>'
+        )
+
+
+def _sections(report: Report) -> Iterator[str]:
+    tables = markup.by_table(report.cells)
+    for part, words, prefix in (
+        ("tables-6", "Chapter 6: holonomic robot, configurations c1 to c4", "6."),
+        ("tables-7", "Chapter 7: holonomic rows, configurations n1 to n4", "7."),
+        ("table-5.1", "Section 5.7: a person who stops and turns", "5."),
+        ("tables-c", "Appendix C: one gain at a time changed", "C."),
+    ):
+        if part in report.parts:
+            yield f'<section id="{part}"><h2>{escape(words)}</h2>'
+            for table, cells in tables.items():
+                if table.startswith(prefix):
+                    yield markup.table_of_cells(table, cells)
+            yield "</section>"
+    if report.study is not None:
+        yield '<section id="stabilizing"><h2>Stabilizing force: off, capped, full</h2>'
+        yield from evidence.section(report.study)
+        yield from (markup.figure(picture) for picture in report.study_pictures)
+        yield "</section>"
+    if report.pictures:
+        yield '<section id="figures-6"><h2>Pictures</h2>'
+        yield from (markup.figure(picture) for picture in report.pictures)
+        yield "</section>"
+
+
+def _foot(report: Report) -> Iterator[str]:
+    made = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
+    versions = [f"Python {platform.python_version()}", *(f"{name} {_version(name)}" for name in _LIBRARIES)]
+    yield '<section id="made"><h2>How this page was made</h2>'
+    yield f"<p><code>{escape(report.command)}</code></p>"
+    yield f"<p>{escape(', '.join(versions))}; {escape(platform.system())} {escape(platform.machine())}.</p>"
+    yield f"<p>Made {made}; simulations and pictures took {report.seconds:.1f} s.</p>"
+    beside = ["<code>figures</code> (pictures)"] if report.pictures or report.study_pictures else []
+    beside += ["<code>tables.csv</code>, <code>tables.json</code> (every value)"] if report.cells else []
+    beside += ["<code>stabilizing.csv</code>, <code>stabilizing.json</code>"] if report.study is not None else []
+    yield f"<p>Beside this page: {', '.join(beside)}.</p></section>"
+
+
+_LIBRARIES = ("hrsafety", "numpy", "matplotlib")
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return "(not installed)"

@@ -1,0 +1,53 @@
+"""The printed numbers, as shipped with the package."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib import resources
+from typing import Any
+
+__all__ = ["printed_rows", "published_tables"]
+
+Row = dict[str, Any]
+
+
+def published_tables() -> dict[str, Any]:
+    """Return the published tables that are compared with.
+
+    Returns
+    -------
+    dict
+        By key ``"zeng2011:<number>"``: ``title``, ``units`` where the table has any, and
+        ``rows``, one dict of column to printed number each. A fresh copy in each call.
+
+    Examples
+    --------
+    >>> from hrsafety import reproduce
+    >>> reproduce.published_tables()["zeng2011:6.2"]["rows"][0]["T_arrive"]
+    6.7
+    """
+    tables: dict[str, Any] = json.loads(_text())
+    return tables
+
+
+def printed_rows(number: str) -> list[Row]:
+    """Return the rows of one table of Zeng (2011).
+
+    Parameters
+    ----------
+    number : str
+        Number of the table, for example ``"C.2"``.
+
+    Returns
+    -------
+    list of dict
+        Column name to printed value.
+    """
+    rows: list[Row] = published_tables()[f"zeng2011:{number}"]["rows"]
+    return rows
+
+
+@cache
+def _text() -> str:
+    return resources.files("hrsafety.reproduce").joinpath("published.json").read_text(encoding="utf-8")

@@ -1,0 +1,16 @@
+"""Ready scenarios: published configurations, files, random crowds, recorded people."""
+
+from hrsafety.scenarios.configurations import CONFIGURATIONS, configuration
+from hrsafety.scenarios.crossings import Crossing, crossings
+from hrsafety.scenarios.crowds import random_crowd
+from hrsafety.scenarios.files import ScenarioFile, load
+
+__all__ = [
+    "CONFIGURATIONS",
+    "Crossing",
+    "ScenarioFile",
+    "configuration",
+    "crossings",
+    "load",
+    "random_crowd",
+]

@@ -1,0 +1,278 @@
+"""A robot that crosses the main flow of recorded people, at many start instants."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import navigation as nav
+from hrsafety.datasets import Recording
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["Crossing", "Selection", "crossings"]
+
+Array = npt.NDArray[np.float64]
+Pair = tuple[float, float]
+Selection = Literal["busiest", "even"]
+
+START_GRID = 0.4
+"""Start instants lie on this grid in s: the annotation step of the usual recordings."""
+DEFAULT_SPACING = 4.0
+"""Least time between two start instants in s."""
+PERSON_RADIUS, CRITICAL_RADIUS, ACTIVE_RADIUS = 0.4, 0.8, 2.1
+"""Person and regions of Zeng (2011), chapter 6, in m."""
+_SIGHTING_STEP = 0.2
+"""Step in s at which people are looked at to count the traffic."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Crossing:
+    """One run across a recording.
+
+    Attributes
+    ----------
+    start_time : float
+        Instant of the recording at which the run starts, in s.
+    planned_time : float
+        Instant that was meant before waiting for a free start, in s; differs from
+        ``start_time`` only with ``selection="even"``.
+    traffic : int
+        How many people come within the active radius of a robot that crosses straight at full
+        speed from ``start_time`` on and is not held up by anybody.
+    people : tuple of int
+        Id of the person behind each obstacle of the scenario.
+    scenario : Scenario
+        What to simulate.
+    """
+
+    start_time: float
+    planned_time: float
+    traffic: int
+    people: tuple[int, ...]
+    scenario: nav.Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class _Route:
+    """Straight way of the robot at full speed."""
+
+    start: Array
+    goal: Array
+    speed: float
+
+    @property
+    def duration(self) -> float:
+        return float(np.linalg.norm(self.goal - self.start)) / self.speed
+
+    def position(self, elapsed: Array) -> Array:
+        share = (elapsed / self.duration)[..., None]
+        return self.start + share * (self.goal - self.start)
+
+
+def crossings(
+    recording: Recording,
+    *,
+    runs: int = 24,
+    selection: Selection = "busiest",
+    spacing: float = DEFAULT_SPACING,
+    length: float | None = None,
+    robot: nav.HolonomicRobot | None = None,
+    time_limit: float = 60.0,
+    person_radius: float = PERSON_RADIUS,
+    critical_radius: float = CRITICAL_RADIUS,
+    active_radius: float = ACTIVE_RADIUS,
+) -> list[Crossing]:
+    """Return runs of a robot across the main flow of a recording.
+
+    The robot goes straight across `Recording.main_flow`, from right to left of its direction
+    and through its centre. Start instants lie on a grid of 0.4 s and at least ``spacing``
+    apart, not later than one undisturbed crossing before the end of the recording, and never
+    at an instant at which somebody touches the start. They are chosen by the traffic alone,
+    never by how a run ends:
+
+    - ``"busiest"``: instants are taken in the order of their traffic, the number of people who
+      come within the active radius of a robot that crosses straight at full speed; the earlier
+      one first among equals. In ordinary recordings most instants meet few people, so evenly
+      spaced ones test little.
+    - ``"even"``: instants are spaced evenly over the recording; one at which somebody touches
+      the start is moved to the next free instant.
+
+    Every person who is in view for some time within ``time_limit`` from the start becomes an
+    obstacle that follows the recording and does not react to the robot; after the end of the
+    recording nobody is there. Buildings and parked cars are not in the recording and so not in
+    the scenario. The robot may rest as long as the time limit: waiting is not giving up.
+
+    Parameters
+    ----------
+    recording : Recording
+        People.
+    runs : int
+        How many runs.
+    selection : {"busiest", "even"}
+        How start instants are chosen.
+    spacing : float
+        Least time between two start instants for ``"busiest"``, in s.
+    length : float or None
+        Distance from start to goal in m. ``None``: both lie two standard deviations of the
+        flow and the critical radius away from its centre.
+    robot : HolonomicRobot or None
+        The robot; the default one when ``None``.
+    time_limit : float
+        Longest run in s.
+    person_radius, critical_radius, active_radius : float
+        Of every person, in m.
+
+    Returns
+    -------
+    list of Crossing
+        In the order of the start instants.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of range, nobody moves, or the recording is too short or too crowded
+        for so many runs.
+
+    Examples
+    --------
+    >>> from hrsafety import scenarios
+    >>> from hrsafety.datasets import Recording
+    >>> walk = Recording(time_s=[0.0, 20.0], person=[7, 7], position=[[-10, 1], [10, 1]])
+    >>> [run.start_time for run in scenarios.crossings(walk, runs=2)]
+    [5.6, 9.6]
+    """
+    _check(recording, runs, selection)
+    robot = nav.HolonomicRobot() if robot is None else robot
+    body = {"radius": person_radius, "critical_radius": critical_radius, "active_radius": active_radius}
+    numbers = {"spacing": spacing, "time_limit": time_limit, "person_radius": person_radius}
+    numbers |= {"critical_radius": critical_radius, "active_radius": active_radius}
+    for name, value in numbers.items():
+        _positive(name, value)
+    route = _route(recording, length, critical_radius, robot)
+    candidates = _candidates(recording, route)
+    touch = robot.radius + person_radius
+    free = candidates[_nobody_near(recording, candidates, route.start, touch)]
+    traffic = _traffic(recording, free, route, active_radius)
+    if selection == "busiest":
+        chosen = planned = _busiest(free, traffic, runs, spacing)
+    else:
+        chosen, planned = _evenly(candidates, free, runs)
+    counts = dict(zip(free.tolist(), traffic.tolist(), strict=True))
+    result = []
+    for start_time, meant in zip(chosen, planned, strict=True):
+        obstacles = recording.humans(start_time, duration=time_limit, **body)
+        scenario = nav.Scenario(
+            start=_pair(route.start),
+            goal=_pair(route.goal),
+            obstacles=obstacles,
+            robot=robot,
+            time_limit=time_limit,
+            rest_time=time_limit,
+        )
+        ids = tuple(recording.present(start_time, duration=time_limit).tolist())
+        result.append(
+            Crossing(
+                start_time=start_time, planned_time=meant, traffic=counts[start_time], people=ids, scenario=scenario
+            )
+        )
+    return result
+
+
+def _check(recording: object, runs: object, selection: object) -> None:
+    if not isinstance(recording, Recording):
+        raise InvalidParameterError("recording", "be a Recording", recording)
+    if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
+        raise InvalidParameterError("runs", "be an integer, 1 or more", runs)
+    if selection not in ("busiest", "even"):
+        raise InvalidParameterError("selection", "be busiest or even", selection)
+
+
+def _positive(name: str, value: object) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not (math.isfinite(value) and value > 0.0):
+        raise InvalidParameterError(name, "be finite and positive", value)
+
+
+def _pair(point: Array) -> Pair:
+    return (float(point[0]), float(point[1]))
+
+
+def _route(recording: Recording, length: float | None, clearance: float, robot: nav.HolonomicRobot) -> _Route:
+    """Return the way across the main flow."""
+    flow = recording.main_flow()
+    if length is None:
+        length = 2.0 * (2.0 * flow.spread + clearance)
+    _positive("length", length)
+    center = np.array(flow.center)
+    half = 0.5 * length * np.array([-flow.direction[1], flow.direction[0]])
+    return _Route(center - half, center + half, robot.max_speed)
+
+
+def _candidates(recording: Recording, route: _Route) -> Array:
+    """Return all instants at which a run could start."""
+    spare = recording.duration - route.duration
+    if spare < 0.0:
+        rule = f"last for one crossing of {route.duration:.1f} s at least"
+        raise InvalidParameterError("recording", rule, f"{recording.duration:.1f} s")
+    steps = np.arange(math.floor(spare / START_GRID + 1e-9) + 1)
+    instants: Array = np.round(float(recording.time_s[0]) + START_GRID * steps, 9)
+    return instants
+
+
+def _nobody_near(recording: Recording, instants: Array, place: Array, distance: float) -> npt.NDArray[np.bool_]:
+    """Return at which of the instants nobody is within a distance of a place."""
+    free = np.ones(len(instants), dtype=bool)
+    for person in recording.people():
+        time, position = recording.track(int(person))
+        seen = slice(*np.searchsorted(instants, (time[0], np.nextafter(time[-1], np.inf))))
+        free[seen] &= np.linalg.norm(_along(time, position, instants[seen]) - place, axis=1) > distance
+    return free
+
+
+def _along(time: Array, position: Array, instants: Array) -> Array:
+    """Return recorded positions at other instants, linear in between."""
+    return np.stack([np.interp(instants, time, position[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _traffic(recording: Recording, starts: Array, route: _Route, reach: float) -> npt.NDArray[np.int64]:
+    """Count the people whom a robot that crosses undisturbed would have within its reach."""
+    count = np.zeros(len(starts), dtype=np.int64)
+    for person in recording.people():
+        time, position = recording.track(int(person))
+        seen = slice(*np.searchsorted(starts, (time[0] - route.duration, time[-1])))
+        instants = np.append(np.arange(time[0], time[-1], _SIGHTING_STEP), time[-1])
+        elapsed = instants - starts[seen, None]
+        under_way = (elapsed >= 0.0) & (elapsed <= route.duration)
+        away = np.linalg.norm(_along(time, position, instants) - route.position(elapsed), axis=-1)
+        count[seen] += (under_way & (away < reach)).any(axis=1)
+    return count
+
+
+def _busiest(instants: Array, traffic: npt.NDArray[np.int64], runs: int, spacing: float) -> list[float]:
+    chosen: list[float] = []
+    for index in np.argsort(-traffic, kind="stable"):
+        if len(chosen) == runs:
+            break
+        if all(abs(instants[index] - other) >= spacing - 1e-9 for other in chosen):
+            chosen.append(float(instants[index]))
+    if len(chosen) < runs:
+        rule = f"be at most {len(chosen)}, the number of free start instants {spacing:g} s apart"
+        raise InvalidParameterError("runs", rule, runs)
+    return sorted(chosen)
+
+
+def _evenly(candidates: Array, free: Array, runs: int) -> tuple[list[float], list[float]]:
+    """Return the instants of evenly spaced runs, and those that were meant."""
+    planned = candidates[np.linspace(0, len(candidates) - 1, runs).round().astype(int)]
+    chosen: list[float] = []
+    for instant in planned:
+        index = int(np.searchsorted(free, instant))
+        if index == len(free):
+            raise InvalidParameterError("runs", f"leave a free start instant after {instant:g} s", runs)
+        chosen.append(float(free[index]))
+    if len(set(chosen)) < runs:
+        raise InvalidParameterError("runs", f"be at most {len(set(chosen))}, the number of different instants", runs)
+    return chosen, planned.tolist()

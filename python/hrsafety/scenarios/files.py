@@ -1,0 +1,271 @@
+"""Scenario files: TOML in, a checked scenario and its law out."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from hrsafety import navigation as nav
+from hrsafety.datasets import load_track
+from hrsafety.errors import InvalidParameterError
+from hrsafety.scenarios import keys as kind
+from hrsafety.scenarios.keys import Keys, checked, located
+
+__all__ = ["ScenarioFile", "load"]
+
+
+class ScenarioFile(NamedTuple):
+    """What a scenario file describes.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        Robot, start, goal, obstacles, rules of the run.
+    law : VirtualForceField
+        The law of the table ``[law]``; the default law without that table.
+    """
+
+    scenario: nav.Scenario
+    law: nav.VirtualForceField
+
+
+_TOP: Keys = MappingProxyType(
+    {
+        "start": kind.pair,
+        "goal": kind.pair,
+        "control_period": kind.number,
+        "time_limit": kind.number,
+        "arrival_tolerance": kind.number,
+        "heading": kind.number,
+        "rest_time": kind.number,
+        "seed": kind.integer,
+        "robot": kind.table,
+        "obstacles": kind.tables,
+        "measurement": kind.table,
+        "law": kind.table,
+    }
+)
+_ROBOT: Keys = MappingProxyType(
+    {
+        "type": kind.word,
+        "mass": kind.number,
+        "radius": kind.number,
+        "max_speed": kind.number,
+        "max_acceleration": kind.number,
+        "wheel_radius": kind.number,
+        "winding_resistance": kind.number,
+        "wheel_inertia": kind.triple,
+        "wheel_viscous_friction": kind.triple,
+        "wheel_static_friction": kind.triple,
+    }
+)
+_MEASUREMENT: Keys = MappingProxyType({"scale": kind.number, "distribution": kind.word, "of": kind.word})
+_LAW: Keys = MappingProxyType(
+    {
+        "type": kind.word,
+        "attractive_gain": kind.number,
+        "repulsive_gain": kind.number,
+        "detour_gain": kind.number,
+        "gain_ratio": kind.number,
+        "stabilizing": kind.word,
+        "stabilizing_force_cap": kind.number,
+        "stabilizing_momentum_cap": kind.number,
+        "pass_behind": kind.boolean,
+        "side_hysteresis": kind.number,
+    }
+)
+_REGIONS: dict[str, kind.Kind] = {
+    "active_radius": kind.number,
+    "critical_radius": kind.number,
+    "max_speed": kind.number,
+}
+_ROUND: dict[str, kind.Kind] = {"type": kind.word, "radius": kind.number, **_REGIONS}
+_RECORDED: dict[str, kind.Kind] = {**_ROUND, "time": kind.numbers, "position": kind.pairs}
+_DISC: Keys = MappingProxyType({**_ROUND, "center": kind.pair})
+_RECTANGLE: Keys = MappingProxyType(
+    {
+        "type": kind.word,
+        "center": kind.pair,
+        "length": kind.number,
+        "width": kind.number,
+        "heading": kind.number,
+        **_REGIONS,
+    }
+)
+
+
+def load(path: str | PathLike[str]) -> ScenarioFile:
+    r"""Read a scenario file.
+
+    The file is TOML. At its top stand ``start`` and ``goal`` (required, [x, y] in m) and
+    ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
+    ``seed`` of `Scenario`. Tables, all optional:
+
+    - ``[robot]`` with the fields of `HolonomicRobot`;
+    - ``[[obstacles]]``, each with ``type`` and the fields of its class: ``"disc"``,
+      ``"rectangle"``, ``"moving_disc"``, ``"human"``. The motion of the last two is either
+      ``velocity`` with ``stop`` (a moving disc: or ``acceleration``), or ``segments``, an array
+      of ``{duration, velocity, acceleration}``, or a recording: ``time`` and ``position``
+      arrays, or ``path``, a CSV file with the columns t_s, x_m, y_m, relative to the scenario
+      file;
+    - ``[measurement]`` with the fields of `Measurement`;
+    - ``[law]`` with ``type = "virtual_force_field"`` and the fields of `VirtualForceField`.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    ScenarioFile
+        Scenario and law.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read, is not UTF-8 or not TOML, a key is unknown or missing, or a
+        value breaks a rule; the message names the key, as in ``obstacles[1].radius``.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import scenarios
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "empty_room.toml")
+    ...     _ = file.write_text("start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n")
+    ...     scenarios.load(file).scenario.goal
+    (0.0, 0.0)
+    """
+    place = Path(path)
+    fields = checked("", _parsed(place), _TOP, required=("start", "goal"))
+    law = _law(fields.pop("law", {"type": "virtual_force_field"}))
+    if "robot" in fields:
+        fields["robot"] = _robot(fields["robot"])
+    if "measurement" in fields:
+        given = checked("measurement", fields["measurement"], _MEASUREMENT)
+        with located("measurement"):
+            fields["measurement"] = nav.Measurement(**given)
+    described = fields.pop("obstacles", [])
+    obstacles = [_obstacle(f"obstacles[{index}]", table, place.parent) for index, table in enumerate(described)]
+    with located(""):
+        return ScenarioFile(nav.Scenario(obstacles=tuple(obstacles), **fields), law)
+
+
+def _parsed(path: Path) -> dict[str, Any]:
+    """Return the tables of a TOML file as read."""
+    if not path.is_file():
+        raise InvalidParameterError("path", "name a readable file", str(path))
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise InvalidParameterError("path", "name a readable file", f"{path} ({error.strerror})") from None
+    except UnicodeDecodeError as error:
+        raise InvalidParameterError(path.name, "be UTF-8 text", f"byte {error.object[error.start]:#04x}") from None
+    except RecursionError:
+        raise InvalidParameterError(path.name, "be a TOML file", "brackets nested too deeply") from None
+    except ValueError as error:
+        raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
+
+
+def _law(table: dict[str, Any]) -> nav.VirtualForceField:
+    given = checked("law", table, _LAW, required=("type",))
+    _one_of("law.type", given.pop("type"), ("virtual_force_field",))
+    with located("law"):
+        return nav.VirtualForceField(**given)
+
+
+def _robot(table: dict[str, Any]) -> nav.HolonomicRobot:
+    given = checked("robot", table, _ROBOT)
+    _one_of("robot.type", given.pop("type", "holonomic"), ("holonomic",))
+    with located("robot"):
+        return nav.HolonomicRobot(**given)
+
+
+def _one_of(path: str, word: str, words: tuple[str, ...]) -> None:
+    if word not in words:
+        raise InvalidParameterError(path, f"be {' or '.join(words)}", kind.shown(word))
+
+
+def _obstacle(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
+    if "type" not in table:
+        raise InvalidParameterError(f"{path}.type", "be given", "nothing")
+    word = kind.word(f"{path}.type", table["type"])
+    _one_of(f"{path}.type", word, tuple(_OBSTACLES))
+    return _OBSTACLES[word](path, table, folder)
+
+
+def _disc(path: str, table: dict[str, Any], _folder: Path) -> nav.Obstacle:
+    given = checked(path, table, _DISC, required=("center", "radius"))
+    del given["type"]
+    with located(path):
+        return nav.Disc(**given)
+
+
+def _rectangle(path: str, table: dict[str, Any], _folder: Path) -> nav.Obstacle:
+    given = checked(path, table, _RECTANGLE, required=("center", "length", "width"))
+    del given["type"]
+    with located(path):
+        return nav.Rectangle(**given)
+
+
+def _human(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
+    return _moving(path, table, folder, nav.Human, place="start", required=())
+
+
+def _moving_disc(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
+    return _moving(path, table, folder, nav.MovingDisc, place="center", required=("radius",))
+
+
+def _moving(
+    path: str,
+    table: dict[str, Any],
+    folder: Path,
+    body: type[nav.Human] | type[nav.MovingDisc],
+    *,
+    place: str,
+    required: tuple[str, ...],
+) -> nav.Obstacle:
+    """Return a body that walks straight, in segments, or as recorded."""
+    known: dict[str, kind.Kind]
+    needed: tuple[str, ...]
+    if "path" in table:
+        known, needed = {**_ROUND, "path": kind.word}, ("path",)
+    elif "time" in table or "position" in table:
+        known, needed = _RECORDED, ("time", "position")
+    elif "segments" in table:
+        known, needed = {**_ROUND, place: kind.pair, "segments": kind.segments}, (place, "segments")
+    else:
+        known = {**_ROUND, place: kind.pair, "velocity": kind.pair, "stop": kind.pair}
+        if body is nav.MovingDisc:
+            known["acceleration"] = kind.pair
+        needed = (place, "velocity")
+    given = checked(path, table, known, required=(*needed, *required))
+    del given["type"]
+    if "path" in given:
+        given["time"], given["position"] = _track(path, folder / given.pop("path"))
+    with located(path):
+        if "time" in given:
+            return body.from_path(given.pop("time"), given.pop("position"), **given)
+        if "segments" in given:
+            return body.from_segments(given.pop(place), given.pop("segments"), **given)
+        return body(**given)
+
+
+def _track(path: str, file: Path) -> tuple[object, object]:
+    """Read a recording that an obstacle refers to."""
+    try:
+        return load_track(file)
+    except InvalidParameterError as error:
+        argument = f"{path}.path" if error.argument == "path" else f"{path}.path: {error.argument}"
+        raise InvalidParameterError(argument, error.requirement, error.value) from None
+
+
+_OBSTACLES: MappingProxyType[str, Callable[[str, dict[str, Any], Path], nav.Obstacle]] = MappingProxyType(
+    {"disc": _disc, "rectangle": _rectangle, "moving_disc": _moving_disc, "human": _human}
+)

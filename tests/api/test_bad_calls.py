@@ -1,0 +1,173 @@
+"""Bad arguments of functions give an error that names the argument; nothing else escapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from api.spoiled import (
+    INF,
+    NAN,
+    NUMBER,
+    OPTIONAL_POSITIVE,
+    POINT,
+    POSITIVE,
+    WORD,
+    names,
+)
+from hrsafety import InvalidParameterError, ShapeError
+from hrsafety import navigation as nav
+
+SCENE = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1)])
+LAW = nav.VirtualForceField()
+
+CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]]] = {
+    "region_radii": (
+        nav.region_radii,
+        {"robot": nav.HolonomicRobot(), "obstacle": nav.Rectangle(center=(2, 0), length=1.4, width=0.6)},
+        {
+            "robot": (None, "robot", nav.Disc(center=(0, 0), radius=1.0)),
+            "obstacle": (None, nav.HolonomicRobot(), (1.0, 2.0)),
+            "control_period": POSITIVE,
+            "faced_side": OPTIONAL_POSITIVE,
+        },
+    ),
+    "simulate": (
+        nav.simulate,
+        {"scenario": SCENE, "law": LAW},
+        {
+            "scenario": (None, LAW, "c1"),
+            "law": (None, SCENE, "vff"),
+            "integrator": WORD,
+            "step": (*POSITIVE, 0.007, 0.04, 0.07, 1e-320),
+            "hold": (None, 1, "yes"),
+            "stop_on_contact": (None, 1, "yes"),
+        },
+    ),
+    "evaluate": (
+        nav.evaluate,
+        {"scenario": SCENE, "law": LAW},
+        {
+            "scenario": (None, LAW),
+            "law": (None, SCENE),
+            "weights": (
+                (),
+                (1.0,),
+                (0.5, 0.5),
+                (0.5, 0.5, 0.5),
+                (1.5, -0.5, 0.0),
+                (NAN, 0.5, 0.5),
+                "abc",
+                None,
+                1.0,
+                ("a", 0, 0),
+            ),
+            "integrator": WORD,
+            "step": (*POSITIVE, 0.007),
+            "hold": (None, 1, "yes"),
+        },
+    ),
+    "simulate_batch": (
+        nav.simulate_batch,
+        {"scenarios": [SCENE], "law": LAW},
+        {
+            "scenarios": ([], [None], [LAW], 5, "abc", None, SCENE),
+            "law": (None, SCENE),
+            "gains": (
+                np.empty((0, 4)),
+                [1.0, 2.0, 3.0, 4.0],
+                [[1.0, 2.0, 3.0]],
+                [[1.0, 2.0, 3.0, NAN]],
+                [[1.0, 2.0, 3.0, -1.0]],
+                [[1.0, INF, 3.0, 1.0]],
+                [["a", "b", "c", "d"]],
+                "abc",
+                {"attractive": [1.0]},
+                {"attractive_gain": [1.0, 2.0], "detour_gain": [1.0, 2.0, 3.0]},
+                {"attractive_gain": ["a"]},
+                {"attractive_gain": []},
+                object(),
+            ),
+            "weights": ((0.5, 0.5), (0.5, 0.5, 0.5), (NAN, 0.5, 0.5)),
+            "integrator": WORD,
+            "step": (*POSITIVE, 0.007),
+            "threads": (0, -1, 1.5, "2", NAN),
+            "lanes": (0, 3, -8, 1.5, "8"),
+            "progress": (5, "print"),
+            "descent": (None, 1, "yes"),
+        },
+    ),
+    **{
+        name: (
+            function,
+            {"law": LAW, "scenario": SCENE, "position": (3.0, 0.7), "velocity": (-0.5, 0.0)},
+            {
+                "law": (None, SCENE),
+                "scenario": (None, LAW),
+                "position": POINT,
+                "velocity": POINT,
+                "time": (*NUMBER, -1.0),
+            },
+        )
+        for name, function in (("force_terms", nav.force_terms), ("lyapunov", nav.lyapunov))
+    },
+    "force_field": (
+        nav.force_field,
+        {"law": LAW, "scenario": SCENE, "position": [[3.0, 0.7], [2.0, 1.5]]},
+        {
+            "law": (None, SCENE),
+            "scenario": (None, LAW),
+            "position": (
+                (3.0, 0.7),
+                [[1.0, 2.0, 3.0]],
+                "ab",
+                None,
+                [[NAN, 0.0]],
+                [[0.0, INF]],
+                [["a", "b"]],
+                [[1.0, 2.0], [1.0]],
+            ),
+            "velocity": ((1.0,), (NAN, 0.0), [[0.0, 0.0]] * 3, "ab", None, [[0.0, 0.0], [INF, 0.0]], 1.0),
+            "time": (*NUMBER, -1.0),
+        },
+    ),
+}
+
+SPOILED_CALLS = [
+    pytest.param(name, argument, value, id=f"{name}-{argument}-{index}-{str(value)[:16]}")
+    for name, (_, _, arguments) in CALLS.items()
+    for argument, values in arguments.items()
+    for index, value in enumerate(values)
+]
+
+
+@pytest.mark.parametrize(("name", "argument", "value"), SPOILED_CALLS)
+def test_bad_argument_of_a_function_is_refused_by_name(name: str, argument: str, value: Any) -> None:
+    function, right, _ = CALLS[name]
+    with pytest.raises((InvalidParameterError, ShapeError)) as caught:
+        function(**{**right, argument: value})
+    assert names(caught.value).split("[")[0].split(".")[0] in {
+        argument,
+        *(nav.VirtualForceField.GAIN_NAMES if argument == "gains" else ()),
+    }
+
+
+def test_faced_side_is_for_rectangles_only() -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.region_radii(nav.HolonomicRobot(), nav.Disc(center=(0, 0), radius=0.1), faced_side=0.6)
+    assert names(caught.value) == "faced_side"
+
+
+def test_lyapunov_function_is_not_defined_in_a_critical_region() -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.lyapunov(LAW, SCENE, position=(2.7, 0.595), velocity=(0.0, 0.0))
+    assert names(caught.value) == "position"
+
+
+def test_measurement_needs_a_held_force() -> None:
+    noisy = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), measurement=nav.Measurement())
+    with pytest.raises(InvalidParameterError):
+        nav.simulate(noisy, LAW, hold=False)

@@ -1,0 +1,254 @@
+"""Bad values are refused where an object is built, with an error that names the argument."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from api.spoiled import (
+    INF,
+    NAN,
+    NOT_NEGATIVE,
+    NUMBER,
+    OPTIONAL_NOT_NEGATIVE,
+    OPTIONAL_POINT,
+    OPTIONAL_POSITIVE,
+    POINT,
+    POSITIVE,
+    WHEELS,
+    WORD,
+    names,
+)
+from hrsafety import InvalidParameterError, ShapeError
+from hrsafety import navigation as nav
+
+# Constructors with arguments that are right; each test then spoils one of them.
+RIGHT: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
+    "HolonomicRobot": (nav.HolonomicRobot, {}),
+    "DifferentialDriveRobot": (nav.DifferentialDriveRobot, {}),
+    "VirtualForceField": (nav.VirtualForceField, {}),
+    "Measurement": (nav.Measurement, {}),
+    "Disc": (nav.Disc, {"center": (2.0, 0.6), "radius": 0.1}),
+    "Rectangle": (nav.Rectangle, {"center": (2.0, 0.0), "length": 1.4, "width": 0.6}),
+    "MovingDisc": (nav.MovingDisc, {"center": (3.0, 4.0), "radius": 0.2, "velocity": (0.0, -0.5)}),
+    "Human": (nav.Human, {"start": (0.6, 0.6), "velocity": (1.0, 0.0)}),
+    "Scenario": (nav.Scenario, {"start": (3.9, 0.6), "goal": (0.0, 0.6)}),
+}
+
+RULES: dict[str, dict[str, tuple[Any, ...]]] = {
+    "HolonomicRobot": {
+        **dict.fromkeys(
+            ("mass", "radius", "max_speed", "max_acceleration", "wheel_radius", "winding_resistance"), POSITIVE
+        ),
+        **dict.fromkeys(("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction"), WHEELS),
+    },
+    "DifferentialDriveRobot": dict.fromkeys(
+        ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"), POSITIVE
+    ),
+    "VirtualForceField": {
+        **dict.fromkeys(("attractive_gain", "repulsive_gain", "detour_gain", "gain_ratio"), NOT_NEGATIVE),
+        "stabilizing": WORD,
+        "pass_behind": (1, 0, None, "yes", NAN, ()),
+        "side_hysteresis": (*OPTIONAL_NOT_NEGATIVE, math.pi, 4.0),
+    },
+    "Measurement": {"scale": NOT_NEGATIVE, "distribution": WORD, "of": WORD},
+    "Disc": {
+        "center": POINT,
+        "radius": POSITIVE,
+        "active_radius": OPTIONAL_POSITIVE,
+        "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "max_speed": OPTIONAL_NOT_NEGATIVE,
+    },
+    "Rectangle": {
+        "center": POINT,
+        "length": POSITIVE,
+        "width": POSITIVE,
+        "heading": NUMBER,
+        "active_radius": OPTIONAL_POSITIVE,
+        "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "max_speed": (*OPTIONAL_NOT_NEGATIVE, 0.5),
+    },
+    "MovingDisc": {
+        "center": POINT,
+        "radius": POSITIVE,
+        "velocity": POINT,
+        "acceleration": POINT,
+        "stop": (*OPTIONAL_POINT, (3.0, 5.0), (4.0, 3.0)),
+        "active_radius": OPTIONAL_POSITIVE,
+        "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "max_speed": OPTIONAL_NOT_NEGATIVE,
+    },
+    "Human": {
+        "start": POINT,
+        "velocity": POINT,
+        "stop": (*OPTIONAL_POINT, (0.0, 0.6), (2.0, 1.0)),
+        "radius": POSITIVE,
+        "active_radius": OPTIONAL_POSITIVE,
+        "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "max_speed": OPTIONAL_NOT_NEGATIVE,
+    },
+    "Scenario": {
+        "start": POINT,
+        "goal": (*POINT, (3.9, 0.6), (3.9, 0.65)),
+        "obstacles": (
+            None,
+            1.0,
+            "abc",
+            [None],
+            [(1.0, 2.0)],
+            [nav.HolonomicRobot()],
+            nav.Disc(center=(2, 2), radius=0.1),
+        ),
+        "robot": (None, "robot", 4.4, nav.DifferentialDriveRobot(), nav.HolonomicRobot),
+        "control_period": POSITIVE,
+        "time_limit": POSITIVE,
+        "arrival_tolerance": POSITIVE,
+        "heading": NUMBER,
+        "rest_time": POSITIVE,
+        "measurement": (0.025, "uniform", True),
+        "seed": (-1, 2**64, 1.5, "1", None, True, NAN),
+    },
+}
+
+SPOILED = [
+    pytest.param(kind, argument, value, id=f"{kind}-{argument}-{index}-{str(value)[:16]}")
+    for kind, arguments in RULES.items()
+    for argument, values in arguments.items()
+    for index, value in enumerate(values)
+]
+
+
+@pytest.mark.parametrize(("kind", "argument", "value"), SPOILED)
+def test_bad_value_is_refused_by_name(kind: str, argument: str, value: Any) -> None:
+    build, right = RIGHT[kind]
+    with pytest.raises((InvalidParameterError, ShapeError)) as caught:
+        build(**{**right, argument: value})
+    assert names(caught.value).split("[")[0] == argument
+
+
+@pytest.mark.parametrize("kind", RIGHT)
+def test_rules_cover_every_argument(kind: str) -> None:
+    build, _ = RIGHT[kind]
+    fields = {name for name in build.__dataclass_fields__ if not name.startswith("_")}
+    # Caps depend on the mode, motions on their class methods; they have tests of their own.
+    elsewhere = {"stabilizing_force_cap", "stabilizing_momentum_cap", "segments", "path"}
+    assert fields - elsewhere == set(RULES[kind])
+
+
+@pytest.mark.parametrize("cap", ["stabilizing_force_cap", "stabilizing_momentum_cap"])
+@pytest.mark.parametrize("value", OPTIONAL_NOT_NEGATIVE)
+def test_bad_cap_is_refused_by_name(cap: str, value: Any) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.VirtualForceField(stabilizing="capped", **{cap: value})
+    assert names(caught.value) == cap
+
+
+@pytest.mark.parametrize("mode", ["off", "full"])
+@pytest.mark.parametrize("cap", ["stabilizing_force_cap", "stabilizing_momentum_cap"])
+def test_cap_belongs_to_the_capped_mode(mode: Any, cap: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.VirtualForceField(stabilizing=mode, **{cap: 1.0})
+    assert names(caught.value) == cap
+
+
+@pytest.mark.parametrize("kind", ["Disc", "Rectangle", "MovingDisc", "Human"])
+@pytest.mark.parametrize(("active", "critical"), [(0.4, 0.4), (0.4, 0.8), (0.4, math.nextafter(0.4, 1.0))])
+def test_active_region_must_be_larger_than_critical_region(kind: str, active: float, critical: float) -> None:
+    build, right = RIGHT[kind]
+    with pytest.raises(InvalidParameterError) as caught:
+        build(**right, active_radius=active, critical_radius=critical)
+    assert names(caught.value) in {"active_radius", "critical_radius"}
+
+
+OBSTACLES = [
+    nav.Disc(center=(3.9, 0.6), radius=0.1),
+    nav.Disc(center=(3.65, 0.6), radius=0.1),
+    nav.Rectangle(center=(3.9, 0.6), length=1.4, width=0.6),
+    nav.Rectangle(center=(3.9, 0.15), length=1.4, width=0.6, heading=0.0),
+    nav.Human(start=(3.5, 0.6), velocity=(1.0, 0.0)),
+    nav.Human(start=(3.9, 0.6), velocity=(0.0, 0.0)),
+    nav.MovingDisc(center=(4.1, 0.6), radius=0.2, velocity=(1.0, 0.0)),
+]
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES, ids=repr)
+def test_robot_may_not_start_in_contact(obstacle: nav.Obstacle) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.Scenario(start=(3.9, 0.6), goal=(-9.0, 0.6), obstacles=[obstacle])
+    assert names(caught.value) == "start"
+
+
+@pytest.mark.parametrize(
+    "obstacle",
+    [
+        nav.Disc(center=(0.3, 0.6), radius=0.1),
+        nav.Disc(center=(0.5, 0.6), radius=0.1, active_radius=0.8, critical_radius=0.4),
+        nav.Rectangle(center=(0.0, 0.0), length=1.4, width=0.6),
+        nav.Rectangle(center=(0.0, 0.6), length=1.4, width=0.6),
+        nav.Human(start=(0.0, 0.6), velocity=(0.0, 0.0)),
+    ],
+    ids=repr,
+)
+def test_goal_may_not_lie_in_the_active_region_of_a_stationary_obstacle(obstacle: nav.Obstacle) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[obstacle])
+    assert names(caught.value) == "goal"
+
+
+RECORDINGS = [
+    ([], np.empty((0, 2)), "time"),
+    ([0.0, 0.4, 0.4], [[0, 0], [1, 0], [2, 0]], "time"),
+    ([0.4, 0.0], [[0, 0], [1, 0]], "time"),
+    ([0.0, NAN], [[0, 0], [1, 0]], "time"),
+    ([0.0, INF], [[0, 0], [1, 0]], "time"),
+    ([[0.0, 0.4]], [[0, 0], [1, 0]], "time"),
+    ("ab", [[0, 0], [1, 0]], "time"),
+    (None, [[0, 0], [1, 0]], "time"),
+    ([0.0, 0.4], [[0, 0], [1, NAN]], "position"),
+    ([0.0, 0.4], [[0, INF], [1, 0]], "position"),
+    ([0.0, 0.4], [[0, 0]], "position"),
+    ([0.0, 0.4], [0, 0], "position"),
+    ([0.0, 0.4], [[0, 0, 0], [1, 0, 0]], "position"),
+    ([0.0, 0.4], [["a", "b"], [1, 0]], "position"),
+    ([0.0, 0.4], [[0, 0], [1]], "position"),
+    ([0.0, 0.4], None, "position"),
+]
+
+
+@pytest.mark.parametrize(("time", "position", "argument"), RECORDINGS)
+@pytest.mark.parametrize("build", [nav.Human.from_path, lambda *path: nav.MovingDisc.from_path(*path, radius=0.2)])
+def test_bad_recording_is_refused_by_name(build: Callable[..., Any], time: Any, position: Any, argument: str) -> None:
+    with pytest.raises((InvalidParameterError, ShapeError)) as caught:
+        build(time, position)
+    assert names(caught.value).split("[")[0] == argument
+
+
+MOTIONS = [
+    [],
+    5,
+    "abc",
+    [1.0],
+    [(1.0, (1.0, 0.0))],
+    [(0.0, (1.0, 0.0), (0.0, 0.0))],
+    [(-1.0, (1.0, 0.0), (0.0, 0.0))],
+    [(NAN, (1.0, 0.0), (0.0, 0.0))],
+    [(1.0, (1.0, NAN), (0.0, 0.0))],
+    [(1.0, (1.0, 0.0), (INF, 0.0))],
+    [(1.0, (1.0, 0.0, 0.0), (0.0, 0.0))],
+    [(1.0, 1.0, (0.0, 0.0))],
+    [("1", (1.0, 0.0), (0.0, 0.0))],
+]
+
+
+@pytest.mark.parametrize("segments", MOTIONS)
+@pytest.mark.parametrize(
+    "build", [nav.Human.from_segments, lambda *motion: nav.MovingDisc.from_segments(*motion, radius=0.2)]
+)
+def test_bad_motion_is_refused_by_name(build: Callable[..., Any], segments: Any) -> None:
+    with pytest.raises((InvalidParameterError, ShapeError)) as caught:
+        build((0.6, 0.0), segments)
+    assert names(caught.value).startswith("segments")

@@ -1,0 +1,280 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hrsafety import datasets
+from hrsafety.datasets import Recording
+from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError
+
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+PEDESTRIANS = SHARED / "data" / "pedestrians"
+ROUNDING = 1e-12
+"""Room for the rounding of a few additions of numbers near 1."""
+
+GOOD = """frame,t_s,ped_id,x_m,y_m
+0,0.0,1,0.0,0.0
+0,0.0,2,5.0,1.0
+10,0.4,1,0.5,0.0
+10,0.4,2,4.5,1.0
+20,0.8,1,1.0,0.0
+20,0.8,9,3.0,3.0
+"""
+
+
+def written(folder: Path, text: str | bytes) -> Path:
+    path = folder / "people.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def good(folder: Path) -> Recording:
+    return datasets.load_pedestrians(written(folder, GOOD))
+
+
+def test_loading_keeps_every_row_in_order(tmp_path: Path) -> None:
+    recording = good(tmp_path)
+    assert len(recording) == 6
+    assert recording.people().tolist() == [1, 2, 9]
+    assert recording.duration == 0.8
+    assert recording.position[3].tolist() == [4.5, 1.0]
+
+
+def test_columns_may_stand_in_any_order_behind_a_byte_order_mark(tmp_path: Path) -> None:
+    lines = [line.split(",") for line in GOOD.split()]
+    shuffled = "\r\n".join(",".join(line[k] for k in (3, 1, 4, 0, 2)) for line in lines) + "\r\n"
+    recording = datasets.load_pedestrians(written(tmp_path, b"\xef\xbb\xbf" + shuffled.encode()))
+    expected = good(tmp_path)
+    np.testing.assert_array_equal(recording.position, expected.position)
+    np.testing.assert_array_equal(recording.person, expected.person)
+
+
+def test_track_returns_the_rows_of_one_person(tmp_path: Path) -> None:
+    time, position = good(tmp_path).track(2)
+    assert time.tolist() == [0.0, 0.4]
+    assert position.tolist() == [[5.0, 1.0], [4.5, 1.0]]
+
+
+def test_track_of_nobody_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InvalidParameterError, match="person must be the id of a recorded person, got 3"):
+        good(tmp_path).track(3)
+
+
+def test_arrays_of_a_recording_cannot_be_written(tmp_path: Path) -> None:
+    recording = good(tmp_path)
+    with pytest.raises(ValueError, match="read-only"):
+        recording.position[0, 0] = 1.0
+
+
+def test_a_recording_does_not_share_memory_with_its_source() -> None:
+    position = np.array([[0.0, 0.0], [1.0, 0.0]])
+    recording = Recording(time_s=[0.0, 1.0], person=[1, 1], position=position)
+    position[0, 0] = 7.0
+    assert recording.position[0, 0] == 0.0
+
+
+def test_people_present_at_one_instant_only_are_left_out_and_named(tmp_path: Path) -> None:
+    recording = good(tmp_path)
+    assert recording.present(0.0, duration=10.0).tolist() == [1, 2]
+    assert recording.momentary(0.0, duration=10.0).tolist() == [9]
+    assert len(recording.humans(0.0, duration=10.0)) == 2
+
+
+def test_a_person_whose_last_row_begins_the_window_is_momentary(tmp_path: Path) -> None:
+    recording = good(tmp_path)
+    assert recording.present(0.4, duration=10.0).tolist() == [1]
+    assert recording.momentary(0.4, duration=10.0).tolist() == [2, 9]
+
+
+def test_window_without_anybody_is_empty(tmp_path: Path) -> None:
+    recording = good(tmp_path)
+    assert recording.humans(50.0, duration=1.0) == ()
+    assert recording.momentary(50.0, duration=1.0).tolist() == []
+
+
+def test_humans_start_their_clock_at_the_window() -> None:
+    time = np.arange(6) * 0.5
+    recording = Recording(time_s=time, person=[4] * 6, position=np.stack([time, 0 * time], axis=1))
+    (person,) = recording.humans(0.75, duration=1.0)
+    assert person.path is not None
+    assert person.path[0] == (-0.25, 0.25, 0.75, 1.25)
+    assert person.path[1][0] == (0.5, 0.0)
+
+
+def test_humans_cover_the_whole_window() -> None:
+    time = np.arange(100) * 0.4
+    recording = Recording(time_s=time, person=[4] * 100, position=np.stack([time, 0 * time], axis=1))
+    for start in (0.0, 0.4, 3.0, 11.9):
+        (person,) = recording.humans(start, duration=5.0)
+        assert person.path is not None
+        assert person.path[0][0] <= 0.0
+        assert person.path[0][-1] >= 5.0
+
+
+def test_fields_of_humans_are_passed_on(tmp_path: Path) -> None:
+    people = good(tmp_path).humans(0.0, duration=1.0, radius=0.3, active_radius=2.0, critical_radius=0.7)
+    assert {(p.radius, p.active_radius, p.critical_radius) for p in people} == {(0.3, 2.0, 0.7)}
+
+
+@pytest.mark.parametrize(
+    ("start_time", "duration", "argument"),
+    [
+        (float("nan"), 1.0, "start_time"),
+        (0.0, 0.0, "duration"),
+        (0.0, -1.0, "duration"),
+        (0.0, float("inf"), "duration"),
+    ],
+)
+def test_a_bad_window_is_an_error(tmp_path: Path, start_time: float, duration: float, argument: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        good(tmp_path).humans(start_time, duration=duration)
+    assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.5, 2.5, -2.0])
+def test_main_flow_finds_the_direction_and_middle_of_a_stream(angle: float) -> None:
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-direction[1], direction[0]])
+    offsets = (-1.0, 0.0, 1.0)
+    time = np.tile(np.linspace(0.0, 10.0, 21), (3, 1)).T.ravel()
+    person = np.tile([1, 2, 3], 21)
+    position = np.array([3.0, 4.0]) + (time - 5.0)[:, None] * direction + np.tile(offsets, 21)[:, None] * across
+    flow = Recording(time_s=time, person=person, position=position).main_flow()
+    np.testing.assert_allclose(flow.direction, direction, atol=ROUNDING)
+    np.testing.assert_allclose(flow.center, (3.0, 4.0), atol=10 * ROUNDING)
+    assert flow.angle == pytest.approx(angle, abs=ROUNDING)
+    assert flow.spread == pytest.approx(np.std(offsets), abs=ROUNDING)
+
+
+def test_main_flow_points_where_more_of_the_way_is_walked() -> None:
+    time = np.repeat([0.0, 5.0], 3)
+    position = [[0, 0], [0, 1], [5, 2], [-5, 0], [-5, 1], [0, 2]]
+    flow = Recording(time_s=time, person=[1, 2, 3] * 2, position=position).main_flow()
+    assert flow.direction == (-1.0, 0.0)
+
+
+def test_main_flow_ignores_how_many_people_only_stand() -> None:
+    time = np.repeat([0.0, 5.0], 4)
+    position = [[0, 0], [2, 9], [3, 9], [4, 9], [5, 0], [2, 9], [3, 9], [4, 9]]
+    flow = Recording(time_s=time, person=[1, 2, 3, 4] * 2, position=position).main_flow()
+    assert flow.center == (2.5, 0.0)
+
+
+def test_main_flow_of_people_with_a_gap_between_their_ways_has_a_place() -> None:
+    flow = Recording(
+        time_s=[0.0, 0.0, 1.0, 1.0], person=[1, 2, 1, 2], position=[[0, 0], [5, 0], [1, 0], [6, 0]]
+    ).main_flow()
+    assert np.isfinite(flow.center).all()
+
+
+@pytest.mark.parametrize(
+    "recording",
+    [
+        Recording(time_s=[0.0], person=[1], position=[[0, 0]]),
+        Recording(time_s=[0.0, 1.0], person=[1, 1], position=[[2, 3], [2, 3]]),
+    ],
+    ids=["one sample", "standing"],
+)
+def test_people_who_do_not_move_have_no_main_flow(recording: Recording) -> None:
+    with pytest.raises(InvalidParameterError, match="hold people who move"):
+        recording.main_flow()
+
+
+HEADER = "frame,t_s,ped_id,x_m,y_m\n"
+BAD_FILES = {
+    "empty": ("", "line 1 must name the columns"),
+    "header only": (HEADER, "must hold at least one row, got the header only"),
+    "missing column": ("frame,t_s,ped_id,x_m\n0,0,1,0\n", "line 1 must have one column y_m, got none"),
+    "extra column": ("frame,t_s,ped_id,x_m,y_m,z_m\n0,0,1,0,0,0\n", "have no other columns than .*, got z_m"),
+    "double column": ("frame,t_s,ped_id,x_m,x_m\n0,0,1,0,0\n", "have one column x_m, got 2"),
+    "wrong unit": ("frame,t_ms,ped_id,x_m,y_m\n0,0,1,0,0\n", "have one column t_s, got none"),
+    "no header": ("0,0.0,1,0,0\n", "line 1 must have one column frame"),
+    "word": (HEADER + "0,0,1,0,0\n10,0.4,1,abc,0\n", "line 3, column x_m must be a finite number, got 'abc'"),
+    "blank": (HEADER + "0,0,1,,0\n", "line 2, column x_m must be a finite number, got ''"),
+    "nan": (HEADER + "0,nan,1,0,0\n", "line 2, column t_s must be a finite number, got 'nan'"),
+    "inf": (HEADER + "0,0,1,0,-inf\n", "line 2, column y_m must be a finite number"),
+    "huge": (HEADER + "0,0,1,0,1e999\n", "line 2, column y_m must be a finite number"),
+    "underscore": (HEADER + "0,0,1,1_0,0\n", "line 2, column x_m must be a finite number"),
+    "float id": (HEADER + "0,0,1.5,0,0\n", "line 2, column ped_id must be an integer, got '1.5'"),
+    "huge id": (HEADER + f"0,0,{'9' * 5000},0,0\n", "line 2, column ped_id must be an integer, got '9999"),
+    "short row": (HEADER + "0,0,1,0\n", "line 2 must have 5 fields, got 4"),
+    "long row": (HEADER + "0,0,1,0,0,0\n", "line 2 must have 5 fields, got 6"),
+    "blank line": (HEADER + "0,0,1,0,0\n\n10,0.4,1,0,0\n", "line 3 must have 5 fields, got 0"),
+    "frames backward": (HEADER + "10,0.4,1,0,0\n0,0.0,1,0,0\n", "line 3, column frame must not be before frame 10"),
+    "time backward": (HEADER + "0,0.4,1,0,0\n10,0.0,1,0,0\n", "line 3, column t_s must be later than 0.4"),
+    "time stands": (HEADER + "0,0.4,1,0,0\n10,0.4,1,0,0\n", "line 3, column t_s must be later than 0.4"),
+    "two times": (HEADER + "0,0.0,1,0,0\n0,0.1,2,0,0\n", "line 3, column t_s must be 0.0 as in"),
+    "duplicate": (HEADER + "0,0,1,0,0\n0,0,1,1,1\n", "line 3, column ped_id must have one row for each instant"),
+    "ids backward": (HEADER + "0,0,2,0,0\n0,0,1,1,1\n", "line 3, column ped_id must follow 2 within the frame, got 1"),
+    "latin": (HEADER.encode() + b"0,0,1,\xe9,0\n", "must be UTF-8 text, got byte 0xe9"),
+    "binary": (bytes(range(256)), "must"),
+    "open quote": (HEADER + '0,0,1,"0,0\n', "must be comma-separated text"),
+    "semicolons": (HEADER.replace(",", ";") + "0;0;1;0;0\n", "line 1 must have one column frame"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), BAD_FILES.values(), ids=BAD_FILES.keys())
+def test_a_bad_file_is_an_error_that_says_where(tmp_path: Path, text: str | bytes, message: str) -> None:
+    with pytest.raises(InvalidParameterError, match=message):
+        datasets.load_pedestrians(written(tmp_path, text))
+
+
+def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InvalidParameterError, match=r"path must name a readable file, got .*nobody\.csv"):
+        datasets.load_pedestrians(tmp_path / "nobody.csv")
+
+
+def test_a_folder_is_not_a_recording(tmp_path: Path) -> None:
+    with pytest.raises(InvalidParameterError, match="path must name a readable file"):
+        datasets.load_pedestrians(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("fields", "error"),
+    [
+        ({"time_s": []}, HrsafetyError),
+        ({"time_s": [[0.0], [1.0]]}, ShapeError),
+        ({"time_s": [0.0, np.nan]}, InvalidParameterError),
+        ({"time_s": [1.0, 0.0]}, InvalidParameterError),
+        ({"time_s": [0.0, 0.0]}, InvalidParameterError),
+        ({"time_s": ["a", "b"]}, InvalidParameterError),
+        ({"person": [1]}, ShapeError),
+        ({"person": [1.0, 1.0]}, InvalidParameterError),
+        ({"position": [[0, 0]]}, ShapeError),
+        ({"position": [[0, 0, 0], [1, 0, 0]]}, ShapeError),
+        ({"position": [[0, 0], [np.inf, 0]]}, InvalidParameterError),
+        ({"position": [[0, 0], [1]]}, InvalidParameterError),
+    ],
+)
+def test_bad_arrays_make_no_recording(fields: dict[str, object], error: type[HrsafetyError]) -> None:
+    with pytest.raises(error):
+        Recording(**{"time_s": [0.0, 1.0], "person": [1, 1], "position": [[0, 0], [1, 0]], **fields})
+
+
+def test_load_track_reads_time_and_position(tmp_path: Path) -> None:
+    time, position = datasets.load_track(written(tmp_path, "y_m,t_s,x_m\n1,0,2\n3,0.5,4\n"))
+    assert time.tolist() == [0.0, 0.5]
+    assert position.tolist() == [[2.0, 1.0], [4.0, 3.0]]
+
+
+@pytest.mark.parametrize("second", ["0,1,1", "-1,1,1"])
+def test_a_track_must_go_on_in_time(tmp_path: Path, second: str) -> None:
+    with pytest.raises(InvalidParameterError, match=r"line 3, column t_s must be later than 0\.0"):
+        datasets.load_track(written(tmp_path, f"t_s,x_m,y_m\n0,0,0\n{second}\n"))
+
+
+@pytest.mark.parametrize(
+    ("name", "rows", "people", "duration"), [("zara01", 5024, 148, 360.4), ("zara03", 3600, 180, 299.2)]
+)
+def test_the_recorded_scenes_are_read_whole(name: str, rows: int, people: int, duration: float) -> None:
+    path = PEDESTRIANS / f"{name}.csv"
+    if not path.is_file():
+        pytest.skip(f"needs {path.name} of the pedestrian data (HRSAFETY_SHARED)")
+    recording = datasets.load_pedestrians(path)
+    assert len(recording) == rows
+    assert len(recording.people()) == people
+    assert recording.duration == pytest.approx(duration, abs=1e-9)
+    assert sum(len(recording.track(int(person))[0]) for person in recording.people()) == rows

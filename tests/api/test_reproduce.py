@@ -1,0 +1,459 @@
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+from collections import Counter
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import reproduce
+from hrsafety.errors import InvalidParameterError
+from hrsafety.reproduce import atomic, cells, figures, page, reasons, statistics, study, tables
+from hrsafety.reproduce.cells import Cell
+
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+NUMBERS = ["5.1", *(f"6.{i}" for i in range(1, 6)), *(f"7.{i}" for i in range(1, 5)), *(f"C.{i}" for i in range(1, 10))]
+SHORT_RUN = "tables-6"
+# Deviations are recomputed by the same two operations: equal but for the last bits.
+REPEATED = 1e-12
+VOID_TAGS = {"meta", "img", "br", "hr", "link", "input"}
+
+
+@pytest.fixture(scope="module")
+def all_cells() -> list[Cell]:
+    return [*tables.chapter_6(), *tables.chapter_7(), *tables.unpredictable_human(), *tables.appendix_c()]
+
+
+@pytest.fixture(scope="module")
+def short_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return reproduce.run(tmp_path_factory.mktemp("reproduction"), only=SHORT_RUN)
+
+
+def printed_numbers() -> Iterator[tuple[str, str, str, float]]:
+    published = reproduce.published_tables()
+    for number in NUMBERS:
+        for row in published[f"zeng2011:{number}"]["rows"]:
+            change = row.get("change_percent")
+            label = row.get("method") or ("0 %" if change == 0 else f"{change:+g} %")
+            for column, value in row.items():
+                if isinstance(value, int | float) and column != "change_percent":
+                    yield number, label, column, float(value)
+
+
+def by_place(all_cells: list[Cell]) -> dict[tuple[str, str, str], Cell]:
+    return {(cell.table, cell.row, cell.column): cell for cell in all_cells}
+
+
+# ---- the shipped numbers ----------------------------------------------------------------------------
+
+
+def test_published_tables_are_all_there_with_rows_and_titles() -> None:
+    published = reproduce.published_tables()
+    for number in NUMBERS:
+        assert published[f"zeng2011:{number}"]["rows"], number
+        assert published[f"zeng2011:{number}"]["title"], number
+
+
+def test_published_tables_equal_the_specification() -> None:
+    source = SHARED / "spec" / "published_tables.json"
+    if not source.is_file():
+        pytest.skip(f"needs the specification's tables: {source}")
+    original = json.loads(source.read_text(encoding="utf-8"))
+    published = reproduce.published_tables()
+    for number in NUMBERS:
+        assert published[f"zeng2011:{number}"] == original[f"zeng2011:{number}"], number
+
+
+def test_published_tables_cannot_be_changed_by_a_caller() -> None:
+    reproduce.published_tables()["zeng2011:6.2"]["rows"][0]["T_arrive"] = 0.0
+    assert reproduce.published_tables()["zeng2011:6.2"]["rows"][0]["T_arrive"] == 6.7
+
+
+# ---- cells ------------------------------------------------------------------------------------------
+
+
+def test_every_printed_number_has_exactly_one_cell(all_cells: list[Cell]) -> None:
+    expected = Counter(printed_numbers())
+    found = Counter(
+        (cell.table, cell.row, cell.column, cell.printed) for cell in all_cells if not isinstance(cell.printed, str)
+    )
+    assert found == expected
+
+
+def test_every_printed_outcome_has_exactly_one_cell(all_cells: list[Cell]) -> None:
+    words = [(cell.table, cell.column) for cell in all_cells if isinstance(cell.printed, str)]
+    assert sorted(words) == [(f"C.{number}", f"outcome_{k}") for number in (3, 5, 7, 9) for k in (1, 2, 3)]
+
+
+def test_deviations_and_verdicts_follow_from_printed_and_measured(all_cells: list[Cell]) -> None:
+    judged = [cell for cell in all_cells if isinstance(cell.measured, float)]
+    assert len(judged) > 700
+    for cell in judged:
+        assert isinstance(cell.measured, float)
+        assert isinstance(cell.printed, float)
+        difference = cell.measured - cell.printed
+        expected = difference / cell.printed if cell.relative else difference
+        assert cell.deviation == pytest.approx(expected, rel=REPEATED, abs=REPEATED)
+        assert cell.tolerance is not None
+        if abs(abs(expected) - cell.tolerance) > 1e-8:
+            assert cell.within is (abs(expected) < cell.tolerance), cell
+
+
+def test_cells_that_are_off_or_not_measured_say_why(all_cells: list[Cell]) -> None:
+    silent = [(cell.table, cell.row, cell.column) for cell in all_cells if not cell.within and not cell.reason]
+    assert silent == []
+
+
+def test_cells_that_agree_carry_no_excuse(all_cells: list[Cell]) -> None:
+    for cell in all_cells:
+        if cell.within and cell.reason:
+            assert cell.reason == reasons.note_of(cell.table, cell.row, cell.column)
+
+
+def test_tables_of_a_single_disc_agree_where_the_specification_says_so(all_cells: list[Cell]) -> None:
+    places = by_place(all_cells)
+    for table, row in (("6.2", "new_vff"), ("6.4", "new_vff"), ("7.1", "holonomic"), ("7.2", "holonomic")):
+        assert places[table, row, "T_arrive"].within, (table, row)
+    assert places["7.1", "holonomic", "d_circle_min"].within
+    assert places["6.2", "new_vff_optimised", "d_circle_min"].within
+    assert not places["6.2", "new_vff", "d_circle_min"].within
+
+
+def test_exchanged_columns_of_configuration_3_are_compared_with_the_right_obstacle(all_cells: list[Cell]) -> None:
+    places = by_place(all_cells)
+    for table in ("C.2", "C.4", "C.6", "C.8"):
+        rectangle = places["6.4", "new_vff_optimised", "d_rectangle_min"].measured
+        disc = places["6.4", "new_vff_optimised", "d_circle_min"].measured
+        assert places[table, "0 %", "d_circle_min_3"].measured == rectangle
+        assert places[table, "0 %", "d_rectangle_min_3"].measured == disc
+        assert reasons.EXCHANGED_COLUMNS in places[table, "0 %", "d_circle_min_3"].reason
+
+
+def test_sensitivities_follow_from_the_measured_mean_scores(all_cells: list[Cell]) -> None:
+    places = by_place(all_cells)
+    checked = 0
+    for (table, row, column), cell in places.items():
+        if column == "sensitivity_percent" and row != "0 %":
+            score, optimum = places[table, row, "H_mean"].measured, places[table, "0 %", "H_mean"].measured
+            assert isinstance(score, float)
+            assert isinstance(optimum, float)
+            change = float(row.removesuffix(" %"))
+            expected = abs((1 - score / optimum) / (change / 100)) * 100
+            assert cell.measured == pytest.approx(expected, rel=REPEATED, abs=REPEATED)
+            checked += 1
+    assert checked == 44
+
+
+def test_mean_score_is_the_mean_of_three_configurations(all_cells: list[Cell]) -> None:
+    places = by_place(all_cells)
+    for table in ("C.3", "C.5", "C.7", "C.9"):
+        scores = [places[table, "+50 %", f"H_{k}"].measured for k in (1, 2, 3)]
+        assert places[table, "+50 %", "H_mean"].measured == pytest.approx(np.mean(np.array(scores, dtype=float)))
+
+
+@pytest.mark.parametrize(("measured", "within"), [(1.05, True), (0.95, True), (1.0501, False), (0.9499, False)])
+def test_verdict_turns_at_the_tolerance(measured: float, within: bool) -> None:
+    cell = Cell.compared(
+        table="t", row="r", column="T_arrive", printed=1.0, measured=measured, tolerance=cells.ARRIVAL_TIME, unit="s"
+    )
+    assert cell.within is within
+
+
+def test_run_without_arrival_is_never_within() -> None:
+    cell = Cell.compared(
+        table="t", row="r", column="T", printed=1.0, measured=math.nan, tolerance=cells.ARRIVAL_TIME, unit="s"
+    )
+    assert cell.within is False
+    assert cell.measured == "no arrival"
+
+
+# ---- the page ---------------------------------------------------------------------------------------
+
+
+class Checker(HTMLParser):
+    """Reads a page strictly: every tag closed in order, nothing loaded from elsewhere."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.faults: list[str] = []
+        self.ids: Counter[str] = Counter()
+        self.targets: list[str] = []
+        self.texts: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag in {"script", "link", "iframe", "object"}:
+            self.faults.append(tag)
+        for name, value in attrs:
+            if name == "src" and not (value or "").startswith("data:image/png;base64,"):
+                self.faults.append(f"src={value}")
+            if name == "href":
+                self.targets.append(value or "")
+            if name == "id":
+                self.ids[value or ""] += 1
+        if tag not in VOID_TAGS:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}>")
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data)
+
+
+def read(text: str) -> Checker:
+    checker = Checker()
+    checker.feed(text)
+    checker.close()
+    return checker
+
+
+def test_page_is_well_formed_and_needs_no_network(short_run: Path) -> None:
+    text = short_run.read_text(encoding="utf-8")
+    checker = read(text)
+    assert checker.faults == []
+    assert checker.open == []
+    assert "http://" not in text
+    assert "https://" not in text
+    assert "url(" not in text
+    assert max(checker.ids.values()) == 1
+    assert {target.removeprefix("#") for target in checker.targets} <= set(checker.ids)
+
+
+def test_page_shows_every_cell_with_printed_measured_and_reason(short_run: Path) -> None:
+    text = " ".join(read(short_run.read_text(encoding="utf-8")).texts)
+    for cell in tables.chapter_6():
+        assert f"{cell.printed:g}" in text
+        assert cell.reason in text
+        if isinstance(cell.measured, float):
+            assert f"{cell.measured:.2f}" in text
+
+
+def test_page_counts_what_the_values_say(short_run: Path) -> None:
+    values = json.loads(short_run.with_name("tables.json").read_text(encoding="utf-8"))
+    judged = [value for value in values if value["within"] is not None]
+    within = [value for value in judged if value["within"]]
+    assert 0 < len(within) < len(judged)
+    text = short_run.read_text(encoding="utf-8")
+    assert f"{len(within)} of {len(judged)} judged values are within tolerance" in text
+
+
+def test_page_names_its_command_and_versions(short_run: Path) -> None:
+    text = short_run.read_text(encoding="utf-8")
+    assert f"hrsafety reproduce --only {SHORT_RUN} --out " in text
+    assert f"numpy {np.__version__}" in text
+
+
+def test_csv_and_json_hold_the_same_values(short_run: Path) -> None:
+    values = json.loads(short_run.with_name("tables.json").read_text(encoding="utf-8"))
+    with short_run.with_name("tables.csv").open(encoding="utf-8", newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert len(lines) == len(values) == len(tables.chapter_6())
+    for line, value in zip(lines, values, strict=True):
+        assert line["reason"] == value["reason"]
+        assert float(line["printed"]) == value["printed"]
+
+
+def test_parts_that_are_not_asked_for_are_not_made(short_run: Path) -> None:
+    assert sorted(path.name for path in short_run.parent.iterdir()) == ["summary.html", "tables.csv", "tables.json"]
+
+
+def test_existing_folder_keeps_the_files_of_others(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "summary.html").write_text("old", encoding="utf-8")
+    reproduce.run(tmp_path, only=["table-5.1"])
+    assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
+    assert (tmp_path / "summary.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+def test_progress_names_each_part(tmp_path: Path) -> None:
+    lines: list[str] = []
+    reproduce.run(tmp_path, only=["table-5.1", "tables-7"], progress=lines.append)
+    assert [line.split(":")[0] for line in lines] == ["tables-7", "table-5.1", "writing the page"]
+
+
+# ---- errors and interruptions -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("only", ["tables-9", ["tables-6", "tables-9"]])
+def test_unknown_part_is_named_with_the_choice(tmp_path: Path, only: Any) -> None:
+    with pytest.raises(InvalidParameterError, match=r"only must be among tables-6, .*stabilizing, got tables-9"):
+        reproduce.run(tmp_path / "out", only=only)
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_part_at_all_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InvalidParameterError, match="only must be among"):
+        reproduce.run(tmp_path, only=[])
+
+
+def test_file_in_place_of_the_folder_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("a file", encoding="utf-8")
+    with pytest.raises(InvalidParameterError, match="out must be a folder or not exist"):
+        reproduce.run(tmp_path / "out", only=SHORT_RUN)
+
+
+@pytest.mark.parametrize("error", [OSError("disk full"), KeyboardInterrupt()])
+def test_interrupted_write_leaves_the_old_file_and_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    target = atomic.write_file(tmp_path / "values.csv", "old")
+
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(type(error)):
+        atomic.write_file(target, "new")
+    assert [path.name for path in tmp_path.iterdir()] == ["values.csv"]
+    assert target.read_text(encoding="utf-8") == "old"
+
+
+def test_page_is_written_last_so_that_it_exists_only_if_all_else_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(page, "html", fail)
+    with pytest.raises(KeyboardInterrupt):
+        reproduce.run(tmp_path, only="table-5.1")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["tables.csv", "tables.json"]
+
+
+# ---- statistics and the comparison of modes ---------------------------------------------------------
+
+
+@pytest.mark.parametrize(("count", "runs"), [(0, 200), (3, 200), (100, 200), (200, 200), (1, 1)])
+def test_wilson_interval_equals_scipy(count: int, runs: int) -> None:
+    from scipy.stats import binomtest
+
+    oracle = binomtest(count, runs).proportion_ci(0.95, method="wilson")
+    share = statistics.wilson(count, runs)
+    assert (share.low, share.high) == pytest.approx((oracle.low, oracle.high), rel=1e-9, abs=1e-12)
+    assert share.low <= share.value <= share.high
+
+
+@pytest.mark.parametrize(("only_first", "only_second"), [(0, 0), (5, 0), (12, 7), (40, 41), (900, 1100)])
+def test_paired_test_equals_scipy(only_first: int, only_second: int) -> None:
+    from scipy.stats import binomtest
+
+    first = np.array([True] * only_first + [False] * only_second + [True, False])
+    second = np.array([False] * only_first + [True] * only_second + [True, False])
+    paired = statistics.compare_paired(first, second)
+    assert (paired.only_first, paired.only_second) == (only_first, only_second)
+    differing = only_first + only_second
+    expected = 1.0 if differing == 0 else binomtest(only_first, differing).pvalue
+    assert paired.p_value == pytest.approx(expected, rel=1e-9)
+
+
+def outcomes(*, contacts: int, arrivals: int, score: float, runs: int = 400) -> study.Outcomes:
+    index = np.arange(runs)
+    return study.Outcomes(
+        outcome=np.where(index < contacts, "collided", "arrived"),
+        moving=index < contacts,
+        standing=np.zeros(runs, dtype=bool),
+        arrived=index >= runs - arrivals,
+        time=np.full(runs, 7.0),
+        score=np.full(runs, score),
+        clearance=np.full(runs, 0.3),
+        descent=np.full(runs, 0.9),
+        distance=np.full((runs, 1), 0.9),
+    )
+
+
+def ranked(**modes: study.Outcomes) -> str:
+    names = dict(zip(study.MODES, modes.values(), strict=True))
+    return dict(zip(study.MODES, modes, strict=True))[study._rank(names).recommended]
+
+
+def test_fewer_contacts_beat_more_arrivals_and_a_higher_score() -> None:
+    safe = outcomes(contacts=5, arrivals=300, score=0.4)
+    fast = outcomes(contacts=50, arrivals=400, score=0.9)
+    assert ranked(a=fast, b=safe, c=fast, d=fast) == "b"
+
+
+def test_difference_in_contacts_that_chance_explains_leaves_the_choice_to_the_score() -> None:
+    fewest = outcomes(contacts=5, arrivals=400, score=0.4)
+    higher = outcomes(contacts=7, arrivals=400, score=0.6)
+    assert ranked(a=fewest, b=fewest, c=higher, d=fewest) == "c"
+
+
+def test_more_arrivals_beat_a_higher_score() -> None:
+    arriving = outcomes(contacts=5, arrivals=400, score=0.4)
+    lingering = outcomes(contacts=5, arrivals=350, score=0.8)
+    assert ranked(a=lingering, b=lingering, c=lingering, d=arriving) == "d"
+
+
+@pytest.fixture(scope="module")
+def small_study() -> study.Study:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "NOISE_SEEDS", 3)
+        patch.setattr(study, "CROWD_SEEDS", 4)
+        return study.compare()
+
+
+def test_study_has_every_experiment_gain_set_and_mode_once(small_study: study.Study) -> None:
+    keys = Counter((entry.experiment, entry.gains, entry.mode) for entry in small_study.aggregates)
+    assert set(keys.values()) == {1}
+    experiments = {experiment for experiment, _, _ in keys}
+    assert len(keys) == len(experiments) * 2 * len(study.MODES)
+    assert {"c1", "c2", "c3", "c4", "crowds of 3", "crowds of 12"} <= experiments
+    assert small_study.recommended in study.MODES
+
+
+def test_off_differs_from_itself_in_no_run(small_study: study.Study) -> None:
+    own = [entry.against_off for entry in small_study.aggregates if entry.mode == "off"]
+    assert own
+    assert set(own) == {statistics.Paired(0, 0, 1.0)}
+
+
+def test_single_runs_of_the_study_are_those_of_the_tables(small_study: study.Study, all_cells: list[Cell]) -> None:
+    places = by_place(all_cells)
+    for entry in small_study.aggregates:
+        if entry.mode == "off" and entry.arrivals.runs == 1:
+            table = f"6.{int(entry.experiment[1]) + 1}"
+            assert entry.median_arrival_time == places[table, entry.gains, "T_arrive"].measured
+            assert entry.mean_score == places[table, entry.gains, "H"].measured
+
+
+def test_study_part_of_the_page_is_well_formed(
+    small_study: study.Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "compare", lambda _: small_study)
+    text = reproduce.run(tmp_path, only="stabilizing").read_text(encoding="utf-8")
+    checker = read(text)
+    assert (checker.faults, checker.open) == ([], [])
+    assert small_study.recommended in " ".join(checker.texts)
+    written = json.loads((tmp_path / "stabilizing.json").read_text(encoding="utf-8"))
+    assert written["recommended"] == small_study.recommended
+    assert len(written["aggregates"]) == len(small_study.aggregates)
+
+
+# ---- pictures ---------------------------------------------------------------------------------------
+
+
+def test_pictures_have_names_of_their_own_and_captions_that_are_sentences() -> None:
+    drawings = list(figures._pictures())
+    assert len({name for name, _, _ in drawings}) == len(drawings) > 20
+    assert all(caption.endswith(".") and caption[0].isupper() for _, caption, _ in drawings)
+
+
+def test_pictures_are_embedded_and_lie_beside_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = list(figures._pictures())[:1]
+    monkeypatch.setattr(figures, "_pictures", lambda: chosen)
+    text = reproduce.run(tmp_path, only="figures-6").read_text(encoding="utf-8")
+    (file,) = (tmp_path / "figures").iterdir()
+    assert file.name == f"{chosen[0][0]}.png"
+    assert file.read_bytes().startswith(b"\x89PNG\r\n")
+    checker = read(text)
+    assert (checker.faults, checker.open) == ([], [])
+    assert text.count("data:image/png;base64,") == 1

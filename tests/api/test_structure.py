@@ -1,0 +1,283 @@
+"""The tree obeys its own rules: imports, names, glossary, docstrings."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import importlib
+import inspect
+import json
+import pkgutil
+import re
+import subprocess
+import sys
+import typing
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+import hrsafety
+from hrsafety import navigation as nav
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PACKAGE = REPOSITORY / "python" / "hrsafety"
+CORES = ("vff_core", "impact_core")
+PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
+NATIVE = "hrsafety._hrsafety"
+NATIVE_USERS = ("navigation", "impact", "reactive")
+COMPUTING = {"simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"}
+VAGUE_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "types", "manager"}
+
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+
+
+# ---- crates ---------------------------------------------------------------------------------
+
+
+@cache
+def cargo_metadata() -> dict[str, Any]:
+    command = ["cargo", "metadata", "--format-version", "1", "--locked"]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True)
+    metadata: dict[str, Any] = json.loads(done.stdout)
+    return metadata
+
+
+def run_time_dependencies(crate: str) -> set[str]:
+    """Return the names of everything that the crate is linked with."""
+    metadata = cargo_metadata()
+    packages = {package["id"]: package["name"] for package in metadata["packages"]}
+    nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
+    waiting = [key for key in metadata["workspace_members"] if packages[key] == crate]
+    assert len(waiting) == 1
+    seen: set[str] = set()
+    while waiting:
+        for dependency in nodes[waiting.pop()]["deps"]:
+            normal = any(kind["kind"] is None for kind in dependency["dep_kinds"])
+            if normal and dependency["pkg"] not in seen:
+                seen.add(dependency["pkg"])
+                waiting.append(dependency["pkg"])
+    return {packages[key] for key in seen}
+
+
+@pytest.mark.parametrize("crate", CORES)
+def test_core_knows_neither_python_nor_another_core(crate: str) -> None:
+    assert run_time_dependencies(crate).isdisjoint(PYTHON_CRATES | (set(CORES) - {crate}) | {"hrsafety_py"})
+
+
+@pytest.mark.parametrize("crate", CORES)
+def test_core_is_free_of_python_in_its_tests_too(crate: str) -> None:
+    package = next(entry for entry in cargo_metadata()["packages"] if entry["name"] == crate)
+    assert {entry["name"] for entry in package["dependencies"]}.isdisjoint(PYTHON_CRATES)
+
+
+def test_binding_crate_is_the_one_that_knows_python() -> None:
+    assert {"pyo3", "vff_core"} <= run_time_dependencies("hrsafety_py")
+
+
+@pytest.mark.parametrize("crate", CORES)
+def test_core_forbids_unsafe_code(crate: str) -> None:
+    text = (REPOSITORY / "crates" / crate / "src" / "lib.rs").read_text(encoding="utf-8")
+    assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)
+
+
+# ---- imports --------------------------------------------------------------------------------
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Yield every module that a source file imports, `from x import y` as x and as x.y."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    package = module_name(path) if path.name == "__init__.py" else module_name(path).rpartition(".")[0]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            name = ".".join([*base, *([node.module] if node.module else [])])
+            yield name
+            yield from (f"{name}.{alias.name}" for alias in node.names)
+
+
+def inside(name: str, package: str) -> bool:
+    return name == package or name.startswith(f"{package}.")
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=module_name)
+def test_native_module_is_imported_by_its_three_users_only(path: Path) -> None:
+    if not any(inside(module_name(path), f"hrsafety.{user}") for user in NATIVE_USERS):
+        assert not [name for name in imported(path) if inside(name, NATIVE)]
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=module_name)
+def test_users_of_the_native_module_do_not_import_each_other(path: Path) -> None:
+    own = [user for user in NATIVE_USERS if inside(module_name(path), f"hrsafety.{user}")]
+    others = [f"hrsafety.{user}" for user in NATIVE_USERS if own and user not in own]
+    assert not [name for name in imported(path) if any(inside(name, other) for other in others)]
+
+
+def is_navigation(node: ast.expr) -> bool:
+    """Return whether an expression is a module of the navigation package by its usual names."""
+    return ast.unparse(node).split(".")[-1] in {"nav", "navigation", "simulation", "batch"}
+
+
+@pytest.mark.parametrize("path", [path for path in SOURCES if "plotting" in path.parts], ids=module_name)
+def test_plotting_computes_nothing(path: Path) -> None:
+    # A picture may have the name of what it shows: plotting.force_field draws, it does not
+    # compute. So the names count where they come from the navigation package.
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert not [
+        name for name in imported(path) if inside(name, "hrsafety.navigation") and name.split(".")[-1] in COMPUTING
+    ]
+    used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and is_navigation(node.value)}
+    assert not used & COMPUTING
+    assert not [name for name in imported(path) if inside(name, NATIVE)]
+
+
+def test_importing_the_package_loads_no_optional_dependency() -> None:
+    optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "numba", "pandas"}
+    modules = "hrsafety, hrsafety.navigation, hrsafety.scenarios, hrsafety.datasets, hrsafety.plotting, hrsafety.cli"
+    code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+# ---- names ----------------------------------------------------------------------------------
+
+
+def tracked_files() -> list[Path]:
+    """Return the files of the repository: tracked, or new and not ignored."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True)
+    return [path for name in done.stdout.split("\0") if name and (path := REPOSITORY / name).is_file()]
+
+
+def test_no_module_has_a_vague_name() -> None:
+    words = {path: path.relative_to(REPOSITORY).with_suffix("").parts for path in tracked_files()}
+    assert not [path for path, parts in words.items() if {part.lower().lstrip("_") for part in parts} & VAGUE_NAMES]
+
+
+def test_no_file_names_a_place_of_one_machine() -> None:
+    # Spelled in two halves, so that this file does not find itself.
+    places = ["/" + "work/", "/" + "tmp/", "/" + "root/", "/" + "home/", "../" + "shared", "C:" + "\\Users"]
+    pattern = re.compile("|".join(rf"(?<![\w.]){re.escape(place)}" for place in places))
+    found = []
+    for path in tracked_files():
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        found += [f"{path.relative_to(REPOSITORY)}: {match.group()}" for match in pattern.finditer(text)]
+    assert not found
+
+
+def test_nothing_is_left_to_fill_in() -> None:
+    marks = ["TO" + "DO", "FIX" + "ME", "FILL" + "ME", "X" * 3]
+    pattern = re.compile(r"\b(" + "|".join(marks) + r")\b")
+    texts = [path for path in tracked_files() if path.suffix in {".py", ".pyi", ".rs", ".md", ".toml", ".rst"}]
+    assert not [str(path.relative_to(REPOSITORY)) for path in texts if pattern.search(path.read_text(encoding="utf-8"))]
+
+
+# ---- glossary -------------------------------------------------------------------------------
+
+
+def fields_of(kind: Any) -> list[str]:
+    """Return the public fields of a dataclass or named tuple."""
+    if dataclasses.is_dataclass(kind):
+        names = [field.name for field in dataclasses.fields(kind)]
+    else:
+        names = list(getattr(kind, "_fields", ()))
+    return [name for name in names if not name.startswith("_")]
+
+
+def public_fields() -> list[tuple[str, str]]:
+    """Return (class, field) for every public record of the navigation package."""
+    kinds = {name: getattr(nav, name) for name in nav.__all__}
+    return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
+
+
+@cache
+def glossary() -> set[str]:
+    text = (REPOSITORY / "docs" / "theory" / "symbols.md").read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    return {word for row in rows for word in re.findall(r"`([A-Za-z_][\w]*)`", row)}
+
+
+@pytest.mark.parametrize(("kind", "field"), public_fields())
+def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
+    assert field in glossary(), f"{kind}.{field}"
+
+
+# ---- docstrings -----------------------------------------------------------------------------
+
+# Modules whose public names users call. Examples stand where a call makes sense on its own.
+DOCUMENTED = ("navigation", "scenarios", "datasets", "plotting", "reproduce", "errors")
+NEEDS_NO_EXAMPLE = {
+    "reproduce",  # runs for minutes
+}
+
+
+def public_names(module: ModuleType) -> Iterator[tuple[str, Any]]:
+    for name in module.__all__:
+        value = getattr(module, name)
+        if getattr(value, "__module__", "").startswith("hrsafety"):
+            yield f"{module.__name__.removeprefix('hrsafety.')}.{name}", value
+
+
+def documented(kind: str) -> list[Any]:
+    found: dict[str, Any] = {}
+    for name in DOCUMENTED:
+        module = importlib.import_module(f"hrsafety.{name}")
+        found |= {path: value for path, value in public_names(module)}
+    test = inspect.isclass if kind == "class" else inspect.isfunction
+    return [pytest.param(value, id=path) for path, value in found.items() if test(value)]
+
+
+def sections(docstring: str) -> dict[str, str]:
+    """Split a numpydoc docstring into its sections."""
+    parts = re.split(r"^([A-Z][A-Za-z ]+)\n-{3,}\n", inspect.cleandoc(docstring), flags=re.MULTILINE)
+    return {"Summary": parts[0], **dict(zip(parts[1::2], parts[2::2], strict=True))}
+
+
+def described(section: str) -> set[str]:
+    """Return the names that a section describes."""
+    lines = [line for line in section.splitlines() if line and not line.startswith(" ")]
+    return {name.strip(" *") for line in lines for name in line.split(" : ")[0].split(",")}
+
+
+@pytest.mark.parametrize("function", documented("function"))
+def test_public_function_describes_parameters_result_and_use(function: Any) -> None:
+    found = sections(function.__doc__ or "")
+    signature = inspect.signature(function)
+    assert found["Summary"].strip().splitlines()[0].endswith(".")
+    assert set(signature.parameters) <= described(found.get("Parameters", ""))
+    if typing.get_type_hints(function).get("return") is not type(None):
+        assert "Returns" in found
+    if function.__module__.split(".")[1] not in NEEDS_NO_EXAMPLE:
+        assert ">>> " in found.get("Examples", "")
+
+
+@pytest.mark.parametrize("kind", documented("class"))
+def test_public_class_describes_its_fields(kind: Any) -> None:
+    found = sections(kind.__doc__ or "")
+    assert found["Summary"].strip()
+    assert set(fields_of(kind)) <= described(found.get("Parameters", "")) | described(found.get("Attributes", ""))
+
+
+@pytest.mark.parametrize("kind", documented("class"))
+def test_public_method_has_a_docstring(kind: Any) -> None:
+    methods = [name for name in vars(kind) if not name.startswith("_") and inspect.isroutine(getattr(kind, name))]
+    assert not [name for name in methods if not (getattr(kind, name).__doc__ or "").strip()]
+
+
+def test_every_module_can_be_imported_and_says_what_it_is() -> None:
+    for entry in pkgutil.walk_packages(hrsafety.__path__, "hrsafety."):
+        if entry.name != NATIVE:
+            assert (importlib.import_module(entry.name).__doc__ or "").strip(), entry.name

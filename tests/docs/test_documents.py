@@ -1,0 +1,104 @@
+"""Everything that a reader can copy runs: blocks of the documents, docstrings, examples."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import os
+import pkgutil
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import hrsafety
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
+EXAMPLES = sorted((REPOSITORY / "examples").glob("*.py"))
+MODULES = sorted(entry.name for entry in pkgutil.walk_packages(hrsafety.__path__, "hrsafety."))
+
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+RECORDINGS = ("zara01.csv", "zara03.csv")
+
+# A reader does not wait longer than this for an example, in s.
+PATIENCE = 300.0
+
+
+def blocks(document: Path) -> list[str]:
+    return BLOCK.findall(document.read_text(encoding="utf-8"))
+
+
+def title(path: Path) -> str:
+    return path.relative_to(REPOSITORY).as_posix()
+
+
+def lay_out(text: str, folder: Path, request: pytest.FixtureRequest) -> None:
+    """Put the recordings that the text reads into the folder it runs in."""
+    for name in RECORDINGS:
+        if name in text:
+            shared: Path = request.getfixturevalue("shared")
+            shutil.copy(shared / "data" / "pedestrians" / name, folder)
+
+
+def run_python(*arguments: str, folder: Path) -> str:
+    done = subprocess.run(
+        [sys.executable, "-W", "error", *arguments],
+        cwd=folder,
+        env={**os.environ, "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.mark.parametrize("document", [path for path in DOCUMENTS if blocks(path)], ids=title)
+def test_python_blocks_run_in_order(document: Path, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    code = "\n\n".join(blocks(document))
+    lay_out(code, tmp_path, request)
+    (tmp_path / "document.py").write_text(code, encoding="utf-8")
+    run_python("document.py", folder=tmp_path)
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if not name.endswith("._hrsafety")])
+def test_docstring_examples_print_what_they_say(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    module = importlib.import_module(name)
+    result = doctest.testmod(module, optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    assert result.failed == 0
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=title)
+def test_example_runs(example: Path, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    recording = RECORDINGS[0] if "recorded" in example.name else ""
+    lay_out(recording, tmp_path, request)
+    run_python(str(example), *filter(None, [recording]), folder=tmp_path)
+
+
+def test_there_are_documents_and_examples_to_run() -> None:
+    assert sum(len(blocks(document)) for document in DOCUMENTS) >= 10
+    assert EXAMPLES
+
+
+def test_every_link_between_documents_leads_somewhere() -> None:
+    broken = []
+    for document in DOCUMENTS:
+        text = re.sub(r"^```.*?^```$", "", document.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for target in re.findall(r"\]\(([^)\s#]+)[^)]*\)", text):
+            if not re.match(r"[a-z]+:", target) and not (document.parent / target).exists():
+                broken.append(f"{title(document)}: {target}")
+    assert not broken
+
+
+def test_continuous_check_calls_the_test_command_of_the_readme() -> None:
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    command = re.search(r"^```sh\n(make test)\n```$", readme, re.MULTILINE)
+    assert command is not None
+    script = (REPOSITORY / ".ci" / "run").read_text(encoding="utf-8")
+    assert re.search(rf"^{re.escape(command.group(1))}\b", script, re.MULTILINE)
