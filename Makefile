@@ -5,6 +5,9 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
+# As maturin does: the binding crate is loaded by an interpreter, not linked with one.
+export PYO3_BUILD_EXTENSION_MODULE = 1
+
 .PHONY: build test lint bench docs images check reproduce clean
 
 $(BIN)/python:

@@ -12,7 +12,7 @@ import pytest
 
 import hrsafety
 from hrsafety import navigation as nav
-from hrsafety import reproduce, scenarios
+from hrsafety import plotting, reproduce, scenarios
 from hrsafety.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -42,12 +42,12 @@ def scene(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def people(tmp_path: Path) -> Path:
-    """Return a file with 20 people who walk along the x axis, a second apart."""
+    """Return a file with 40 people who walk along the x axis so densely that some meet the robot."""
     rows = []
-    for person in range(20):
+    for person in range(40):
         for k in range(41):
-            step = round(person / 0.4) + k
-            rows.append((step, person, -10.0 + 0.5 * k, float(person % 3 - 1)))
+            step = person + k
+            rows.append((step, person, -10.0 + 0.5 * k, float(person % 5 - 2)))
     path = tmp_path / "people.csv"
     lines = ["frame,t_s,ped_id,x_m,y_m"]
     lines += [f"{step * 10},{step * 0.4:.3f},{person},{x},{y}" for step, person, x, y in sorted(rows)]
@@ -180,14 +180,34 @@ def test_people_are_crossed_as_the_library_does(people: Path, capsys: pytest.Cap
     text = capsys.readouterr().out
     assert f"{summary.contacts_moving.sum()} with the robot moving" in text
     assert f"{summary.contacts_standing.sum()} with the robot standing" in text
+    assert summary.contacts_standing.sum() != summary.contacts_moving.sum()
+    shown = [line.split() for line in text.splitlines() if line.split()[:1] in (["0"], ["1"], ["2"])]
+    assert [row[0] for row in shown] == ["0", "1", "2"]
+    assert [int(row[3]) for row in shown] == summary.entered_active.tolist()
+    assert [row[4] for row in shown] == summary.outcome.tolist()
+    assert [int(row[7]) for row in shown] == summary.contacts_moving.tolist()
+    assert [int(row[8]) for row in shown] == summary.contacts_standing.tolist()
 
 
-def test_the_chosen_run_is_animated(people: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    movie = people.parent / "run.gif"
-    options = ["--runs", "2", "--animate", str(movie), "--animate-run", "1"]
+@pytest.mark.parametrize("chosen", [0, 2, None])
+def test_the_chosen_run_or_the_one_that_met_most_people_is_animated(
+    chosen: int | None, people: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seen: list[nav.Trajectory] = []
+
+    def film(trajectory: nav.Trajectory, path: str) -> Path:
+        seen.append(trajectory)
+        return Path(path)
+
+    monkeypatch.setattr(plotting, "animate", film)
+    options = ["--runs", "4", "--stabilizing", "off", "--animate", str(people.parent / "run.gif")]
+    options += [] if chosen is None else ["--animate-run", str(chosen)]
     assert main(["simulate", "--people", str(people), *options]) == 0
-    assert movie.stat().st_size > 0
-    assert "animated run  1" in capsys.readouterr().out
+    crossings = scenarios.crossings(hrsafety.datasets.load_pedestrians(people), runs=4)
+    summary = nav.simulate_batch([run.scenario for run in crossings], nav.VirtualForceField(stabilizing="off"))
+    expected = int(np.argmax(summary.entered_active)) if chosen is None else chosen
+    assert [trajectory.scenario for trajectory in seen] == [crossings[expected].scenario]
+    assert f"animated run  {expected}" in capsys.readouterr().out
 
 
 def test_evenly_spaced_runs_can_be_asked_for(people: Path, capsys: pytest.CaptureFixture[str]) -> None:

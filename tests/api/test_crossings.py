@@ -13,7 +13,7 @@ from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
-from hrsafety.scenarios.crossings import Selection
+from hrsafety.scenarios.recorded_people import Selection
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
 PEDESTRIANS = SHARED / "data" / "pedestrians"

@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-# About half a minute of work on two fast cores, so the signal always arrives while it runs:
-# a robot without forces waits for its time limit in each of the runs.
+# Two threads have work for more than ten seconds, so the signal always arrives while it runs: a
+# robot without forces waits for its time limit in each of the runs.
 BATCH = """
 import sys, time
 import numpy as np
@@ -23,7 +23,7 @@ gains = np.zeros((400_000, 4))
 report = {report}
 print("started", flush=True)
 try:
-    nav.simulate_batch([scene], nav.VirtualForceField(), gains, progress=report)
+    nav.simulate_batch([scene], nav.VirtualForceField(), gains, threads=2, progress=report)
 except KeyboardInterrupt:
     print("interrupted", time.monotonic(), flush=True)
 else:

@@ -46,6 +46,10 @@ def test_huge_value_gives_a_finite_run_or_an_error_of_the_package(build: Any, fi
         assert np.isfinite(run.velocity).all()
 
 
+# Braking takes six steps to end in rest; their rounding stays far below this speed, in m/s.
+AT_REST = 1e-12
+
+
 def test_robot_that_starts_in_a_critical_region_stays_there() -> None:
     disc = nav.Disc(center=(3.5, 0.6), radius=0.1, active_radius=0.8, critical_radius=0.5)
     run = nav.simulate(nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[disc]), LAW)
@@ -56,13 +60,14 @@ def test_robot_that_starts_in_a_critical_region_stays_there() -> None:
 
 def test_robot_brakes_for_a_person_who_appears_in_its_way() -> None:
     appears = 1.5
-    person = nav.Human.from_path([appears, 9.0], [[2.7, 0.6], [2.7, 0.6]])
+    person = nav.Human.from_path([appears, 9.0], [[2.15, 0.6], [2.15, 0.6]])
     scene = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[person])
     run = nav.simulate(scene, LAW)
     inside = (run.distance[:, 0] < scene.obstacles[0].critical_radius) & (run.time > appears + 0.2)
     assert inside.any()
-    assert (np.hypot(*run.velocity[inside].T)[:5] == 0.0).all()
-    assert run.outcome in {"arrived", "stopped"}
+    assert np.hypot(*run.velocity[inside].T)[:5].max() < AT_REST
+    assert run.outcome == "stopped"
+    assert run.min_clearance[0] > 0.0
 
 
 def test_person_who_appears_on_top_of_the_robot_is_a_contact() -> None:

@@ -15,7 +15,7 @@ import pytest
 
 from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import atomic, cells, figures, page, reasons, statistics, study, tables
+from hrsafety.reproduce import atomic, cells, figures, page, ranking, reasons, statistics, study, tables
 from hrsafety.reproduce.cells import Cell
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
@@ -109,6 +109,12 @@ def test_deviations_and_verdicts_follow_from_printed_and_measured(all_cells: lis
 def test_cells_that_are_off_or_not_measured_say_why(all_cells: list[Cell]) -> None:
     silent = [(cell.table, cell.row, cell.column) for cell in all_cells if not cell.within and not cell.reason]
     assert silent == []
+
+
+def test_every_documented_cause_explains_some_cell_that_is_off(all_cells: list[Cell]) -> None:
+    off = [cell for cell in all_cells if cell.within is False]
+    for cause in reasons._CAUSES:
+        assert any(cell.reason.startswith(cause.text) for cell in off), cause
 
 
 def test_cells_that_agree_carry_no_excuse(all_cells: list[Cell]) -> None:
@@ -234,7 +240,7 @@ def test_page_shows_every_cell_with_printed_measured_and_reason(short_run: Path)
         assert f"{cell.printed:g}" in text
         assert cell.reason in text
         if isinstance(cell.measured, float):
-            assert f"{cell.measured:.2f}" in text
+            assert f"{cell.measured:.{2 if cell.unit in {'s', 'J'} else 3}f}" in text
 
 
 def test_page_counts_what_the_values_say(short_run: Path) -> None:
@@ -355,9 +361,9 @@ def test_paired_test_equals_scipy(only_first: int, only_second: int) -> None:
     assert paired.p_value == pytest.approx(expected, rel=1e-9)
 
 
-def outcomes(*, contacts: int, arrivals: int, score: float, runs: int = 400) -> study.Outcomes:
+def outcomes(*, contacts: int, arrivals: int = 400, score: float = 0.5, runs: int = 400) -> ranking.Outcomes:
     index = np.arange(runs)
-    return study.Outcomes(
+    return ranking.Outcomes(
         outcome=np.where(index < contacts, "collided", "arrived"),
         moving=index < contacts,
         standing=np.zeros(runs, dtype=bool),
@@ -370,27 +376,32 @@ def outcomes(*, contacts: int, arrivals: int, score: float, runs: int = 400) -> 
     )
 
 
-def ranked(**modes: study.Outcomes) -> str:
-    names = dict(zip(study.MODES, modes.values(), strict=True))
-    return dict(zip(study.MODES, modes, strict=True))[study._rank(names).recommended]
+def ranked(*experiments: dict[str, ranking.Outcomes]) -> ranking.Ranking:
+    return ranking.rank({f"experiment {k}": modes for k, modes in enumerate(experiments)}, gains="any", side="any")
 
 
 def test_fewer_contacts_beat_more_arrivals_and_a_higher_score() -> None:
-    safe = outcomes(contacts=5, arrivals=300, score=0.4)
     fast = outcomes(contacts=50, arrivals=400, score=0.9)
-    assert ranked(a=fast, b=safe, c=fast, d=fast) == "b"
+    safe = outcomes(contacts=5, arrivals=300, score=0.4)
+    assert ranked({"off": fast, "a": safe, "b": fast}).recommended == "a"
 
 
 def test_difference_in_contacts_that_chance_explains_leaves_the_choice_to_the_score() -> None:
-    fewest = outcomes(contacts=5, arrivals=400, score=0.4)
-    higher = outcomes(contacts=7, arrivals=400, score=0.6)
-    assert ranked(a=fewest, b=fewest, c=higher, d=fewest) == "c"
+    assert ranked({"off": outcomes(contacts=5), "a": outcomes(contacts=7, score=0.6)}).recommended == "a"
 
 
 def test_more_arrivals_beat_a_higher_score() -> None:
-    arriving = outcomes(contacts=5, arrivals=400, score=0.4)
     lingering = outcomes(contacts=5, arrivals=350, score=0.8)
-    assert ranked(a=lingering, b=lingering, c=lingering, d=arriving) == "d"
+    assert ranked({"off": lingering, "a": outcomes(contacts=5, arrivals=400, score=0.4)}).recommended == "a"
+
+
+def test_mode_that_harms_in_one_experiment_is_out_even_if_it_is_best_over_all() -> None:
+    harmed = {"off": outcomes(contacts=10), "a": outcomes(contacts=60), "b": outcomes(contacts=11)}
+    helped = {"off": outcomes(contacts=300), "a": outcomes(contacts=0), "b": outcomes(contacts=250)}
+    result = ranked(harmed, helped)
+    assert result.pooled_only == "a"
+    assert result.recommended == "b"
+    assert "a in experiment 0 (60 against 10)" in result.steps[0]
 
 
 @pytest.fixture(scope="module")
@@ -401,28 +412,45 @@ def small_study() -> study.Study:
         return study.compare()
 
 
-def test_study_has_every_experiment_gain_set_and_mode_once(small_study: study.Study) -> None:
-    keys = Counter((entry.experiment, entry.gains, entry.mode) for entry in small_study.aggregates)
+def test_study_has_every_experiment_side_gain_set_and_mode_once(small_study: study.Study) -> None:
+    keys = Counter(entry.key for entry in small_study.aggregates)
     assert set(keys.values()) == {1}
-    experiments = {experiment for experiment, _, _ in keys}
-    assert len(keys) == len(experiments) * 2 * len(study.MODES)
+    assert set(keys) == set(small_study.runs)
+    experiments = {key.experiment for key in keys}
+    assert len(keys) == len(experiments) * len(study.SIDES) * 2 * len(study.MODES)
     assert {"c1", "c2", "c3", "c4", "crowds of 3", "crowds of 12"} <= experiments
     assert small_study.recommended in study.MODES
 
 
+def test_noise_and_crowds_have_the_runs_that_were_asked_for(small_study: study.Study) -> None:
+    for key, runs in small_study.runs.items():
+        expected = 4 if key.experiment.startswith("crowds") else 3 if "noise" in key.experiment else 1
+        assert len(runs.outcome) == expected
+
+
+def test_ranking_leaves_out_single_runs_and_the_mild_noise(small_study: study.Study) -> None:
+    ranked_runs = 6 * 3 + 2 * 4
+    assert f"Runs with a contact, of {2 * ranked_runs}:" in small_study.rankings[0].steps[1]
+    assert f"Runs with a contact, of {ranked_runs}:" in small_study.rankings[1].steps[1]
+
+
 def test_off_differs_from_itself_in_no_run(small_study: study.Study) -> None:
-    own = [entry.against_off for entry in small_study.aggregates if entry.mode == "off"]
+    own = [entry.against_off for entry in small_study.aggregates if entry.key.mode == "off"]
     assert own
     assert set(own) == {statistics.Paired(0, 0, 1.0)}
 
 
 def test_single_runs_of_the_study_are_those_of_the_tables(small_study: study.Study, all_cells: list[Cell]) -> None:
     places = by_place(all_cells)
+    compared = 0
     for entry in small_study.aggregates:
-        if entry.mode == "off" and entry.arrivals.runs == 1:
-            table = f"6.{int(entry.experiment[1]) + 1}"
-            assert entry.median_arrival_time == places[table, entry.gains, "T_arrive"].measured
-            assert entry.mean_score == places[table, entry.gains, "H"].measured
+        key = entry.key
+        if key.mode == "off" and key.side == "decided afresh" and entry.arrivals.runs == 1:
+            table = f"6.{int(key.experiment[1]) + 1}"
+            assert entry.median_arrival_time == places[table, key.gains, "T_arrive"].measured
+            assert entry.mean_score == places[table, key.gains, "H"].measured
+            compared += 1
+    assert compared == 8
 
 
 def test_study_part_of_the_page_is_well_formed(

@@ -236,7 +236,7 @@ BAD_FILES = {
         ROOM + '[[obstacles]]\ntype = "moving_disc"\ncenter = [1, 1]\nvelocity = [1, 0]\n',
         OBSTACLE + r"\.radius must be given",
     ),
-    "not toml": ("start = [4.0,\n", r"scene\.toml must be a TOML file, got an error: .*line"),
+    "not toml": ("start = 4.0 0.6\n", r"scene\.toml must be a TOML file, got an error: .*line"),
     "key twice": (ROOM + "start = [1, 1]\n", r"scene\.toml must be a TOML file"),
     "not utf-8": (b"start = [4.0, 0.0]\n# caf\xe9\n", r"scene\.toml must be UTF-8 text, got byte 0xe9"),
     "binary": (bytes(range(256)), r"scene\.toml must be"),

@@ -11,7 +11,6 @@ import pkgutil
 import re
 import subprocess
 import sys
-import typing
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -258,7 +257,7 @@ def test_public_function_describes_parameters_result_and_use(function: Any) -> N
     signature = inspect.signature(function)
     assert found["Summary"].strip().splitlines()[0].endswith(".")
     assert set(signature.parameters) <= described(found.get("Parameters", ""))
-    if typing.get_type_hints(function).get("return") is not type(None):
+    if signature.return_annotation not in {None, "None"}:
         assert "Returns" in found
     if function.__module__.split(".")[1] not in NEEDS_NO_EXAMPLE:
         assert ">>> " in found.get("Examples", "")

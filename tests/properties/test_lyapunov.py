@@ -92,13 +92,16 @@ def quantiles(samples: list[Sample]) -> tuple[float, float]:
 @pytest.mark.parametrize(("mode", "states"), [("off", STATES), ("capped", 400), ("full", STATES)])
 def test_derivative_is_that_of_the_value_along_the_motion(mode: str, states: int) -> None:
     source = random.Random(557)
-    samples = []
+    samples, overridden = [], 0
     for _ in range(states):
         state = random_state(source, most_obstacles=3, boxes=False, least_gap=GAP)
         samples.append(sample(pf.Law(random_gains(source), pf.Stabilizing(mode)), state))
+        turns = [pf.geometry(body, state.position, state.velocity, state.goal).phi for body in state.obstacles]
+        overridden += any(side * phi < 0.0 for side, phi in zip(samples[-1].terms.side, turns, strict=True))
     quantile, left_out = quantiles(samples)
     assert quantile < IDENTITY
     assert left_out < SWITCHING_SHARE
+    assert overridden > states // 20, "states where a rule overrides the shortest turn"
 
 
 def test_full_stabilizing_force_never_lets_the_value_grow() -> None:

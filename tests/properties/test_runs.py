@@ -23,9 +23,9 @@ EXTREME_GAINS = [
     (0.5, 1e4, 17.0, 2.0),
     (50.0, 0.1, 0.1, 0.01),
 ]
-PATH = 1e-7
-"""m. The coordinates of the two runs differ by roundings of 1e-15 m at every step; a run that is
-not in line with an obstacle spreads them by less than a factor of 1e8 on its way."""
+PATH = 1e-8
+"""m. The coordinates of the two runs differ by roundings of 1e-15 m at every step, and a run in a
+passage between obstacles spreads them by up to 1e6 on its way."""
 
 
 def gain_sets(count: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from reference import plain_field as pf
 from reference.plain_settings import NEW, NEW_STAR
 
-LEAST_GAP = 1e-3  # m: d - r3, below it every term is dominated by the rounding of d
+LEAST_GAP = 1e-3  # m: d - r3 and |r2 - d|, below it the terms are dominated by the rounding of d
 
 
 class State(NamedTuple):
@@ -32,14 +32,14 @@ def gap_and_radii(source: random.Random, least_gap: float) -> tuple[float, float
     """Return d, r3, r2: mostly inside the active region, sometimes close to r3, sometimes outside."""
     r3 = source.uniform(0.2, 0.9)
     width = source.uniform(max(0.15, 1.5 * least_gap), 1.5)
-    kind = source.random()
+    kind, deepest = source.random(), 1.000001 * least_gap
     if kind < 0.15:
-        gap = width * source.uniform(1.0, 1.4)
+        gap = width * source.uniform(1.0, 1.4) + LEAST_GAP
     elif kind < 0.35:
-        gap = math.exp(source.uniform(math.log(least_gap), math.log(width)))
+        gap = math.exp(source.uniform(math.log(deepest), math.log(width - LEAST_GAP)))
     else:
-        gap = source.uniform(least_gap, width)
-    return r3 + max(gap, 1.000001 * least_gap), r3, r3 + width
+        gap = source.uniform(deepest, width - LEAST_GAP)
+    return r3 + gap, r3, r3 + width
 
 
 def random_disc(source: random.Random, position: pf.Vector, least_gap: float) -> pf.Round:
@@ -93,7 +93,7 @@ def random_state(
     least_gap: float = LEAST_GAP,
     least_speed: float = 0.0,
 ) -> State:
-    """Return a legal state, at least one obstacle near, every d - r3 at least ``least_gap``."""
+    """Return a legal state, every d - r3 at least ``least_gap`` and every |r2 - d| at least `LEAST_GAP`."""
     position = (source.uniform(-3.0, 3.0), source.uniform(-3.0, 3.0))
     velocity = pf.times(source.uniform(least_speed, 0.7), direction(source))
     obstacles: list[pf.Round | pf.Box] = []
@@ -129,6 +129,5 @@ def random_stabilizing(source: random.Random) -> pf.Stabilizing:
             pf.Stabilizing("capped"),
             pf.Stabilizing("capped", force_cap=source.uniform(0.5, 50.0)),
             pf.Stabilizing("capped", momentum_cap=source.uniform(0.01, 1.0)),
-            pf.Stabilizing("capped", force_cap=10.0, momentum_cap=0.3),
         ]
     )

@@ -1,1 +1,55 @@
-fn main(){}
+//! One evaluation of the force field, three active obstacles.
+
+mod scenes;
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use vff_core::forces::geometry::{Body, RobotState};
+use vff_core::gains::GainLanes;
+use vff_core::lanes::{Lanes, Real, Vec2};
+use vff_core::laws::{ForceFieldLaw, Law, Situation};
+use vff_core::scenario::Scenario;
+
+fn bodies(scenario: &Scenario) -> Vec<Body> {
+    let body = |placed: &vff_core::scenario::PlacedObstacle| Body {
+        shape: placed.obstacle.shape,
+        regions: placed.regions,
+        state: placed.obstacle.motion.at(1.0, &mut 0),
+    };
+    scenario.obstacles().iter().map(body).collect()
+}
+
+fn width<R: Real>(criterion: &mut Criterion, name: &str, mode: &str) {
+    let scenario = scenes::always_active();
+    let bodies = bodies(&scenario);
+    let sets = scenes::sets(16);
+    let gains = GainLanes::<R>::gather(sets[0], &sets[1..]);
+    let mut law = ForceFieldLaw::<R, false>::new(&scenes::law(mode), gains, &scenario);
+    let robot = RobotState {
+        position: Vec2 { x: R::from_fn(|lane| 2.0 + 0.01 * lane as f64), y: R::splat(0.6) },
+        velocity: Vec2::splat([-0.6, 0.1]),
+    };
+    let mut group = criterion.benchmark_group(format!("forces/{mode}"));
+    group.throughput(Throughput::Elements(R::WIDTH as u64));
+    group.bench_function(name, |bencher| {
+        bencher.iter(|| {
+            let situation =
+                Situation { bodies: black_box(&bodies), robot: black_box(robot), interval: 0.06 };
+            law.command(&situation)
+        });
+    });
+    group.finish();
+}
+
+fn forces(criterion: &mut Criterion) {
+    for mode in ["off", "capped", "full"] {
+        width::<f64>(criterion, "1", mode);
+        width::<Lanes<4>>(criterion, "4", mode);
+        width::<Lanes<8>>(criterion, "8", mode);
+        width::<Lanes<16>>(criterion, "16", mode);
+    }
+}
+
+criterion_group!(benches, forces);
+criterion_main!(benches);

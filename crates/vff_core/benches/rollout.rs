@@ -1,1 +1,59 @@
-fn main(){}
+//! Throughput of runs in force evaluations: one thread, the batch path, energy and distances
+//! included.
+
+mod scenes;
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use vff_core::laws::VirtualForceField;
+use vff_core::metrics::Weights;
+use vff_core::scenario::Scenario;
+use vff_core::simulate::{BatchOptions, Options, ScoredRun, Width, run_batch, simulate};
+
+fn batch(scenario: &Scenario, law: &VirtualForceField, width: Width) -> Vec<ScoredRun> {
+    let third = 1.0 / 3.0;
+    let options = BatchOptions {
+        run: Options::default(),
+        weights: Weights { arrival_time: third, avoidance: third, energy_saving: third },
+        descent: false,
+        threads: Some(1),
+        width: Some(width),
+    };
+    let scenarios = std::slice::from_ref(scenario);
+    run_batch(scenarios, law, &scenes::sets(512), &options, &|| false, &|_| ()).unwrap()
+}
+
+fn rollouts(criterion: &mut Criterion) {
+    let widths =
+        [("1", Width::One), ("4", Width::Four), ("8", Width::Eight), ("16", Width::Sixteen)];
+    for (scene, scenario) in
+        [("c4", scenes::configuration_4()), ("always_active", scenes::always_active())]
+    {
+        for mode in ["off", "capped", "full"] {
+            let law = scenes::law(mode);
+            let mut group = criterion.benchmark_group(format!("batch/{scene}/{mode}"));
+            for (name, width) in widths {
+                let rows = batch(&scenario, &law, width);
+                let evaluations = rows.iter().map(|row| row.run.force_evaluations).sum();
+                group.throughput(Throughput::Elements(evaluations));
+                group.bench_function(name, |bencher| {
+                    bencher.iter(|| batch(black_box(&scenario), &law, width));
+                });
+            }
+            group.finish();
+        }
+    }
+    let scenario = scenes::configuration_4();
+    let law = scenes::law("off");
+    criterion.bench_function("one_recorded_run/c4", |bencher| {
+        bencher.iter(|| simulate(black_box(&scenario), &law, &Options::default(), &|| false));
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(10);
+    targets = rollouts
+}
+criterion_main!(benches);

@@ -80,13 +80,13 @@ pub trait Real:
     fn zero() -> Self {
         Self::splat(0.0)
     }
-    /// The smaller of two numbers.
+    /// The smaller of two numbers; `other` where either is NaN.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// The larger of two numbers.
+    /// The larger of two numbers; `other` where either is NaN.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
@@ -320,6 +320,20 @@ impl<const N: usize> Real for Lanes<N> {
     fn copysign(mut self, sign: Self) -> Self {
         for (a, s) in self.0.iter_mut().zip(sign.0) {
             *a = a.copysign(s);
+        }
+        self
+    }
+    #[inline(always)]
+    fn min(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = if *a < b { *a } else { b };
+        }
+        self
+    }
+    #[inline(always)]
+    fn max(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = if b < *a { *a } else { b };
         }
         self
     }

@@ -200,6 +200,13 @@ impl Motion {
         self.presence == (f64::NEG_INFINITY, f64::INFINITY) && self.pieces.iter().all(stands)
     }
 
+    /// Largest speed at any time in m/s, or `None` for a motion that accelerates.
+    #[must_use]
+    pub fn speed_bound(&self) -> Option<f64> {
+        let steady = self.pieces.iter().all(|piece| piece.acceleration == [0.0; 2]);
+        steady.then(|| self.max_initial_speed())
+    }
+
     /// Largest speed at the begin of any piece, in m/s.
     #[must_use]
     pub fn max_initial_speed(&self) -> f64 {

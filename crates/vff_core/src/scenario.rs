@@ -17,6 +17,8 @@ pub struct PlacedObstacle {
     pub contact_distance: f64,
     /// Whether it never moves.
     pub stationary: bool,
+    /// Largest speed at any time in m/s, `None` if there is none.
+    pub speed_bound: Option<f64>,
 }
 
 /// The rules of a run.
@@ -173,7 +175,8 @@ fn place(robot: &HolonomicRobot, obstacle: Obstacle, control_period: f64) -> Res
         ));
     }
     let stationary = obstacle.motion.is_stationary();
-    Ok(PlacedObstacle { obstacle, regions, contact_distance, stationary })
+    let speed_bound = obstacle.motion.speed_bound();
+    Ok(PlacedObstacle { obstacle, regions, contact_distance, stationary, speed_bound })
 }
 
 fn check_ends(placed: &PlacedObstacle, start: [f64; 2], goal: [f64; 2]) -> Result<()> {

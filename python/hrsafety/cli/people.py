@@ -18,7 +18,7 @@ from hrsafety import navigation as nav
 from hrsafety.cli import output
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
-from hrsafety.scenarios.crossings import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
+from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
 __all__ = ["simulate_people"]
 
@@ -263,9 +263,14 @@ def _write(
     from hrsafety import plotting
 
     runs, people = _run_records(crossings, summary), _person_records(crossings, met)
-    return [
+    written = [
         output.write_csv(place / "runs.csv", list(runs[0]), (list(record.values()) for record in runs)),
         output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people)),
-        output.write_picture(place / "paths.png", plotting.paths([trajectory])),
+        output.write_picture(place / "paths.png", plotting.paths([trajectory], regions=False)),
         output.write_picture(place / "time_sequence.png", plotting.time_sequence(trajectory)),
+        output.write_picture(place / "outcomes.png", plotting.outcomes({"all runs": summary})),
     ]
+    if np.isfinite(summary.min_clearance).any():
+        picture = plotting.clearances({"all runs": summary})
+        written.append(output.write_picture(place / "clearances.png", picture))
+    return written

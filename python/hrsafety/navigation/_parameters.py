@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -53,14 +53,34 @@ def number(name: str, value: object) -> float:
         raise InvalidParameterError(name, "be a number", value) from None
 
 
+def flag(name: str, value: object) -> bool:
+    """Return ``value`` if it is a truth value, or say that it should have been."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidParameterError(name, "be True or False", value)
+    return bool(value)
+
+
+def sequence(name: str, rule: str, value: object) -> list[Any]:
+    """Return the elements of ``value``, or say what it should have been."""
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        raise InvalidParameterError(name, rule, value)
+    return list(value)
+
+
+def numbers(name: str, rule: str, value: object) -> npt.NDArray[np.float64]:
+    """Return ``value`` as a contiguous array; words, None and complex numbers are refused."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        raise InvalidParameterError(name, rule, value) from None
+    if array.dtype.kind not in "fiu":
+        raise InvalidParameterError(name, rule, value)
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
 def pair(name: str, value: Sequence[float] | npt.ArrayLike) -> Pair:
     """Return ``value`` as two floats, or say what it should have been."""
-    if isinstance(value, (str, bytes)):
-        raise InvalidParameterError(name, "be a pair (x, y) of numbers", value)
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidParameterError(name, "be a pair (x, y) of numbers", value) from None
+    array = numbers(name, "be a pair (x, y) of numbers", value)
     if array.shape != (2,):
         raise ShapeError(name, "(2,)", array.shape)
     return (float(array[0]), float(array[1]))
@@ -68,10 +88,7 @@ def pair(name: str, value: Sequence[float] | npt.ArrayLike) -> Pair:
 
 def points(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Return ``value`` as a contiguous (n, 2) array, or say what it should have been."""
-    try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidParameterError(name, "be an array of numbers", type(value).__name__) from None
+    array = numbers(name, "be an array of numbers", value)
     if array.ndim != 2 or array.shape[1] != 2:
         raise ShapeError(name, "(n, 2)", array.shape)
     return array

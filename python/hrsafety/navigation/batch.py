@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import number
+from hrsafety.navigation._parameters import flag, number, numbers, sequence
 from hrsafety.navigation.laws import VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator, check_weights
@@ -49,8 +49,10 @@ class BatchSummary:
     contacts_moving, contacts_standing : ndarray of int, shape (rows,)
         Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
         contact), and while it stood.
-    performance_total, performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (rows,)
-        H, H_T, H_D, H_E; H is 0 after a contact or without arrival.
+    performance_total : ndarray, shape (rows,)
+        H; 0 after a contact or without arrival.
+    performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (rows,)
+        H_T, H_D, H_E.
     descent_share : ndarray, shape (rows,)
         Share of the control periods, begun and ended outside every critical region, over
         which the Lyapunov function did not grow; NaN unless asked for.
@@ -176,7 +178,7 @@ def simulate_batch(
     >>> len(table), set(table.outcome.tolist())
     (9, {'arrived'})
     """
-    scenarios = list(scenarios)
+    scenarios = sequence("scenarios", "be a sequence of Scenario", scenarios)
     for index, scenario in enumerate(scenarios):
         _require(f"scenarios[{index}]", scenario, Scenario)
     _require("law", law, VirtualForceField)
@@ -185,6 +187,8 @@ def simulate_batch(
     for name, value in (("threads", threads), ("lanes", lanes)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
             raise InvalidParameterError(name, "be a positive integer or None", value)
+    if progress is not None and not callable(progress):
+        raise InvalidParameterError("progress", "be callable or None", progress)
     columns = _hrsafety.simulate_batch(
         [scenario._native for scenario in scenarios],
         law._native,
@@ -192,9 +196,9 @@ def simulate_batch(
         check_weights(weights),
         integrator=integrator,
         step=number("step", step),
-        hold=bool(hold),
-        stop_on_contact=bool(stop_on_contact),
-        descent=bool(descent),
+        hold=flag("hold", hold),
+        stop_on_contact=flag("stop_on_contact", stop_on_contact),
+        descent=flag("descent", descent),
         threads=threads,
         lanes=lanes,
         progress=progress,
@@ -210,14 +214,15 @@ def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.A
         unknown = sorted(set(gains) - set(law.GAIN_NAMES))
         if unknown:
             raise InvalidParameterError("gains", f"have keys among {', '.join(law.GAIN_NAMES)}", unknown[0])
-        columns = [np.asarray(gains.get(name, own), dtype=np.float64) for name, own in zip(law.GAIN_NAMES, law.gains, strict=True)]
+        given = {**dict(zip(law.GAIN_NAMES, law.gains, strict=True)), **gains}
+        columns = [numbers(f"gains[{name!r}]", "hold numbers", given[name]) for name in law.GAIN_NAMES]
         try:
             columns = list(np.broadcast_arrays(*columns))
         except ValueError:
             shapes = tuple(len(column) if column.ndim else 1 for column in columns)
             raise ShapeError("gains", "arrays that broadcast", shapes) from None
         return np.ascontiguousarray(np.stack([column.ravel() for column in columns], axis=1))
-    array = np.ascontiguousarray(gains, dtype=np.float64)
+    array = numbers("gains", "be an array of numbers, a mapping or None", gains)
     if array.ndim != 2 or array.shape[1] != 4:
         raise ShapeError("gains", "(n, 4)", array.shape)
     return array

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Parameters, number
+from hrsafety.navigation._parameters import Parameters, flag, number
 
 __all__ = ["StabilizingMode", "VirtualForceField"]
 
@@ -87,8 +87,9 @@ class VirtualForceField(Parameters):
         for name in optional:
             value = getattr(self, name)
             self._set(**{name: None if value is None else number(name, value)})
-        if not isinstance(self.pass_behind, bool):
-            raise InvalidParameterError("pass_behind", "be True or False", self.pass_behind)
+        self._set(pass_behind=flag("pass_behind", self.pass_behind))
+        if self.side_hysteresis is not None and not math.isfinite(self.side_hysteresis):
+            raise InvalidParameterError("side_hysteresis", "be None or an angle below pi", self.side_hysteresis)
         native = _hrsafety.VirtualForceField(
             gains=self.gains,
             stabilizing=self.stabilizing,

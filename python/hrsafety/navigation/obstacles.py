@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import Pair, Parameters, number, pair, points
+from hrsafety.navigation._parameters import Pair, Parameters, number, numbers, pair, points, sequence
 
 __all__ = ["Disc", "Human", "MovingDisc", "Obstacle", "Rectangle"]
 
@@ -134,10 +134,7 @@ class Rectangle(Obstacle):
 
 def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
     """Check the shapes of a recording and freeze it."""
-    try:
-        instants = np.ascontiguousarray(time, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidParameterError("time", "be an array of numbers", time) from None
+    instants = numbers("time", "be an array of numbers", time)
     places = points("position", position)
     if instants.ndim != 1:
         raise ShapeError("time", "(n,)", instants.shape)
@@ -151,10 +148,12 @@ def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
 def _segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]) -> tuple[Segment, ...]:
     """Freeze a list of (duration, velocity, acceleration)."""
     frozen = []
-    for index, segment in enumerate(segments):
-        if len(segment) != 3:
-            raise ShapeError(f"segments[{index}]", "(duration, velocity, acceleration)", (len(segment),))
-        duration, velocity, acceleration = segment
+    rule = "be (duration, velocity, acceleration)"
+    for index, segment in enumerate(sequence("segments", "be a list of (duration, velocity, acceleration)", segments)):
+        parts = sequence(f"segments[{index}]", rule, segment)
+        if len(parts) != 3:
+            raise InvalidParameterError(f"segments[{index}]", rule, segment)
+        duration, velocity, acceleration = parts
         frozen.append(
             (
                 number(f"segments[{index}].duration", duration),
@@ -235,6 +234,8 @@ class MovingDisc(Obstacle):
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(center=pair("center", self.center), acceleration=pair("acceleration", self.acceleration))
+        if self.path is None and not np.isfinite(self.center).all():
+            raise InvalidParameterError("center", "be finite", self.center)
         _moving(self, start=self.center, acceleration=self.acceleration, default_max_speed=None)
 
     @classmethod

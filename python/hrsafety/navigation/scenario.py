@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Pair, Parameters, number, pair
+from hrsafety.navigation._parameters import Pair, Parameters, number, pair, sequence
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
 
@@ -160,12 +160,10 @@ def _require(name: str, value: object, *kinds: type) -> None:
         raise InvalidParameterError(name, f"be a {words}", value)
 
 
-def _with_regions(
-    robot: HolonomicRobot, obstacles: Iterable[Obstacle], control_period: float
-) -> tuple[Obstacle, ...]:
+def _with_regions(robot: HolonomicRobot, obstacles: Iterable[Obstacle], control_period: float) -> tuple[Obstacle, ...]:
     """Return the obstacles with every region radius filled in."""
     complete = []
-    for index, obstacle in enumerate(obstacles):
+    for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
         _require(f"obstacles[{index}]", obstacle, Obstacle)
         if None in (obstacle.active_radius, obstacle.critical_radius):  # type: ignore[attr-defined]  # every obstacle has both
             radii = region_radii(robot, obstacle, control_period)
@@ -175,9 +173,7 @@ def _with_regions(
 
 
 def _sized(obstacle: Obstacle, radii: Regions) -> Obstacle:
-    missing = {
-        name: value for name, value in radii._asdict().items() if getattr(obstacle, name) is None
-    }
+    missing = {name: value for name, value in radii._asdict().items() if getattr(obstacle, name) is None}
     return replace(obstacle, **missing)  # type: ignore[type-var]  # obstacles are dataclasses
 
 

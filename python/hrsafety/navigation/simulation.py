@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import number, pair, points
+from hrsafety.navigation._parameters import flag, number, numbers, pair, points
 from hrsafety.navigation.laws import VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 
@@ -299,7 +299,7 @@ def force_field(
     """
     _check(scenario, law)
     places = points("position", position)
-    speeds = np.asarray(velocity, dtype=np.float64)
+    speeds = numbers("velocity", "be an array of numbers", velocity)
     if speeds.shape not in {(2,), places.shape}:
         raise ShapeError("velocity", f"(2,) or {places.shape}", speeds.shape)
     speeds = np.ascontiguousarray(np.broadcast_to(speeds, places.shape))
@@ -413,7 +413,12 @@ def simulate(
     """
     _check(scenario, law)
     fields = _hrsafety.simulate(
-        scenario._native, law._native, integrator, number("step", step), bool(hold), bool(stop_on_contact)
+        scenario._native,
+        law._native,
+        integrator,
+        number("step", step),
+        flag("hold", hold),
+        flag("stop_on_contact", stop_on_contact),
     )
     return Trajectory(scenario=scenario, law=law, **fields)
 
@@ -474,7 +479,7 @@ def evaluate(
     """
     _check(scenario, law)
     scores, run, nominal = _hrsafety.evaluate(
-        scenario._native, law._native, check_weights(weights), integrator, number("step", step), bool(hold)
+        scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)
     )
     return Performance(
         **scores,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["animate"]
 
-DPI = 90
+DPI = 85
 MARGIN = 1.2  # free space around the path of the robot, in m
 FASTEST_GIF = 50  # frames per second; viewers slow down anything faster
 MOST_FRAMES = 6000
@@ -46,9 +46,10 @@ def animate(
 
     Shown are the robot with its trail, its goal, every obstacle that is present, with an id in
     each moving one, and a clock. Stationary obstacles show their regions all the time, moving
-    ones while the robot is inside their active region. A contact leaves a red cross. The view
-    follows the whole path of the robot with a margin; whoever walks outside is out of view.
-    The file appears under its name only when it is complete.
+    ones while the robot is inside their active region; of more than six obstacles only
+    the border of the active one. A contact leaves a red cross. The view holds the whole path
+    of the robot with a margin; whoever walks outside is out of view. The file appears under
+    its name only when it is complete.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ class _Stage:
                 self.bodies.append(self._add_moving(axes, index, look.color, ids[index]))
             else:
                 edges: style.Properties = {"edgecolor": "white", "linewidth": 0.8, "zorder": 3.0, "animated": True}
-                self.fixed.append(shapes.body(obstacle, shapes.first_position(obstacle), facecolor=look.color, **edges))
+                self.fixed.append(shapes.body(obstacle, shapes.center(obstacle), facecolor=look.color, **edges))
         shapes.add(axes, self.fixed)
         trail: style.Properties = {"color": ROBOT_COLOR, "linewidth": 2.0, "zorder": 4.0, "animated": True}
         self.trail = axes.plot([], [], **trail)[0]
@@ -185,11 +186,20 @@ class _Stage:
         text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=3.3, animated=True, **letters)
         rings = []
         if self.regions:
-            rings = shapes.region_patches(obstacle, (0.0, 0.0), color)
+            rings = self._rings(obstacle, color)
             for ring in rings:
                 ring.set_animated(True)
             shapes.add(axes, rings)
         return index, body, text, rings
+
+    def _rings(self, obstacle: Any, color: str) -> list[Any]:
+        """Return the regions of a moving obstacle; of many obstacles only a border of the active one."""
+        if len(self.run.scenario.obstacles) <= shapes.MOST_COLORS:
+            return list(shapes.region_patches(obstacle, (0.0, 0.0), color))
+        active, _ = shapes.region_radii(obstacle)
+        border: style.Properties = {"fill": False, "linewidth": 0.5, "antialiased": False}  # small in a file
+        border |= {"edgecolor": _tint(color), "zorder": 1.1}
+        return [shapes.region(obstacle, (0.0, 0.0), active, **border)]
 
     def artists(self) -> list[Artist]:
         """Return everything that moves, from back to front."""
@@ -221,6 +231,13 @@ class _Stage:
         self.clock.set_text(f"{run.time[row]:5.2f} s")
 
 
+def _tint(color: str) -> tuple[float, ...]:
+    """Return a color half way to white."""
+    from matplotlib.colors import to_rgb
+
+    return tuple((1.0 + part) / 2.0 for part in to_rgb(color))
+
+
 def _add_circle(axes: Axes, radius: float, **look: Any) -> Any:
     """Add a circle at the origin that will be moved."""
     from matplotlib.patches import Circle
@@ -238,7 +255,7 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
     style.frame_scene(axes, limits)
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
         if regions and not shapes.is_mobile(obstacle):
-            shapes.add(axes, shapes.region_patches(obstacle, shapes.first_position(obstacle), look.color))
+            shapes.add(axes, shapes.region_patches(obstacle, shapes.center(obstacle), look.color))
     shapes.add_start_and_goal(axes, scenario)
     return figure, axes
 

@@ -99,7 +99,7 @@ def force_field(
     term : {"total", "attractive", "repulsive", "detour", "stabilizing"}
         Which force.
     obstacle_position : array_like, shape (m, 2), or None
-        Where the obstacles were at the time of the field, in m; where they are at first when
+        Where the obstacles were at the time of the field, in m; where they are at time 0 when
         ``None``.
     title : str or None
         Title of the figure.
@@ -172,7 +172,7 @@ def _checked_places(scenario: Scenario, obstacle_position: npt.ArrayLike | None)
     """Return one position for each obstacle, shape (m, 2)."""
     count = len(scenario.obstacles)
     if obstacle_position is None:
-        first = [shapes.first_position(obstacle) for obstacle in scenario.obstacles]
+        first = [shapes.first_position(obstacle) or (np.nan, np.nan) for obstacle in scenario.obstacles]
         return np.asarray(first, dtype=np.float64).reshape(count, 2)
     places = np.asarray(obstacle_position, dtype=np.float64)
     if places.shape != (count, 2):
@@ -243,7 +243,7 @@ def potential_valley(
         The Lyapunov function in N^2, or the magnitude of the repulsive force of all obstacles
         in N.
     obstacle_position : array_like, shape (m, 2), or None
-        Where the obstacles were at the time of the field, in m; where they are at first when
+        Where the obstacles were at the time of the field, in m; where they are at time 0 when
         ``None``.
     title : str or None
         Title of the figure.
@@ -283,7 +283,8 @@ def potential_valley(
     low, high = _color_limits(positive, _rim(values))
     levels = np.geomspace(low, high, LEVELS)
     label = "Lyapunov function V (N²)" if term == "potential" else "repulsive force (N)"
-    figure = style.new_figure(4.3 + (0.4 if title is not None else 0.0), title=title)
+    height = 1.4 + 3.4 * min(max(float(np.ptp(grid.y) / np.ptp(grid.x)), 0.7), 1.3)
+    figure = style.new_figure(height + (0.4 if title is not None else 0.0), title=title)
     grid_of_axes = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.0))
     _draw_contours(figure.add_subplot(grid_of_axes[0]), grid, values, levels)
     _draw_scene(figure.axes[0], scenario, places, filled=False)

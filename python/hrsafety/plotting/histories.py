@@ -86,7 +86,7 @@ def distances(
         axes.set_ylabel("distance (m)")
         if labels is not None or len(runs) > 1:
             axes.set_title(name, loc="left")
-        _mark_arrival(axes, run)
+        _mark_arrival(axes, run, 0.006 * inputs.time_limit(runs))
     panels[0].set_ylim(0.0, max(tops))
     panels[0].set_xlim(0.0, inputs.time_limit(runs))
     panels[-1].set_xlabel("time (s)")
@@ -156,18 +156,18 @@ def _more_handles(run: Trajectory, *, rest: bool, radii: bool) -> list[Line2D]:
     return handles
 
 
-def _mark_arrival(axes: Axes, run: Trajectory) -> None:
-    """Mark the instant of arrival, if there is one."""
+def _mark_arrival(axes: Axes, run: Trajectory, gap: float) -> None:
+    """Mark the instant of arrival, if there is one, with its time a gap in s before it."""
     if np.isfinite(run.arrival_time):
         axes.axvline(run.arrival_time, color=style.GOAL_COLOR, linewidth=1.2, zorder=1.6)
-        look: style.Properties = {
-            "color": style.GOAL_COLOR,
-            "fontsize": style.SMALL_FONT_SIZE,
+        look: style.Properties = {"color": style.GOAL_COLOR, "fontsize": style.SMALL_FONT_SIZE}
+        look |= {
             "ha": "right",
             "va": "top",
+            "bbox": {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0},
         }
-        text = f"arrival {run.arrival_time:.2f} s "
-        axes.text(run.arrival_time, 0.97, text, transform=axes.get_xaxis_transform(), zorder=5.0, **look)
+        text = f"arrival {run.arrival_time:.2f} s"
+        axes.text(run.arrival_time - gap, 0.97, text, transform=axes.get_xaxis_transform(), zorder=5.0, **look)
 
 
 @style.styled

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from hrsafety.navigation.obstacles import Obstacle
     from hrsafety.navigation.scenario import Scenario
 
 __all__ = ["layout"]
@@ -30,7 +31,9 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     """Draw a scenario before any run: start, goal, obstacles, and how they will move.
 
     An arrow at a moving obstacle shows the way of one second at its initial velocity, a
-    dotted line the way to its stop or its recorded path.
+    dotted line the way to its stop or its recorded path. Recorded obstacles that are absent at
+    time 0 are dotted lines only. Of more than six obstacles the moving ones are shown without
+    regions.
 
     Parameters
     ----------
@@ -69,7 +72,10 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     style.frame_scene(axes, limits)
     axes.plot(*zip(scenario.start, scenario.goal, strict=True), color="#B0B0B0", linewidth=1.0, zorder=1.5)
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
-        shapes.add_obstacle(axes, obstacle, shapes.first_position(obstacle), look.color, regions=regions)
+        place = shapes.first_position(obstacle)
+        if place is not None:
+            shown = regions and _shows_regions(scenario, obstacle)
+            shapes.add_obstacle(axes, obstacle, place, look.color, regions=shown)
         if isinstance(obstacle, (Human, MovingDisc)):
             _draw_motion(axes, obstacle, look.color)
     shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
@@ -78,28 +84,48 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     return figure
 
 
-def _motion_points(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
+def _shows_regions(scenario: Scenario, obstacle: Obstacle) -> bool:
+    """Return whether the regions of an obstacle are drawn."""
+    return len(scenario.obstacles) <= shapes.MOST_COLORS or not shapes.is_mobile(obstacle)
+
+
+def _way(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
     """Return where a moving obstacle is known to pass: its recording, or start and stop."""
     if obstacle.path is not None:
         return list(obstacle.path[1])
-    x, y = shapes.first_position(obstacle)
-    second = (x + obstacle.velocity[0] * SECOND, y + obstacle.velocity[1] * SECOND)
-    return [(x, y), obstacle.stop if obstacle.stop is not None else second]
+    start = obstacle.start if isinstance(obstacle, Human) else obstacle.center
+    return [start] if obstacle.stop is None else [start, obstacle.stop]
+
+
+def _arrow(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
+    """Return both ends of the way of the first second, or nothing for an obstacle that is absent or at rest."""
+    start, velocity = shapes.first_position(obstacle), obstacle.velocity
+    if start is None:
+        return []
+    if obstacle.path is not None and len(obstacle.path[0]) > 1:
+        time, places = (np.asarray(values) for values in obstacle.path)
+        first = min(max(int(np.searchsorted(time, 0.0, side="right")) - 1, 0), len(time) - 2)
+        velocity = tuple((places[first + 1] - places[first]) / (time[first + 1] - time[first]))
+    if math.hypot(*velocity) <= SLOWEST_WITH_DIRECTION:
+        return []
+    return [start, (start[0] + velocity[0] * SECOND, start[1] + velocity[1] * SECOND)]
 
 
 def _limits_of_layout(scenario: Scenario, *, regions: bool) -> style.Limits:
-    """Return limits that hold start, goal, obstacles and, for a few obstacles, their ways."""
+    """Return limits that hold start, goal, obstacles and, of few obstacles, their ways."""
     points: list[Any] = [scenario.start, scenario.goal]
     for obstacle in scenario.obstacles:
-        active, critical = shapes.region_radii(obstacle)
-        radius = (critical if shapes.is_mobile(obstacle) else active) if regions else 0.0
-        if len(scenario.obstacles) > shapes.MOST_COLORS and shapes.is_mobile(obstacle):
-            continue
         place = shapes.first_position(obstacle)
-        points.append(shapes.body(obstacle, place).get_extents().get_points())
-        points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
+        active, critical = shapes.region_radii(obstacle)
+        radius = critical if shapes.is_mobile(obstacle) else active
+        if place is not None:
+            points.append(shapes.body(obstacle, place).get_extents().get_points())
+            if regions and _shows_regions(scenario, obstacle):
+                points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
         if isinstance(obstacle, (Human, MovingDisc)):
-            points.append(_motion_points(obstacle))
+            points.append(_arrow(obstacle))
+            if len(scenario.obstacles) <= shapes.MOST_COLORS:
+                points.append(_way(obstacle))
     return inputs.view_limits(points, margin=MARGIN)
 
 
@@ -107,25 +133,14 @@ def _draw_motion(axes: Axes, obstacle: Human | MovingDisc, color: str) -> None:
     """Draw the way of one second as an arrow, and the known way as a dotted line."""
     from matplotlib.patches import FancyArrowPatch
 
-    way = np.asarray(_motion_points(obstacle), dtype=np.float64)
+    way = np.asarray(_way(obstacle), dtype=np.float64)
     axes.plot(way[:, 0], way[:, 1], ":", color=color, linewidth=1.6, zorder=2.5)
     if obstacle.stop is not None:
         axes.plot(*obstacle.stop, "|", markersize=12, markeredgewidth=2.0, color=color, zorder=3.2)
-    if obstacle.path is not None and len(way) > 1:
-        velocity = (way[1] - way[0]) / (obstacle.path[0][1] - obstacle.path[0][0])
-    else:
-        velocity = np.asarray(obstacle.velocity)
-    if np.hypot(*velocity) > SLOWEST_WITH_DIRECTION:
-        tip = way[0] + velocity * SECOND
-        arrow: style.Properties = {
-            "arrowstyle": "-|>",
-            "mutation_scale": 14,
-            "color": "black",
-            "linewidth": 1.5,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        }
-        axes.add_patch(FancyArrowPatch(tuple(way[0]), tuple(tip), zorder=4.5, **arrow))
+    ends = _arrow(obstacle)
+    if ends:
+        look: style.Properties = {"arrowstyle": "-|>", "mutation_scale": 14, "linewidth": 1.5}
+        axes.add_patch(FancyArrowPatch(*ends, color="black", shrinkA=0, shrinkB=0, zorder=4.5, **look))
 
 
 def _layout_handles(scenario: Scenario, *, regions: bool) -> list[Artist]:
@@ -134,7 +149,8 @@ def _layout_handles(scenario: Scenario, *, regions: bool) -> list[Artist]:
 
     robot: style.Properties = {"marker": "o", "markersize": 10, "color": style.RUN_COLORS[0], "linestyle": "none"}
     handles: list[Artist] = [Line2D([], [], label="robot", **robot), *shapes.start_and_goal_handles()]
-    handles += shapes.obstacle_handles(scenario.obstacles, regions=regions)
+    shown = regions and any(_shows_regions(scenario, obstacle) for obstacle in scenario.obstacles)
+    handles += shapes.obstacle_handles(scenario.obstacles, regions=shown)
     if any(shapes.is_mobile(obstacle) for obstacle in scenario.obstacles):
         arrow: style.Properties = {"marker": ">", "color": "black", "markersize": 7, "markevery": [1]}
         handles.append(Line2D([0, 1], [0, 0], label="way of 1 s", **arrow))

@@ -22,7 +22,9 @@ Frame = npt.NDArray[np.uint8]
 
 LAST_FRAME_TIME = 1.2  # s, for which the end of the run is held
 GIF_TICK_MS = 10  # a GIF counts time in hundredths of a second
-COLORS = 128
+COLORS = 64
+NEARLY_WHITE = 244  # pixels from here on are background to the palette
+KEPT_COLORS = (style.RUN_COLORS[0], style.GOAL_COLOR, style.CONTACT_COLOR, style.PERSON_COLORS[0], "#000000", "#FFFFFF")
 
 
 @contextmanager
@@ -47,7 +49,7 @@ def write_gif(path: Path, frames: Iterator[Frame], frames_per_second: float) -> 
     ends = np.round(np.arange(1, len(indexed) + 1) * 1000.0 / frames_per_second / GIF_TICK_MS) * GIF_TICK_MS
     durations = [int(duration) for duration in np.diff(ends, prepend=0.0)]
     durations[-1] = int(LAST_FRAME_TIME * 1000.0)
-    look: style.Properties = {"loop": 0, "optimize": False, "disposal": 1}
+    look: style.Properties = {"loop": 0, "optimize": True, "disposal": 1}
     indexed[0].save(path, save_all=True, append_images=indexed[1:], duration=durations, **look)
 
 
@@ -56,14 +58,13 @@ def _palette(pictures: Sequence[Image]) -> Image:
     from PIL import Image
 
     chosen = [pictures[i] for i in np.unique(np.linspace(0, len(pictures) - 1, 5).astype(int))]
-    width, height = chosen[0].size
-    sheet = Image.new("RGB", (width, height * len(chosen)))
-    for index, picture in enumerate(chosen):
-        sheet.paste(picture, (0, index * height))
-    palette = sheet.quantize(colors=COLORS, method=Image.Quantize.MEDIANCUT)
-    colors = np.array(palette.getpalette(), dtype=np.int64).reshape(-1, 3)
-    colors[np.argmax(colors.sum(axis=1))] = 255  # the cut grays the background a little
-    palette.putpalette(colors.ravel().tolist())
+    pixels = np.concatenate([np.asarray(picture).reshape(-1, 3) for picture in chosen])
+    inked = pixels[pixels.min(axis=1) < NEARLY_WHITE]
+    sheet = Image.fromarray(inked[np.newaxis])
+    palette = sheet.quantize(colors=COLORS - len(KEPT_COLORS), method=Image.Quantize.MEDIANCUT)
+    colors = np.array(palette.getpalette(), dtype=np.int64).reshape(-1, 3)[: COLORS - len(KEPT_COLORS)]
+    kept = np.array([[int(color[i : i + 2], 16) for i in (1, 3, 5)] for color in KEPT_COLORS])
+    palette.putpalette(np.concatenate([colors, kept]).ravel().tolist())
     return palette
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from hrsafety.navigation.obstacles import Obstacle
     from hrsafety.navigation.simulation import Trajectory
 
 __all__ = ["paths"]
@@ -39,8 +40,9 @@ def paths(
     are shown with their active and critical regions. A moving obstacle leaves a dotted path.
     If the robot entered its active region, it is shown, with its regions, where it was when
     the robot came closest, together with the robot and a line between the two; with several
-    runs, once for each run and edged in the color of that run. A first contact is marked by a
-    cross.
+    runs, once for each run and edged in the color of that run. Of more than six obstacles the
+    moving ones are shown without regions, but with their number. A first contact is marked by
+    a cross.
 
     Parameters
     ----------
@@ -87,9 +89,9 @@ def paths(
     style.frame_scene(axes, limits)
     for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
         if shapes.is_mobile(obstacle):
-            _draw_encounters(axes, runs, index, look.color, regions=regions)
+            _draw_encounters(axes, runs, index, look, regions=regions)
         else:
-            shapes.add_obstacle(axes, obstacle, shapes.first_position(obstacle), look.color, regions=regions)
+            shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), look.color, regions=regions)
     for index, run in enumerate(runs):
         _draw_path(axes, run, style.run_look(index))
     shapes.add_start_and_goal(axes, scenario, sorted({run.scenario.start for run in runs}))
@@ -114,14 +116,14 @@ def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool) -> style.Limit
     return inputs.view_limits(points, margin=MARGIN)
 
 
-def _draw_encounters(axes: Axes, runs: Sequence[Trajectory], index: int, color: str, *, regions: bool) -> None:
+def _draw_encounters(axes: Axes, runs: Sequence[Trajectory], index: int, look: shapes.Look, *, regions: bool) -> None:
     """Draw a moving obstacle's path, and where it was at the closest approach of each run."""
     from matplotlib.patches import Circle
 
     longest = max((run for run in runs if run.scenario.obstacles), key=lambda run: float(run.time[-1]))
     trace = longest.obstacle_position[:, index]
-    axes.plot(trace[:, 0], trace[:, 1], ":", color=color, linewidth=1.6, zorder=2.5)
-    several = len(runs) > 1
+    axes.plot(trace[:, 0], trace[:, 1], ":", color=look.color, linewidth=1.6, zorder=2.5)
+    several, many = len(runs) > 1, len(longest.scenario.obstacles) > shapes.MOST_COLORS
     for number, run in enumerate(runs):
         row = inputs.closest_row(run, index) if run.scenario.obstacles else None
         obstacle = runs[0].scenario.obstacles[index] if row is None else run.scenario.obstacles[index]
@@ -129,11 +131,21 @@ def _draw_encounters(axes: Axes, runs: Sequence[Trajectory], index: int, color: 
             continue
         place, robot = run.obstacle_position[row, index], run.position[row]
         edge = str(style.run_look(number)["color"]) if several else None
-        if regions:
-            shapes.add(axes, shapes.region_patches(obstacle, place, edge or color, filled=not several))
+        if regions and not many:
+            shapes.add(axes, shapes.region_patches(obstacle, place, edge or look.color, filled=not several))
         alpha = 0.55 if several else 0.9
-        ring: style.Properties = {"facecolor": color, "edgecolor": edge or "white", "linewidth": 1.6, "zorder": 3.2}
+        ring: style.Properties = {
+            "facecolor": look.color,
+            "edgecolor": edge or "white",
+            "linewidth": 1.6,
+            "zorder": 3.2,
+        }
         shapes.add(axes, [shapes.body(obstacle, place, alpha=alpha, **ring)])
+        if many:
+            letters: style.Properties = {"color": "white", "fontsize": style.SMALL_FONT_SIZE, "clip_on": True}
+            axes.text(
+                place[0], place[1], look.name.split()[-1], ha="center", va="center_baseline", zorder=5.8, **letters
+            )
         line_color = edge or style.run_look(number)["color"]
         axes.add_patch(
             Circle((robot[0], robot[1]), run.scenario.robot.radius, fill=False, color=line_color, zorder=3.5)
@@ -172,6 +184,12 @@ _CONTACT: style.Properties = {
 }
 
 
+def _has_regions(obstacles: Sequence[Obstacle]) -> bool:
+    """Return whether regions of any of these obstacles are drawn."""
+    few = len(obstacles) <= shapes.MOST_COLORS
+    return few or any(not shapes.is_mobile(obstacle) for obstacle in obstacles)
+
+
 def _path_handles(runs: Sequence[Trajectory], names: Sequence[str], *, regions: bool) -> list[Artist]:
     """Return the legend of a picture of paths."""
     from matplotlib.lines import Line2D
@@ -186,7 +204,7 @@ def _path_handles(runs: Sequence[Trajectory], names: Sequence[str], *, regions: 
     if any(np.isfinite(run.contact_time).any() for run in runs):
         handles.append(Line2D([], [], label="first contact", **_CONTACT))
     obstacles = next((run.scenario.obstacles for run in runs if run.scenario.obstacles), ())
-    handles += shapes.obstacle_handles(obstacles, regions=regions)
+    handles += shapes.obstacle_handles(obstacles, regions=regions and _has_regions(obstacles))
     if any(shapes.is_mobile(obstacle) for obstacle in obstacles):
         closest: style.Properties = {
             "color": style.NEUTRAL,

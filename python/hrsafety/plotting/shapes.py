@@ -64,12 +64,21 @@ def looks(obstacles: Sequence[Obstacle]) -> list[Look]:
     return result
 
 
-def first_position(obstacle: Obstacle) -> tuple[float, float]:
-    """Return where an obstacle is at first, in m."""
-    if isinstance(obstacle, Human):
-        return obstacle.start
-    center: tuple[float, float] = obstacle.center  # type: ignore[attr-defined]  # every other obstacle has one
-    return center
+def first_position(obstacle: Obstacle) -> tuple[float, float] | None:
+    """Return where an obstacle is at time 0, in m, or ``None`` if its recording does not hold that time."""
+    if isinstance(obstacle, (Human, MovingDisc)) and obstacle.path is not None:
+        time, places = obstacle.path
+        if not time[0] <= 0.0 <= time[-1]:
+            return None
+        x, y = np.asarray(places).T
+        return float(np.interp(0.0, time, x)), float(np.interp(0.0, time, y))
+    return obstacle.start if isinstance(obstacle, Human) else center(obstacle)
+
+
+def center(obstacle: Obstacle) -> tuple[float, float]:
+    """Return the center of a disc or rectangle, in m."""
+    place: tuple[float, float] = obstacle.center  # type: ignore[attr-defined]  # all but people have one
+    return place
 
 
 def rectangle_outline(rectangle: Rectangle, center: npt.ArrayLike, offset: float = 0.0) -> Array:

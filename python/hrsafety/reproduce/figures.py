@@ -8,6 +8,7 @@ off and capped.
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -19,7 +20,8 @@ from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
-from hrsafety.reproduce.study import MODES, NOISE_SCALE, Outcomes, Study
+from hrsafety.reproduce.ranking import BASELINE, Outcomes
+from hrsafety.reproduce.study import MODES, NOISE_SCALE, SIDES, Key, Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,6 +36,7 @@ SCENES = {
     "c4": "a person, a disc and a rectangle",
 }
 
+STILL = ("c1", "c3")  # configurations without people: nothing is ever touched
 COMPARED_MODES = ("off", "capped, 10 N", "capped, 0.1 m|V|/T_s")
 # Numbers of the source's figures: paths and distances with several laws, and of the new law alone.
 PATHS = {"c1": ("6.4", "6.6"), "c2": ("6.8", "6.8"), "c3": ("6.10", "6.13"), "c4": ("6.15", "6.17")}
@@ -84,23 +87,26 @@ def of_study(study: Study) -> list[Picture]:
         Two pictures for each kind of crowd and one for each kind of noise.
     """
     pictures = []
-    for experiment, by_gains in study.runs.items():
+    side = next(iter(SIDES))
+    for experiment in dict.fromkeys(key.experiment for key in study.runs):
         groups = {
-            f"{GAIN_LABELS[gains]}, {mode}": own for gains, modes in by_gains.items() for mode, own in modes.items()
+            f"{GAIN_LABELS[gains]}, {mode}": study.runs[Key(experiment, side, gains, mode)]
+            for gains in GAIN_SETS
+            for mode in MODES
         }
-        runs = len(next(iter(groups.values())).outcome)
-        if runs == 1:
+        runs = len(groups[f"{GAIN_LABELS['new_vff']}, {BASELINE}"].outcome)
+        if runs == 1 or experiment.startswith(STILL):
             continue
-        name = "".join(letter if letter.isalnum() else "-" for letter in experiment).replace("--", "-")
-        caption = f"How {runs} runs ended, {experiment}, by gain set and mode of the stabilizing force."
+        name = re.sub(r"[^a-z0-9]+", "-", experiment)
+        words = f"{runs} runs, {experiment.replace('+-', '±')}"
+        caption = f"How the runs ended by gain set and mode of the stabilizing force: {words}."
         pictures.append(picture(f"outcomes-{name}", caption, _outcomes(groups)))
-        if experiment.startswith("crowds"):
-            for gains, modes in by_gains.items():
-                caption = (
-                    f"Least clearance, {runs} {experiment}, {GAIN_LABELS[gains]}, by mode of the stabilizing force."
-                )
-                drawn = plotting.clearances({mode: own.clearance for mode, own in modes.items()})
-                pictures.append(picture(f"clearances-{name}-{gains.replace('_', '-')}", caption, drawn))
+        for gains, label in GAIN_LABELS.items() if experiment.startswith("crowds") else ():
+            caption = f"Least clearance with {label} by mode of the stabilizing force: {words}."
+            drawn = plotting.clearances(
+                {mode: study.runs[Key(experiment, side, gains, mode)].clearance for mode in MODES}
+            )
+            pictures.append(picture(f"clearances-{name}-{gains.replace('_', '-')}", caption, drawn))
     return pictures
 
 
@@ -129,8 +135,12 @@ def picture(name: str, caption: str, figure: Figure) -> Picture:
     Picture
         Rendered as PNG.
     """
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=DOTS_PER_INCH)
+    from PIL import Image  # comes with matplotlib
+
+    drawn, content = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)
+    # A palette makes a page of forty pictures small enough for a phone.
+    Image.open(drawn).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(content, format="png", optimize=True)
     return Picture(name=name, caption=caption, png=content.getvalue())
 
 

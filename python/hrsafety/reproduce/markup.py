@@ -14,7 +14,21 @@ from hrsafety.reproduce.names import TABLE_TITLES, column_label, row_label
 __all__ = ["by_table", "counts", "figure", "head", "scroll", "table_of_cells"]
 
 # Columns of words, aligned left.
-_LEFT = frozenset({"Table", "Row", "Quantity", "Reason", "Change", "Where", "Gains", "Mode", "Least d (m)"})
+_LEFT = frozenset(
+    {
+        "Table",
+        "Row",
+        "Quantity",
+        "Reason",
+        "Change",
+        "Where",
+        "Gains",
+        "Mode",
+        "Least d (m)",
+        "Side of a detour",
+        "Without rule 1",
+    }
+)
 _UNITS_OF_RESULTS = frozenset({"s", "J", "m"})
 # Class and words of a verdict; the mark says the same as the color.
 _VERDICTS = {None: ("none", "&ndash;"), True: ("good", "&#10003; yes"), False: ("bad", "&#10007; no")}

@@ -80,7 +80,7 @@ def study_json(study: Study) -> str:
     """
     content = {
         "recommended": study.recommended,
-        "rankings": {name: asdict(ranking) for name, ranking in study.rankings.items()},
+        "rankings": [asdict(ranking) for ranking in study.rankings],
         "aggregates": [_flat(aggregate) for aggregate in study.aggregates],
     }
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -88,7 +88,7 @@ def study_json(study: Study) -> str:
 
 def _flat(aggregate: Aggregate) -> dict[str, Any]:
     """Return an aggregate as one level of columns with units; unknown numbers are None."""
-    row: dict[str, Any] = {name: getattr(aggregate, name) for name in ("experiment", "gains", "mode")}
+    row: dict[str, Any] = aggregate.key._asdict()
     row["runs"] = aggregate.arrivals.runs
     for name in ("contacts_moving", "contacts_standing", "contacts", "arrivals"):
         share = getattr(aggregate, name)

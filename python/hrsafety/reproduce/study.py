@@ -3,67 +3,56 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.reproduce.measured import GAIN_SETS
+from hrsafety.reproduce.names import GAIN_LABELS
+from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank
 from hrsafety.reproduce.statistics import Paired, Share, compare_paired, wilson
 
-__all__ = ["MODES", "Aggregate", "Outcomes", "Ranking", "Study", "compare"]
+__all__ = ["MODES", "SIDES", "Aggregate", "Key", "Study", "compare"]
 
 MODES: Mapping[str, Mapping[str, Any]] = {
-    "off": {"stabilizing": "off"},
+    BASELINE: {"stabilizing": "off"},
     "capped, 10 N": {"stabilizing": "capped", "stabilizing_force_cap": 10.0},
     "capped, 0.1 m|V|/T_s": {"stabilizing": "capped", "stabilizing_momentum_cap": 0.1},
     "full": {"stabilizing": "full"},
 }
 """Compared modes: name to the parameters of `hrsafety.navigation.VirtualForceField`."""
+SIDES: Mapping[str, float | None] = {"decided afresh": None, "kept beyond 3 rad": 3.0}
+"""Rules for the side of a detour: name to ``side_hysteresis`` in rad; the first is the default."""
 
 CONFIGURATIONS = ("c1", "c2", "c3", "c4")
+WITH_PEOPLE = ("c2", "c4")
 NOISE_SEEDS = 200
 NOISE_SCALE = 0.025
+# Gaussian error with the mean error of 4 mm that the source's camera had.
+CAMERA_SCALE = 0.0032
 CROWD_SEEDS = 500
 CROWD_SIZES = (3, 12)
-# Differences of fewer runs than chance gives once in twenty are no differences.
-SIGNIFICANCE = 0.05
 
 
-@dataclass(frozen=True, slots=True)
-class Outcomes:
-    """Runs of one mode, in the order of the scenarios.
+class Key(NamedTuple):
+    """What was run: experiment, rule for the side, gain set, mode."""
 
-    Attributes
-    ----------
-    outcome : ndarray of str, shape (n,)
-        How they ended.
-    moving, standing, arrived : ndarray of bool, shape (n,)
-        Whether the moving robot touched anything, the standing robot did, the goal was reached.
-    time, score, clearance, descent : ndarray, shape (n,)
-        Arrival time in s, H, least clearance in m, share of periods with V not growing.
-    distance : ndarray, shape (n, m)
-        Least distance to each obstacle in m.
-    """
+    experiment: str
+    side: str
+    gains: str
+    mode: str
 
-    outcome: npt.NDArray[np.str_]
-    moving: npt.NDArray[np.bool_]
-    standing: npt.NDArray[np.bool_]
-    arrived: npt.NDArray[np.bool_]
-    time: npt.NDArray[np.float64]
-    score: npt.NDArray[np.float64]
-    clearance: npt.NDArray[np.float64]
-    descent: npt.NDArray[np.float64]
-    distance: npt.NDArray[np.float64]
 
-    @property
-    def contact(self) -> npt.NDArray[np.bool_]:
-        """Whether anything was touched, shape (n,)."""
-        return self.moving | self.standing
+class _Experiment(NamedTuple):
+    """Scenarios under a name; some are shown but do not enter the ranking."""
+
+    name: str
+    places: list[nav.Scenario]
+    ranked: bool
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,7 +61,7 @@ class Aggregate:
 
     Attributes
     ----------
-    experiment, gains, mode : str
+    key : Key
         Which.
     contacts_moving, contacts_standing, contacts, arrivals : Share
         Runs in which the moving robot, the standing robot or either touched something, and
@@ -91,9 +80,7 @@ class Aggregate:
         Runs with a contact in this mode only, and with the force off only.
     """
 
-    experiment: str
-    gains: str
-    mode: str
+    key: Key
     contacts_moving: Share
     contacts_standing: Share
     contacts: Share
@@ -108,53 +95,38 @@ class Aggregate:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Ranking:
-    """The modes in the order of merit, and how it was found.
-
-    Attributes
-    ----------
-    recommended : str
-        Mode with the fewest contacts; among those that chance cannot tell from it, the one
-        with most arrivals; among those again, the one with the highest mean score.
-    steps : tuple of str
-        One sentence for each of the three steps.
-    """
-
-    recommended: str
-    steps: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Study:
     """All comparisons.
 
     Attributes
     ----------
     aggregates : tuple of Aggregate
-        One for each experiment, gain set and mode.
-    rankings : dict of str to Ranking
-        For each gain set, and for both together (``"both gain sets"``).
-    runs : dict of str to dict
-        Runs of each experiment, by gain set and mode.
+        One for each experiment, rule for the side, gain set and mode.
+    rankings : tuple of Ranking
+        For both gain sets together and each alone, for each rule for the side; first the one
+        that decides.
+    runs : dict of Key to Outcomes
+        All runs.
     """
 
     aggregates: tuple[Aggregate, ...]
-    rankings: dict[str, Ranking]
-    runs: dict[str, dict[str, dict[str, Outcomes]]]
+    rankings: tuple[Ranking, ...]
+    runs: dict[Key, Outcomes]
 
     @property
     def recommended(self) -> str:
-        """Mode that all runs together recommend."""
-        return self.rankings["both gain sets"].recommended
+        """Mode recommended by both gain sets together, with the default rule for the side."""
+        return self.rankings[0].recommended
 
 
 def compare(progress: Callable[[str], object] | None = None) -> Study:
     """Run every mode in every experiment, with common random numbers, and rank the modes.
 
-    The experiments are the configurations c1 to c4 as they are; the same with 200 seeds of
+    The experiments: configurations c1 to c4 as they are; the same with 200 seeds of
     measurement noise (uniform, +-0.025 m, sampled each control period, velocities by backward
-    difference) of the moving obstacles, and of robot and obstacles; and 500 crowds each of 3
-    and 12 walking people. The ranking is over all runs with noise or crowds.
+    difference) of the moving obstacles, and of robot and moving obstacles; 500 crowds each of 3
+    and 12 walking people. They decide by `hrsafety.reproduce.ranking.rank`. Shown beside them
+    are c1 to c4 with the milder noise of a camera, and all of it with the side of a detour kept.
 
     Parameters
     ----------
@@ -166,121 +138,111 @@ def compare(progress: Callable[[str], object] | None = None) -> Study:
     Study
         Aggregates and recommended mode.
     """
-    aggregates: list[Aggregate] = []
-    runs: dict[str, dict[str, dict[str, Outcomes]]] = {}
-    pooled: dict[str, dict[str, list[Outcomes]]] = {name: {mode: [] for mode in MODES} for name in GAIN_SETS}
-    for experiment, places in _experiments():
+    runs: dict[Key, Outcomes] = {}
+    ranked: list[str] = []
+    for experiment in _experiments():
         if progress is not None:
-            progress(f"stabilizing: {experiment}, {len(places)} runs x {len(GAIN_SETS)} gain sets x {len(MODES)} modes")
-        outcomes = runs[experiment] = _run(places)
-        for name, modes in outcomes.items():
-            aggregates += [_aggregate(experiment, name, mode, modes) for mode in MODES]
-            if len(places) > 1:
-                for mode, outcome in modes.items():
-                    pooled[name][mode].append(outcome)
-    joined = {name: {mode: _joined(parts) for mode, parts in modes.items()} for name, modes in pooled.items()}
-    rankings = {name: _rank(modes) for name, modes in joined.items()}
-    both = {mode: _joined([modes[mode] for modes in joined.values()]) for mode in MODES}
-    rankings["both gain sets"] = _rank(both)
-    return Study(aggregates=tuple(aggregates), rankings=rankings, runs=runs)
+            laws = len(SIDES) * len(GAIN_SETS) * len(MODES)
+            progress(f"stabilizing: {experiment.name}, {len(experiment.places)} scenarios x {laws} laws")
+        runs |= _run(experiment)
+        ranked += [experiment.name] if experiment.ranked else []
+    aggregates = tuple(_aggregate(key, runs) for key in runs)
+    return Study(aggregates=aggregates, rankings=tuple(_rankings(runs, ranked)), runs=runs)
 
 
-def _experiments() -> list[tuple[str, list[nav.Scenario]]]:
-    """Return the experiments: name and scenarios."""
+def _experiments() -> Iterator[_Experiment]:
     plain = {name: scenarios.configuration(name) for name in CONFIGURATIONS}
-    experiments = [(name, [scenario]) for name, scenario in plain.items()]
-    for name, of, words in (
-        *((name, "obstacles", "noisy people") for name in ("c2", "c4")),
-        *((name, "both", "noisy people and robot") for name in CONFIGURATIONS),
-    ):
-        noise = nav.Measurement(scale=NOISE_SCALE, distribution="uniform", of=of)  # type: ignore[arg-type]  # literals above
-        seeds = [replace(plain[name], measurement=noise, seed=seed) for seed in range(NOISE_SEEDS)]
-        experiments.append((f"{name}, {words}", seeds))
+    for name, scenario in plain.items():
+        yield _Experiment(name, [scenario], ranked=False)
+    uniform = f"noise +-{NOISE_SCALE} m"
+    for name in WITH_PEOPLE:
+        yield _noisy(f"{name}, {uniform}, people", plain[name], "uniform", NOISE_SCALE, "obstacles")
+    for name, scenario in plain.items():
+        yield _noisy(f"{name}, {uniform}, people and robot", scenario, "uniform", NOISE_SCALE, "both")
+    for name, scenario in plain.items():
+        camera = _noisy(f"{name}, camera noise, people and robot", scenario, "gaussian", CAMERA_SCALE, "both")
+        yield camera._replace(ranked=False)
     for people in CROWD_SIZES:
         crowds = [scenarios.random_crowd(people, seed=seed) for seed in range(CROWD_SEEDS)]
-        experiments.append((f"crowds of {people}", crowds))
-    return experiments
+        yield _Experiment(f"crowds of {people}", crowds, ranked=True)
 
 
-def _run(places: Sequence[nav.Scenario]) -> dict[str, dict[str, Outcomes]]:
-    """Run all gain sets and modes; return outcomes by gain set and mode."""
-    outcomes: dict[str, dict[str, Outcomes]] = {name: {} for name in GAIN_SETS}
-    for mode, options in MODES.items():
-        law = nav.VirtualForceField(**options)
-        summary = nav.simulate_batch(places, law, np.array(list(GAIN_SETS.values())), descent=True)
-        for index, name in enumerate(GAIN_SETS):
-            rows = slice(index * len(places), (index + 1) * len(places))
-            outcomes[name][mode] = Outcomes(
-                outcome=summary.outcome[rows],
-                moving=summary.contacts_moving[rows] > 0,
-                standing=summary.contacts_standing[rows] > 0,
-                arrived=np.isfinite(summary.arrival_time[rows]),
-                time=summary.arrival_time[rows],
-                score=summary.performance_total[rows],
-                clearance=summary.min_clearance[rows],
-                descent=summary.descent_share[rows],
-                distance=summary.min_distance[rows],
-            )
-    return outcomes
+def _noisy(
+    name: str,
+    scenario: nav.Scenario,
+    distribution: Literal["uniform", "gaussian"],
+    scale: float,
+    of: Literal["obstacles", "both"],
+) -> _Experiment:
+    noise = nav.Measurement(scale=scale, distribution=distribution, of=of)
+    places = [replace(scenario, measurement=noise, seed=seed) for seed in range(NOISE_SEEDS)]
+    return _Experiment(name, places, ranked=True)
 
 
-def _aggregate(experiment: str, gains: str, mode: str, modes: Mapping[str, Outcomes]) -> Aggregate:
-    own = modes[mode]
-    runs = len(own.arrived)
+def _run(experiment: _Experiment) -> dict[Key, Outcomes]:
+    """Run all rules for the side, gain sets and modes; return them in this order."""
+    count = len(experiment.places)
+    runs: dict[Key, Outcomes] = {}
+    for side, angle in SIDES.items():
+        for mode, options in MODES.items():
+            law = nav.VirtualForceField(**options, side_hysteresis=angle)
+            summary = nav.simulate_batch(experiment.places, law, np.array(list(GAIN_SETS.values())), descent=True)
+            for index, gains in enumerate(GAIN_SETS):
+                rows = slice(index * count, (index + 1) * count)
+                runs[Key(experiment.name, side, gains, mode)] = _outcomes(summary, rows)
+    ordered = [(side, gains, mode) for side in SIDES for gains in GAIN_SETS for mode in MODES]
+    return {key: runs[key] for key in (Key(experiment.name, *names) for names in ordered)}
+
+
+def _outcomes(summary: nav.BatchSummary, rows: slice) -> Outcomes:
+    return Outcomes(
+        outcome=summary.outcome[rows],
+        moving=summary.contacts_moving[rows] > 0,
+        standing=summary.contacts_standing[rows] > 0,
+        arrived=np.isfinite(summary.arrival_time[rows]),
+        time=summary.arrival_time[rows],
+        score=summary.performance_total[rows],
+        clearance=summary.min_clearance[rows],
+        descent=summary.descent_share[rows],
+        distance=summary.min_distance[rows],
+    )
+
+
+def _aggregate(key: Key, runs: Mapping[Key, Outcomes]) -> Aggregate:
+    own = runs[key]
+    count = len(own.arrived)
     times = own.time[own.arrived]
     low, median = np.quantile(own.clearance, (0.05, 0.5)).tolist()
-    single = own.distance[0][np.isfinite(own.distance[0])] if runs == 1 else np.empty(0)
+    single = own.distance[0][np.isfinite(own.distance[0])] if count == 1 else np.empty(0)
     return Aggregate(
-        experiment=experiment,
-        gains=gains,
-        mode=mode,
-        contacts_moving=wilson(int(own.moving.sum()), runs),
-        contacts_standing=wilson(int(own.standing.sum()), runs),
-        contacts=wilson(int(own.contact.sum()), runs),
-        arrivals=wilson(int(own.arrived.sum()), runs),
+        key=key,
+        contacts_moving=wilson(int(own.moving.sum()), count),
+        contacts_standing=wilson(int(own.standing.sum()), count),
+        contacts=wilson(int(own.contact.sum()), count),
+        arrivals=wilson(int(own.arrived.sum()), count),
         median_arrival_time=float(np.median(times)) if len(times) else math.nan,
         mean_score=float(own.score.mean()),
         clearance_low=low,
         clearance_median=median,
         descent_share=float(np.nanmean(own.descent)) if np.isfinite(own.descent).any() else math.nan,
         min_distances=tuple(single.tolist()),
-        against_off=compare_paired(own.contact, modes["off"].contact),
+        against_off=compare_paired(own.contact, runs[key._replace(mode=BASELINE)].contact),
     )
 
 
-def _joined(parts: Sequence[Outcomes]) -> Outcomes:
-    """Return the outcomes of several experiments, end to end; distances are not carried."""
-    names = ("outcome", "moving", "standing", "arrived", "time", "score", "clearance", "descent")
-    columns = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return Outcomes(**columns, distance=np.empty((0, 0)))
-
-
-def _rank(modes: Mapping[str, Outcomes]) -> Ranking:
-    """Order the modes: fewest contacts, then most arrivals, then highest mean score."""
-    left, first = _not_worse(modes, list(MODES), {mode: own.contact for mode, own in modes.items()}, "a contact")
-    left, second = _not_worse(modes, left, {mode: ~own.arrived for mode, own in modes.items()}, "no arrival")
-    scores = {mode: float(modes[mode].score.mean()) for mode in left}
-    best = max(scores, key=lambda mode: scores[mode])
-    listed = ", ".join(f"{mode} {score:.3f}" for mode, score in scores.items())
-    return Ranking(recommended=best, steps=(first, second, f"Mean H: {listed}. Highest: {best}."))
-
-
-def _not_worse(
-    modes: Mapping[str, Outcomes], names: Sequence[str], bad: Mapping[str, npt.NDArray[np.bool_]], what: str
-) -> tuple[list[str], str]:
-    """Return the modes that chance cannot tell from the one with the fewest bad runs."""
-    counts = {name: int(bad[name].sum()) for name in names}
-    best = min(counts, key=lambda name: counts[name])
-    p_values = {name: compare_paired(bad[name], bad[best]).p_value for name in names if name != best}
-    # Holm: the smallest p value must pass the hardest test; the first that fails ends it.
-    worse: set[str] = set()
-    for rank, name in enumerate(sorted(p_values, key=lambda name: p_values[name])):
-        if p_values[name] * (len(p_values) - rank) >= SIGNIFICANCE:
-            break
-        worse.add(name)
-    left = [name for name in names if name not in worse]
-    runs = len(modes[best].arrived)
-    listed = ", ".join(
-        f"{name} {count}" + ("" if name == best else f" (p = {p_values[name]:.2g})") for name, count in counts.items()
-    )
-    return left, f"Runs of {runs} with {what}: {listed}. Not worse than {best} beyond chance: {', '.join(left)}."
+def _rankings(runs: Mapping[Key, Outcomes], ranked: Sequence[str]) -> Iterator[Ranking]:
+    """Rank the modes for each rule for the side: both gain sets together, then each alone."""
+    for side in SIDES:
+        by_gains = {
+            gains: {
+                f"{experiment}, {GAIN_LABELS[gains]}": {
+                    mode: runs[Key(experiment, side, gains, mode)] for mode in MODES
+                }
+                for experiment in ranked
+            }
+            for gains in GAIN_SETS
+        }
+        together = {name: modes for experiments in by_gains.values() for name, modes in experiments.items()}
+        yield rank(together, gains="both gain sets", side=side)
+        for gains, experiments in by_gains.items():
+            yield rank(experiments, gains=GAIN_LABELS[gains], side=side)

@@ -20,6 +20,8 @@ VARIED = {"K_1": ("C.2", "C.3"), "K_3": ("C.4", "C.5"), "K_5": ("C.6", "C.7"), "
 
 _GAIN_UNITS = {"K_1": "N/m", "K_3": "N/m", "K_5": "N/m^2", "b": "s"}
 _UNITS = {"T": "s", "L": "J", "d": "m", "H": "1"}
+# Scores of chapters 5 to 7 are printed with two digits.
+_DIGITS_OF_SCORES = 2
 # Half a unit of the last digit of the scores and sensitivities that the sensitivities come from.
 _SCORE_ROUNDING = 0.5e-4
 _SENSITIVITY_ROUNDING_PERCENT = 0.5e-2
@@ -175,9 +177,19 @@ def _explained(cell: Cell, printed_score: float | None = None) -> Cell:
     if not cell.within:
         cause = cause_of(cell.table, cell.row, cell.column)
         reason = " ".join(dict.fromkeys(text for text in (cause, reason) if text))
+        if _agrees_when_rounded(cell):
+            reason += " Rounded to the printed digits it is within tolerance."
         if printed_score is not None:
             reason += f" The printed T, L and d give H {printed_score:.3f} with the T* and L* measured here."
     return replace(cell, reason=reason.strip())
+
+
+def _agrees_when_rounded(cell: Cell) -> bool:
+    """Return whether a score would be within its tolerance with no more digits than printed."""
+    if cell.unit != "1" or cell.tolerance is None or not isinstance(cell.measured, float):
+        return False
+    rounded = round(cell.measured, _DIGITS_OF_SCORES)
+    return cell.table[0] != "C" and abs(rounded - float(cell.printed)) <= cell.tolerance + 1e-9
 
 
 def _by_change(rows: list[Row]) -> dict[float, Row]:

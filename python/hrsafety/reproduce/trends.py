@@ -74,6 +74,4 @@ def _draw(axes: Axes, cells: Sequence[Cell], name: str, color: str) -> None:
     measured = [cell.measured if isinstance(cell.measured, float) else float("nan") for cell in cells]
     printed = [float(cell.printed) for cell in cells]
     axes.plot(changes, measured, color=color, linewidth=1.6, label=f"{name}: measured")
-    axes.plot(
-        changes, printed, "o", color=color, markersize=4, fillstyle="none", label=f"{name}: printed"
-    )
+    axes.plot(changes, printed, "o", color=color, markersize=4, fillstyle="none", label=f"{name}: printed")

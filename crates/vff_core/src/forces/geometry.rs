@@ -9,6 +9,9 @@ use crate::obstacle::{Regions, Shape};
 /// rad; a plain equality would make results depend on the rotation of the scene.
 pub const COLLINEAR_ANGLE: f64 = 1e-9;
 
+/// An obstacle closer to the goal than this has no bearing to it, in m.
+const ON_THE_GOAL: f64 = 1e-9;
+
 /// State of the robots, one a lane.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotState<R> {
@@ -82,7 +85,7 @@ pub struct Approach<R: Real> {
     pub active: R::Mask,
     /// `u = D/d`.
     pub outward: Vec2<R>,
-    /// `W`: from the obstacle to the goal, in m.
+    /// `W`: from the obstacle to the goal, in m; zero for an obstacle on the goal.
     pub to_goal: Vec2<R>,
     /// `D`, in m.
     pub offset: Vec2<R>,
@@ -129,25 +132,24 @@ impl<R: Real> Approach<R> {
         let (point_velocity, sliding) = point_velocity(body, robot);
         let relative = robot.velocity - point_velocity;
         let bearing_rate = outward.cross(relative) * inverse;
-        let to_goal = goal - (robot.position - offset.vector);
-        let length_squared = to_goal.dot(to_goal);
-        let goal_bearing_rate = -to_goal.cross(point_velocity) / length_squared;
-        let (cross, dot) = (offset.vector.cross(to_goal), offset.vector.dot(to_goal));
+        // For a disc straight from its centre, so that one on the goal gives exactly zero.
+        let to_goal = match body.shape {
+            Shape::Disc { .. } => goal - Vec2::splat(body.state.position),
+            Shape::Rectangle { .. } => goal - (robot.position - offset.vector),
+        };
+        let away = to_goal.dot(to_goal).gt(R::splat(ON_THE_GOAL * ON_THE_GOAL));
+        let aim = Vec2::select(away, to_goal, Vec2::zero());
+        let (cross, dot) = (offset.vector.cross(aim), offset.vector.dot(aim));
         let behind = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
         Self {
             active,
             outward,
-            to_goal,
+            to_goal: aim,
             offset: offset.vector,
             distance,
             range_rate: outward.dot(relative),
             bearing_rate: R::select(sliding, R::zero(), bearing_rate),
-            // An obstacle exactly on the goal has no bearing to it.
-            goal_bearing_rate: R::select(
-                length_squared.gt(R::zero()),
-                goal_bearing_rate,
-                R::zero(),
-            ),
+            goal_bearing_rate: goal_bearing_rate(body, aim, point_velocity),
             angle: unsigned_angle(cross, dot),
             shortest_side: cross.sign(),
             collinear: behind,
@@ -155,6 +157,17 @@ impl<R: Real> Approach<R> {
             margin: distance - R::splat(body.regions.critical_radius),
         }
     }
+}
+
+/// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
+#[inline(always)]
+fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vec2<R>, point_velocity: Vec2<R>) -> R {
+    if matches!(body.shape, Shape::Disc { .. }) && body.state.velocity == [0.0; 2] {
+        return R::zero();
+    }
+    let length_squared = to_goal.dot(to_goal);
+    let rate = -to_goal.cross(point_velocity) / length_squared;
+    R::select(length_squared.gt(R::zero()), rate, R::zero())
 }
 
 /// Velocity of the point that distances are measured from, and where it slides along a face.

@@ -17,8 +17,9 @@ impl<R: Real> Repulsion<R> {
     /// Repulsion at an approach.
     #[inline(always)]
     pub fn new(approach: &Approach<R>) -> Self {
-        let potential = approach.depth * approach.depth / approach.margin;
-        Self { potential, rate: -(approach.range_rate * potential) / approach.margin }
+        let inverse = R::splat(1.0) / approach.margin;
+        let potential = approach.depth * approach.depth * inverse;
+        Self { potential, rate: -(approach.range_rate * potential * inverse) }
     }
 
     /// `F_Lambda = K_3 (L + b Ld) u` in N.

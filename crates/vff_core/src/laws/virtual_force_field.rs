@@ -199,7 +199,8 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             let detour = side::latch(&self.rules, &slot.approach, slot.side, R::zero());
             slot.detour.side = R::select(tied, detour.side, slot.detour.side);
             slot.detour.turn = R::select(tied, detour.turn, slot.detour.turn);
-            slot.detour.descent = R::select(tied, detour.descent, slot.detour.descent);
+            // Neither way round is shorter: the chosen one counts as the shortest.
+            slot.detour.descent = R::select(tied, R::splat(1.0), slot.detour.descent);
             slot.turning = Turning::new(&slot.approach, &slot.detour);
             slot.detouring = slot.turning.force(&self.gains, &slot.approach);
             let force = slot.detouring;

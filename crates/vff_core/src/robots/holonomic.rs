@@ -109,8 +109,9 @@ fn limited<R: Real>(vector: Vec2<R>, limit: f64) -> (Vec2<R>, R) {
     let magnitude = vector.dot(vector).sqrt();
     let over = magnitude.gt(limit);
     if over.any() {
-        let shortened = vector.scale(limit / magnitude);
-        (Vec2::select(over, shortened, vector), R::select(over, limit, magnitude))
+        // A factor of one leaves every bit as it is.
+        let factor = R::select(over, limit / magnitude, R::splat(1.0));
+        (vector.scale(factor), magnitude.min(limit))
     } else {
         (vector, magnitude)
     }

@@ -17,6 +17,9 @@ const REST_SPEED: f64 = 1e-3;
 /// A robot faster than this at a contact was moving, in m/s.
 pub const CONTACT_SPEED: f64 = 0.05;
 
+/// Room for rounding where a distance bound spares work, in m.
+const BOUND_MARGIN: f64 = 1e-6;
+
 /// Samples between two questions whether to stop; about a millisecond.
 const SAMPLES_PER_QUESTION: usize = 512;
 
@@ -110,6 +113,12 @@ struct Runs<'a, R: Real> {
     squared_current: R,
     path: R,
     running: R::Mask,
+    /// Change of velocity in one step of the held force, in m/s.
+    push: Vec2<R>,
+    /// Whether any robot can arrive before the next sample.
+    near_goal: bool,
+    /// Whether the least distance to each obstacle can change before the next sample.
+    watched: Vec<bool>,
     /// Last sample at which each robot was not at rest, in s.
     moved: R,
     end_time: R,
@@ -141,6 +150,9 @@ impl<'a, R: Real> Runs<'a, R> {
             squared_current: R::zero(),
             path: R::zero(),
             running: R::Mask::splat(true),
+            push: Vec2::zero(),
+            near_goal: true,
+            watched: vec![true; count],
             moved: R::zero(),
             end_time: unset,
             arrival_time: unset,
@@ -165,17 +177,17 @@ impl<'a, R: Real> Runs<'a, R> {
         let squared = first * first + second * second + third * third;
         let way = self.speed * R::splat(self.clock.step);
 
-        let to_goal = self.goal - self.position;
-        let tolerance = self.scenario.rules.arrival_tolerance;
-        let near = to_goal.dot(to_goal).le(R::splat(tolerance * tolerance));
-        let arrived = self.running & near;
-        if arrived.any() {
-            self.arrive(scene, before, time, arrived, squared, way);
+        if self.near_goal {
+            let to_goal = self.goal - self.position;
+            let tolerance = self.scenario.rules.arrival_tolerance;
+            let near = to_goal.dot(to_goal).le(R::splat(tolerance * tolerance));
+            let arrived = self.running & near;
+            if arrived.any() {
+                self.arrive(scene, before, time, arrived, squared, way);
+            }
         }
-        let going = self.running;
-        self.squared_current =
-            R::select(going, self.squared_current + squared, self.squared_current);
-        self.path = R::select(going, self.path + way, self.path);
+        self.squared_current += R::select(self.running, squared, R::zero());
+        self.path += R::select(self.running, way, R::zero());
         self.watch(&scene.bodies, time, R::Mask::none());
     }
 
@@ -184,17 +196,44 @@ impl<'a, R: Real> Runs<'a, R> {
     fn watch(&mut self, bodies: &[Body], time: f64, also: R::Mask) {
         let lanes = self.running | also;
         for (index, body) in bodies.iter().enumerate() {
-            if !body.state.present {
+            if !(self.watched[index] && body.state.present) {
                 continue;
             }
             let squared = body.offset(self.position).distance_squared;
             let least = &mut self.min_distance_squared[index];
-            *least = R::select(lanes, least.min(squared), *least);
+            *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
             let reach = self.scenario.obstacles[index].contact_distance;
             let touching = lanes & squared.le(R::splat(reach * reach));
             if touching.any() {
                 self.touch(index, time, touching);
             }
+        }
+    }
+
+    /// Finds out what cannot happen before the next sample, so that it need not be looked for:
+    /// nothing moves farther than its largest speed takes it.
+    #[inline(always)]
+    fn look_ahead(&mut self, bodies: &[Body]) {
+        let Clock { interval, steps_per_sample, .. } = self.clock;
+        if steps_per_sample == 1 {
+            return;
+        }
+        let own = self.scenario.robot.max_speed;
+        let to_goal = self.goal - self.position;
+        let reach = self.scenario.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
+        let near = to_goal.dot(to_goal).lt(R::splat(reach * reach));
+        self.near_goal = (near & self.running).any();
+        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+            let body = &bodies[index];
+            self.watched[index] = match placed.speed_bound {
+                Some(speed) if body.state.present => {
+                    let way = R::splat((own + speed) * interval + BOUND_MARGIN);
+                    let least = self.min_distance_squared[index].sqrt() + way;
+                    let squared = body.offset(self.position).distance_squared;
+                    (squared.lt(least * least) & self.running).any()
+                }
+                _ => true,
+            };
         }
     }
 
@@ -383,6 +422,8 @@ pub fn run_lanes<R: Real, L: Law<R>>(
             let bodies = if sensor.is_some() { &seen } else { &scene.bodies };
             command = law.command(&Situation { bodies, robot, interval: clock.interval });
             acceleration = scenario.robot.acceleration(command.force);
+            runs.push = acceleration.scale(R::splat(clock.step));
+            runs.look_ahead(&scene.bodies);
             let counted = runs.force_evaluations + R::splat(1.0);
             runs.force_evaluations = R::select(runs.running, counted, runs.force_evaluations);
             recorder.sample(&command, runs.running);
@@ -392,7 +433,7 @@ pub fn run_lanes<R: Real, L: Law<R>>(
         let before = runs.position;
         let later = (index + 1) as f64 * clock.step;
         match options.integrator {
-            Integrator::SemiImplicitEuler => semi_implicit_euler(&mut runs, acceleration),
+            Integrator::SemiImplicitEuler => semi_implicit_euler(&mut runs),
             Integrator::Rk4 if options.hold => rk4_held(&mut runs, acceleration),
             Integrator::Rk4 => rk4(&mut runs, acceleration, law, &mut scene, (time, later)),
         }
@@ -433,12 +474,10 @@ fn observe<R: Real>(
 }
 
 #[inline(always)]
-fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>, acceleration: Vec2<R>) {
-    let step = R::splat(runs.clock.step);
+fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
     let robot = &runs.scenario.robot;
-    (runs.velocity, runs.speed) =
-        robot.limited_velocity(runs.velocity + acceleration.scale(step));
-    runs.position = runs.position + runs.velocity.scale(step);
+    (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
+    runs.position = runs.position + runs.velocity.scale(R::splat(runs.clock.step));
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.

@@ -25,6 +25,8 @@ DEFAULT_SPACING = 4.0
 """Least time between two start instants in s."""
 PERSON_RADIUS, CRITICAL_RADIUS, ACTIVE_RADIUS = 0.4, 0.8, 2.1
 """Person and regions of Zeng (2011), chapter 6, in m."""
+NOMINAL_SHARE = 0.7
+"""Mean speed of a robot that people hold up, as a share of its largest speed."""
 _SIGHTING_STEP = 0.2
 """Step in s at which people are looked at to count the traffic."""
 
@@ -41,8 +43,8 @@ class Crossing:
         Instant that was meant before waiting for a free start, in s; differs from
         ``start_time`` only with ``selection="even"``.
     traffic : int
-        How many people come within the active radius of a robot that crosses straight at full
-        speed from ``start_time`` on and is not held up by anybody.
+        How many people come within the active radius of a robot that crosses straight at 0.7
+        of its largest speed from ``start_time`` on.
     people : tuple of int
         Id of the person behind each obstacle of the scenario.
     scenario : Scenario
@@ -58,7 +60,7 @@ class Crossing:
 
 @dataclass(frozen=True, slots=True)
 class _Route:
-    """Straight way of the robot at full speed."""
+    """Straight way of the robot at its nominal speed."""
 
     start: Array
     goal: Array
@@ -89,15 +91,15 @@ def crossings(
     """Return runs of a robot across the main flow of a recording.
 
     The robot goes straight across `Recording.main_flow`, from right to left of its direction
-    and through its centre. Start instants lie on a grid of 0.4 s and at least ``spacing``
-    apart, not later than one undisturbed crossing before the end of the recording, and never
-    at an instant at which somebody touches the start. They are chosen by the traffic alone,
-    never by how a run ends:
+    and through its center. Start instants lie on a grid of 0.4 s, one crossing at 0.7 of the
+    largest speed or more before the end of the recording, and never where somebody touches the
+    start. They are chosen by the traffic alone, never by how a run ends:
 
-    - ``"busiest"``: instants are taken in the order of their traffic, the number of people who
-      come within the active radius of a robot that crosses straight at full speed; the earlier
-      one first among equals. In ordinary recordings most instants meet few people, so evenly
-      spaced ones test little.
+    - ``"busiest"``: instants at least ``spacing`` apart are taken in the order of their
+      traffic, the number of people who come within the active radius of a robot that crosses
+      straight at 0.7 of its largest speed, about the mean speed of one that people hold up;
+      the earlier one first among equals. In ordinary recordings most instants meet few people,
+      so evenly spaced ones test little.
     - ``"even"``: instants are spaced evenly over the recording; one at which somebody touches
       the start is moved to the next free instant.
 
@@ -113,12 +115,12 @@ def crossings(
     runs : int
         How many runs.
     selection : {"busiest", "even"}
-        How start instants are chosen.
+        How start instants are chosen, see above.
     spacing : float
         Least time between two start instants for ``"busiest"``, in s.
     length : float or None
         Distance from start to goal in m. ``None``: both lie two standard deviations of the
-        flow and the critical radius away from its centre.
+        flow and the critical radius away from its center.
     robot : HolonomicRobot or None
         The robot; the default one when ``None``.
     time_limit : float
@@ -143,15 +145,17 @@ def crossings(
     >>> from hrsafety.datasets import Recording
     >>> walk = Recording(time_s=[0.0, 20.0], person=[7, 7], position=[[-10, 1], [10, 1]])
     >>> [run.start_time for run in scenarios.crossings(walk, runs=2)]
-    [5.6, 9.6]
+    [5.2, 9.2]
     """
     _check(recording, runs, selection)
-    robot = nav.HolonomicRobot() if robot is None else robot
-    body = {"radius": person_radius, "critical_radius": critical_radius, "active_radius": active_radius}
     numbers = {"spacing": spacing, "time_limit": time_limit, "person_radius": person_radius}
     numbers |= {"critical_radius": critical_radius, "active_radius": active_radius}
     for name, value in numbers.items():
         _positive(name, value)
+    if active_radius <= critical_radius:
+        rule = f"be larger than critical_radius = {critical_radius}"
+        raise InvalidParameterError("active_radius", rule, active_radius)
+    robot = nav.HolonomicRobot() if robot is None else robot
     route = _route(recording, length, critical_radius, robot)
     candidates = _candidates(recording, route)
     touch = robot.radius + person_radius
@@ -162,24 +166,35 @@ def crossings(
     else:
         chosen, planned = _evenly(candidates, free, runs)
     counts = dict(zip(free.tolist(), traffic.tolist(), strict=True))
-    result = []
-    for start_time, meant in zip(chosen, planned, strict=True):
-        obstacles = recording.humans(start_time, duration=time_limit, **body)
-        scenario = nav.Scenario(
-            start=_pair(route.start),
-            goal=_pair(route.goal),
-            obstacles=obstacles,
-            robot=robot,
-            time_limit=time_limit,
-            rest_time=time_limit,
+    body = {"radius": person_radius, "critical_radius": critical_radius, "active_radius": active_radius}
+    return [
+        Crossing(
+            start_time=start_time,
+            planned_time=meant,
+            traffic=counts[start_time],
+            people=tuple(recording.present(start_time, duration=time_limit).tolist()),
+            scenario=_scenario(recording, route, robot, start_time, time_limit, body),
         )
-        ids = tuple(recording.present(start_time, duration=time_limit).tolist())
-        result.append(
-            Crossing(
-                start_time=start_time, planned_time=meant, traffic=counts[start_time], people=ids, scenario=scenario
-            )
-        )
-    return result
+        for start_time, meant in zip(chosen, planned, strict=True)
+    ]
+
+
+def _scenario(
+    recording: Recording,
+    route: _Route,
+    robot: nav.HolonomicRobot,
+    start_time: float,
+    time_limit: float,
+    body: dict[str, float],
+) -> nav.Scenario:
+    return nav.Scenario(
+        start=_pair(route.start),
+        goal=_pair(route.goal),
+        obstacles=recording.humans(start_time, duration=time_limit, **body),
+        robot=robot,
+        time_limit=time_limit,
+        rest_time=time_limit,
+    )
 
 
 def _check(recording: object, runs: object, selection: object) -> None:
@@ -208,7 +223,7 @@ def _route(recording: Recording, length: float | None, clearance: float, robot: 
     _positive("length", length)
     center = np.array(flow.center)
     half = 0.5 * length * np.array([-flow.direction[1], flow.direction[0]])
-    return _Route(center - half, center + half, robot.max_speed)
+    return _Route(center - half, center + half, NOMINAL_SHARE * robot.max_speed)
 
 
 def _candidates(recording: Recording, route: _Route) -> Array:
@@ -238,7 +253,7 @@ def _along(time: Array, position: Array, instants: Array) -> Array:
 
 
 def _traffic(recording: Recording, starts: Array, route: _Route, reach: float) -> npt.NDArray[np.int64]:
-    """Count the people whom a robot that crosses undisturbed would have within its reach."""
+    """Count the people whom a robot at its nominal speed would have within its reach."""
     count = np.zeros(len(starts), dtype=np.int64)
     for person in recording.people():
         time, position = recording.track(int(person))

@@ -1,0 +1,64 @@
+//! Scenes that the benches share.
+
+use vff_core::forces::side::SideRules;
+use vff_core::forces::stabilizing::{Cap, Stabilizing};
+use vff_core::gains::Gains;
+use vff_core::laws::VirtualForceField;
+use vff_core::motion::Motion;
+use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::robots::HolonomicRobot;
+use vff_core::scenario::{Rules, Scenario};
+
+fn limits(active: f64, critical: f64) -> Limits {
+    Limits { active_radius: Some(active), critical_radius: Some(critical), max_speed: None }
+}
+
+fn scenario(obstacles: Vec<Obstacle>) -> Scenario {
+    let rules = Rules { time_limit: 20.0, ..Rules::default() };
+    Scenario::new(HolonomicRobot::default(), [3.9, 0.6], [0.0, 0.6], obstacles, rules).unwrap()
+}
+
+/// A walking person, a rectangle and a disc: configuration 4.
+pub fn configuration_4() -> Scenario {
+    let walk = Motion::moving([0.6, 0.6], [1.0, 0.0], [0.0; 2], Some([4.0, 0.6])).unwrap();
+    scenario(vec![
+        Obstacle::disc(0.4, walk, limits(2.1, 0.8)).unwrap(),
+        Obstacle::rectangle([2.3, 0.0], [1.4, 0.6], 0.0, limits(0.8, 0.4)).unwrap(),
+        Obstacle::disc_at_rest([2.45, 1.4], 0.1, limits(0.8, 0.4)).unwrap(),
+    ])
+}
+
+/// Three slowly moving discs whose active regions cover the whole way: nothing can be skipped.
+pub fn always_active() -> Scenario {
+    let disc = |center, velocity| {
+        let motion = Motion::moving(center, velocity, [0.0; 2], None).unwrap();
+        Obstacle::disc(0.1, motion, limits(7.0, 0.4)).unwrap()
+    };
+    scenario(vec![
+        disc([2.0, 3.2], [0.06, 0.0]),
+        disc([2.4, -2.1], [-0.06, 0.0]),
+        disc([5.5, 0.2], [0.0, 0.06]),
+    ])
+}
+
+/// The law in a mode of the stabilizing force.
+pub fn law(mode: &str) -> VirtualForceField {
+    let stabilizing = match mode {
+        "off" => Stabilizing::Off,
+        "capped" => Stabilizing::Capped(Cap::Momentum(0.1)),
+        _ => Stabilizing::Full,
+    };
+    let rules = SideRules { pass_behind: true, hysteresis: f64::INFINITY };
+    VirtualForceField::new(set(20.0, 17.0), stabilizing, rules).unwrap()
+}
+
+fn set(repulsive: f64, detour: f64) -> Gains {
+    Gains { attractive: 3.0, repulsive, detour, ratio: 0.25 }
+}
+
+/// Neighbouring gain sets that share `K_1` and `b`.
+pub fn sets(count: u32) -> Vec<Gains> {
+    (0..count)
+        .map(|k| set(15.0 + 10.0 * f64::from(k) / f64::from(count), 15.0 + f64::from(k % 16)))
+        .collect()
+}
