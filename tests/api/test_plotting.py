@@ -383,6 +383,18 @@ def test_lyapunov_function_has_gaps_in_critical_regions():
     assert "in a critical region" in [text.get_text() for text in axes.get_legend().get_texts()]
 
 
+def test_runs_with_nothing_to_show_are_drawn(tmp_path):
+    absent = nav.Human.from_path([100.0, 101.0], [[0.0, 9.0], [1.0, 9.0]], **WALKING)
+    alone = [made_up_run(), nav.simulate(scene(absent), LAW)]
+    for made_up in alone:
+        for function in (plotting.paths, plotting.time_sequence, plotting.distances, plotting.energy):
+            function(made_up).savefig(tmp_path / "picture.png")
+        undefined = dataclasses.replace(made_up, lyapunov=np.full(len(made_up.time), np.nan))
+        plotting.lyapunov(undefined).savefig(tmp_path / "picture.png")
+        plotting.layout(made_up.scenario).savefig(tmp_path / "picture.png")
+    assert np.isinf(alone[1].min_distance[0])
+
+
 # ---- fields -------------------------------------------------------------------------------------------
 
 

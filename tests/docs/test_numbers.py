@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,11 @@ def test_readme_prints_the_arrival_times_of_the_validation() -> None:
     times = [time for gains, name, time, *_ in ROWS if gains == "New" and name.startswith("c")]
     line = next(line for line in README.splitlines() if line.startswith("| arrival times of c1 to c4"))
     assert re.findall(r"(\d+\.\d+) \(", line) == times
+
+
+def test_tables_of_the_stabilizing_modes_are_what_is_computed() -> None:
+    script = runpy.run_path(str(REPOSITORY / "docs" / "measure_stabilizing.py"))
+    assert script["written"](VALIDATION) == script["page"]()
 
 
 @pytest.mark.parametrize("recording", ["zara01", "zara03"])

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Result, not_negative};
-use crate::lanes::{Real, Vec2};
+use crate::forces::geometry::Body;
 use crate::motion::BodyState;
 use crate::scenario::Scenario;
 
@@ -89,17 +89,25 @@ impl Noise {
     }
 }
 
-/// What the controller sees of robot and obstacles.
-#[derive(Clone, Debug)]
-pub struct Sensor<R> {
-    period: f64,
-    robot: Option<Noise>,
-    last_robot: Option<Vec2<R>>,
-    obstacles: Vec<Option<Noise>>,
-    last_obstacles: Vec<Option<[f64; 2]>>,
+/// Errors of one sample that every robot in the scene shares.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured {
+    /// Error of the robot's position in m, if it is measured with one.
+    pub robot_error: Option<[f64; 2]>,
+    /// Time between two samples in s.
+    pub period: f64,
 }
 
-impl<R: Real> Sensor<R> {
+/// What the controller sees of the scene.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    period: f64,
+    robot: Option<Noise>,
+    obstacles: Vec<Option<Noise>>,
+    last_positions: Vec<Option<[f64; 2]>>,
+}
+
+impl Sensor {
     /// Sensor of a scenario, or `None` if everything is known exactly.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
@@ -107,51 +115,45 @@ impl<R: Real> Sensor<R> {
         let noisy_robot = measurement.noisy != Noisy::Obstacles;
         let noisy_obstacles = measurement.noisy != Noisy::Robot;
         let noise = |stream| Noise::new(measurement, scenario.seed, stream);
+        let obstacles = (1..).zip(&scenario.obstacles);
         Some(Self {
             period: scenario.rules.control_period,
             robot: noisy_robot.then(|| noise(0)),
-            last_robot: None,
-            obstacles: (1..)
-                .zip(&scenario.obstacles)
-                .map(|(stream, placed)| (noisy_obstacles && !placed.stationary).then(|| noise(stream)))
+            obstacles: obstacles
+                .map(|(stream, placed)| {
+                    (noisy_obstacles && !placed.stationary).then(|| noise(stream))
+                })
                 .collect(),
-            last_obstacles: vec![None; scenario.obstacles.len()],
+            last_positions: vec![None; scenario.obstacles.len()],
         })
     }
 
-    /// Measured position and velocity of the robot; the first velocity is the true one.
-    pub fn robot(&mut self, position: Vec2<R>, velocity: Vec2<R>) -> (Vec2<R>, Vec2<R>) {
-        let Some(noise) = &mut self.robot else { return (position, velocity) };
-        let measured = position + Vec2::splat(noise.draw());
-        let rate = R::splat(self.period);
-        let seen = match self.last_robot {
-            Some(last) => {
-                let way = measured - last;
-                Vec2 { x: way.x / rate, y: way.y / rate }
-            }
-            None => velocity,
-        };
-        self.last_robot = Some(measured);
-        (measured, seen)
+    /// Measures the obstacles and draws the error of the robot's position.
+    pub fn measure(&mut self, actual: &[Body], seen: &mut [Body]) -> Measured {
+        for (index, (measured, body)) in seen.iter_mut().zip(actual).enumerate() {
+            measured.state = self.obstacle(index, body.state);
+        }
+        let robot_error = self.robot.as_mut().map(Noise::draw);
+        Measured { robot_error, period: self.period }
     }
 
     /// Measured state of an obstacle; the first velocity is the true one, the acceleration is
     /// not measured and counts as zero.
-    pub fn obstacle(&mut self, index: usize, state: BodyState) -> BodyState {
+    fn obstacle(&mut self, index: usize, state: BodyState) -> BodyState {
         let Some(noise) = &mut self.obstacles[index] else { return state };
         let [x, y] = noise.draw();
         if !state.present {
-            self.last_obstacles[index] = None;
+            self.last_positions[index] = None;
             return state;
         }
         let position = [state.position[0] + x, state.position[1] + y];
-        let velocity = match self.last_obstacles[index] {
+        let velocity = match self.last_positions[index] {
             Some(last) => {
                 [(position[0] - last[0]) / self.period, (position[1] - last[1]) / self.period]
             }
             None => state.velocity,
         };
-        self.last_obstacles[index] = Some(position);
+        self.last_positions[index] = Some(position);
         BodyState { position, velocity, acceleration: [0.0; 2], present: true }
     }
 }

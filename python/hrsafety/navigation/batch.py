@@ -17,6 +17,9 @@ from hrsafety.navigation.simulation import Array, Integrator, check_weights
 
 __all__ = ["BatchSummary", "simulate_batch"]
 
+# More would only exhaust the system before it says no.
+MOST_THREADS = 1024
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BatchSummary:
@@ -144,7 +147,7 @@ def simulate_batch(
     descent : bool
         Whether ``descent_share`` is computed; costs time.
     threads : int or None
-        Number of threads; all cores when ``None``.
+        Number of threads, up to 1024; all cores when ``None``.
     lanes : int or None
         Gain sets that are stepped side by side: 1, 4, 8 or 16; chosen when ``None``. Never
         changes a bit of the result.
@@ -187,6 +190,8 @@ def simulate_batch(
     for name, value in (("threads", threads), ("lanes", lanes)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
             raise InvalidParameterError(name, "be a positive integer or None", value)
+    if threads is not None and threads > MOST_THREADS:
+        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
     if progress is not None and not callable(progress):
         raise InvalidParameterError("progress", "be callable or None", progress)
     columns = _hrsafety.simulate_batch(

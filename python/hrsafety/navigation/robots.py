@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from hrsafety import _hrsafety
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Parameters, number
+from hrsafety.navigation._parameters import Parameters, number, sequence
 
 __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
 
@@ -14,10 +14,12 @@ Triple = tuple[float, float, float]
 
 
 def _triple(name: str, value: object) -> Triple:
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or len(value) != 3:
-        raise InvalidParameterError(name, "be three numbers, one for each wheel", value)
-    first, second, third = value  # type: ignore[misc]  # length checked above
-    return (number(name, first), number(name, second), number(name, third))
+    rule = "be three numbers, one for each wheel"
+    parts = sequence(name, rule, value)
+    if len(parts) != 3:
+        raise InvalidParameterError(name, rule, value)
+    first, second, third = (number(name, part) for part in parts)
+    return (first, second, third)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -165,7 +165,7 @@ def _with_regions(robot: HolonomicRobot, obstacles: Iterable[Obstacle], control_
     complete = []
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
         _require(f"obstacles[{index}]", obstacle, Obstacle)
-        if None in (obstacle.active_radius, obstacle.critical_radius):  # type: ignore[attr-defined]  # every obstacle has both
+        if None in (obstacle.active_radius, obstacle.critical_radius):
             radii = region_radii(robot, obstacle, control_period)
             obstacle = _sized(obstacle, radii)
         complete.append(obstacle)

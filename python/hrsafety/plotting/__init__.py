@@ -1,4 +1,11 @@
-"""Pictures of results."""
+"""Pictures of results: paths, forces, distances, energies, studies and animations.
+
+Every function takes results of `hrsafety.navigation`, computes no physics, and returns a
+``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
+with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
+units. matplotlib is imported when a picture is asked for; without it the functions raise
+`MissingExtraError`, which names ``pip install hrsafety[plot]``.
+"""
 
 from hrsafety.plotting.animation import animate
 from hrsafety.plotting.energies import energy

@@ -183,7 +183,7 @@ class _Stage:
             "clip_on": True,
         }
         shown_name = name if obstacle.radius >= SMALLEST_BODY_WITH_ID else ""
-        text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=3.3, animated=True, **letters)
+        text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=4.5, animated=True, **letters)
         rings = []
         if self.regions:
             rings = self._rings(obstacle, color)

@@ -23,6 +23,7 @@ __all__ = ["distances", "lyapunov"]
 PANEL_HEIGHT = 2.3
 HEADROOM = 1.12  # upper limit of distances over the largest distance that matters
 OTHER_COLOR = "#C4C4C4"
+EMPTY_LOG_LIMITS = (1.0, 10.0)
 GOAL_LINE: style.Properties = {"color": style.RUN_COLORS[0], "linewidth": 2.0}
 
 
@@ -230,6 +231,8 @@ def lyapunov(
         }
         low = 0.035 * index
         axes.fill_between(run.time, low, low + 0.03, where=inside.tolist(), step="post", **strip)
+    if not any((run.lyapunov > 0.0).any() for run in runs):
+        axes.set_ylim(*EMPTY_LOG_LIMITS)  # a logarithmic axis cannot choose limits for nothing
     axes.set_yscale("log")
     axes.set_xlabel("time (s)")
     axes.set_ylabel("Lyapunov function V (N²)")

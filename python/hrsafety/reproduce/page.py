@@ -133,9 +133,16 @@ def _head(report: Report) -> Iterator[str]:
     if report.study is not None:
         yield (
             '<p class="banner">Recommended mode of the stabilizing force, from all runs with noise or crowds: '
-            f"<strong>{escape(report.study.recommended)}</strong> "
+            f"<strong>{escape(report.study.recommended)}</strong>{_with_other_sides(report.study)} "
             '(<a href="#stabilizing">evidence</a>).</p>'
         )
+
+
+def _with_other_sides(study: Study) -> str:
+    """Return what is recommended under the other rules for the side of a detour."""
+    default = study.rankings[0]
+    others = [ranking for ranking in study.rankings if ranking.gains == default.gains and ranking is not default]
+    return "".join(f"; with the side {escape(other.side)}: {escape(other.recommended)}" for other in others)
 
 
 def _sections(report: Report) -> Iterator[str]:

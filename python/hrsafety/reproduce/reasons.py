@@ -141,6 +141,7 @@ _CAUSES = (
 )
 
 _NOTES = (
+    _Cause("C.1", "new_vff", "H_mean", "The source's own Tables C.3 to C.9 print 0.665 for the same gains."),
     _Cause("6.[35]", "new_vff_optimised", "*", _NOISY_PERSON),
     _Cause("C.[2468]", "*", "d_circle_min_3", EXCHANGED_COLUMNS),
     _Cause("C.[2468]", "*", "d_rectangle_min_3", EXCHANGED_COLUMNS),

@@ -112,7 +112,7 @@ def _gain_cells(table: str) -> list[Cell]:
             reason = why_not_measured(method)
             if not reason:
                 used = GAIN_SETS[method][list(_GAIN_UNITS).index(column)]
-                rounded = ", printed rounded" if used != printed else ""
+                rounded = ", printed with fewer digits" if used != printed else ""
                 reason = f"An input, not a result: the runs use {used:g}{rounded}."
             cells.append(
                 Cell.listed(

@@ -12,8 +12,9 @@ use crate::metrics::{Performance, Weights, performance};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
 use crate::simulate::options::Options;
+use crate::simulate::outcome::RunSummary;
 use crate::simulate::record::DescentCounter;
-use crate::simulate::rollout::{RunSummary, run_lanes};
+use crate::simulate::rollout::{Member, run_team};
 
 /// Number of gain sets that are stepped side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,6 +186,9 @@ fn renumbered(
     }
 }
 
+/// Lanes of a group: what fits the vector registers of the baseline instruction set.
+type Group = Lanes<2>;
+
 fn run_group(
     width: Width,
     scenario: &Scenario,
@@ -195,9 +199,7 @@ fn run_group(
 ) -> Result<Vec<RunSummary>> {
     let mut runs = match width {
         Width::One => run_width::<f64>(scenario, law, sets, options, interrupted),
-        Width::Four => run_width::<Lanes<4>>(scenario, law, sets, options, interrupted),
-        Width::Eight => run_width::<Lanes<8>>(scenario, law, sets, options, interrupted),
-        Width::Sixteen => run_width::<Lanes<16>>(scenario, law, sets, options, interrupted),
+        _ => run_width::<Group>(scenario, law, sets, options, interrupted),
     }?;
     runs.truncate(sets.len());
     Ok(runs)
@@ -210,15 +212,22 @@ fn run_width<R: Real>(
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<RunSummary>> {
-    let Some((first, rest)) = sets.split_first() else { return Ok(Vec::new()) };
-    let lanes = GainLanes::<R>::gather(*first, rest);
+    let lanes = sets.chunks(R::WIDTH).filter_map(<[Gains]>::split_first);
+    let lanes = lanes.map(|(first, rest)| GainLanes::<R>::gather(*first, rest));
     if options.descent {
-        let mut field = ForceFieldLaw::<R, true>::new(law, lanes, scenario);
-        let mut counter = DescentCounter::<R>::default();
-        run_lanes(scenario, &mut field, &options.run, &mut counter, interrupted)
+        let member = |gains| Member {
+            law: ForceFieldLaw::<R, true>::new(law, gains, scenario),
+            recorder: DescentCounter::<R>::default(),
+        };
+        let mut team: Vec<_> = lanes.map(member).collect();
+        run_team(scenario, &mut team, &options.run, interrupted)
     } else {
-        let mut field = ForceFieldLaw::<R, false>::new(law, lanes, scenario);
-        run_lanes(scenario, &mut field, &options.run, &mut (), interrupted)
+        let member = |gains| Member {
+            law: ForceFieldLaw::<R, false>::new(law, gains, scenario),
+            recorder: (),
+        };
+        let mut team: Vec<_> = lanes.map(member).collect();
+        run_team(scenario, &mut team, &options.run, interrupted)
     }
 }
 

@@ -2,13 +2,17 @@
 
 mod batch;
 mod options;
+mod outcome;
 mod record;
 mod rollout;
+mod runs;
+mod scene;
 
 pub use batch::{BatchOptions, ScoredRun, Width, run_batch};
 pub use options::{Integrator, Options};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
-pub use rollout::{CONTACT_SPEED, Contact, Outcome, RunSummary, run_lanes};
+pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary};
+pub use rollout::{Member, run_team};
 
 use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
@@ -31,10 +35,11 @@ pub fn simulate(
     interrupted: Interrupted<'_>,
 ) -> Result<(RunSummary, Trajectory)> {
     let gains = GainLanes::<f64>::gather(law.gains, &[]);
-    let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    let mut recorder = TrajectoryRecorder::new(scenario);
-    let mut summaries = run_lanes(scenario, &mut field, options, &mut recorder, interrupted)?;
-    Ok((summaries.swap_remove(0), recorder.finish()))
+    let law = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
+    let mut team = [Member { law, recorder: TrajectoryRecorder::new(scenario) }];
+    let mut summaries = run_team(scenario, &mut team, options, interrupted)?;
+    let [member] = team;
+    Ok((summaries.swap_remove(0), member.recorder.finish()))
 }
 
 /// Every force term at one state.
@@ -54,11 +59,7 @@ pub fn terms_at(
     let bodies: Vec<Body> = scenario
         .obstacles
         .iter()
-        .map(|placed| Body {
-            shape: placed.obstacle.shape,
-            regions: placed.regions,
-            state: placed.obstacle.motion.at(time, &mut 0),
-        })
+        .map(|placed| scene::body_at(placed, time, &mut 0))
         .collect();
     let gains = GainLanes::<f64>::gather(law.gains, &[]);
     let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);

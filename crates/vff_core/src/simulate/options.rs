@@ -51,6 +51,14 @@ pub(crate) struct Clock {
     pub interval: f64,
 }
 
+impl Clock {
+    /// Time after a number of steps, in s.
+    #[inline(always)]
+    pub fn time(&self, steps: usize) -> f64 {
+        steps as f64 * self.step
+    }
+}
+
 impl Options {
     /// Steps for a scenario.
     pub(crate) fn clock(&self, scenario: &Scenario) -> Result<Clock> {

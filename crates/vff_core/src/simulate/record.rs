@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 pub trait Recorder<R: Real> {
     /// A force was computed; `running`: for whom it counts.
     fn sample(&mut self, _command: &Command<R>, _running: R::Mask) {}
-    /// State at the begin of a step, and at the end of the run.
+    /// State at the begin of a step.
     fn row(
         &mut self,
         _time: f64,
@@ -18,6 +18,16 @@ pub trait Recorder<R: Real> {
         _currents: &[R; 3],
         _command: &Command<R>,
         _bodies: &[Body],
+    ) {
+    }
+    /// State at the end of the first run.
+    fn end(
+        &mut self,
+        _time: f64,
+        _position: Vec2<R>,
+        _velocity: Vec2<R>,
+        _currents: &[R; 3],
+        _bodies: impl FnOnce() -> Vec<Body>,
     ) {
     }
     /// Share of the control periods over which the Lyapunov function did not grow.
@@ -87,6 +97,7 @@ pub struct Trajectory {
 #[derive(Clone, Debug)]
 pub struct TrajectoryRecorder {
     columns: Trajectory,
+    command: Command<f64>,
 }
 
 impl TrajectoryRecorder {
@@ -107,7 +118,9 @@ impl TrajectoryRecorder {
             obstacle_position: Vec::with_capacity(2 * rows * obstacles),
             distance: Vec::with_capacity(rows * obstacles),
         };
-        Self { columns }
+        let command =
+            Command { force: Vec2::zero(), stabilizing: Vec2::zero(), lyapunov: f64::NAN };
+        Self { columns, command }
     }
 
     /// The columns.
@@ -118,6 +131,22 @@ impl TrajectoryRecorder {
 }
 
 impl Recorder<f64> for TrajectoryRecorder {
+    fn sample(&mut self, command: &Command<f64>, _running: bool) {
+        self.command = *command;
+    }
+
+    fn end(
+        &mut self,
+        time: f64,
+        position: Vec2<f64>,
+        velocity: Vec2<f64>,
+        currents: &[f64; 3],
+        bodies: impl FnOnce() -> Vec<Body>,
+    ) {
+        let command = self.command;
+        self.row(time, position, velocity, currents, &command, &bodies());
+    }
+
     fn row(
         &mut self,
         time: f64,

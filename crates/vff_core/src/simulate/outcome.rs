@@ -1,0 +1,50 @@
+//! What is left of a run.
+
+/// A robot faster than this at a contact was moving, in m/s.
+pub const CONTACT_SPEED: f64 = 0.05;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Reached the goal without a contact.
+    Arrived,
+    /// Touched an obstacle, whatever came after.
+    Collided,
+    /// Ran out of time.
+    TimedOut,
+    /// Stood still for good.
+    Stopped,
+}
+
+/// First contact with an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// When, in s.
+    pub time: f64,
+    /// Speed of the robot then, in m/s.
+    pub speed: f64,
+}
+
+/// What is left of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSummary {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When it ended, in s.
+    pub end_time: f64,
+    /// First entry into the circle around the goal, in s.
+    pub arrival_time: Option<f64>,
+    /// Electrical loss in J.
+    pub energy: f64,
+    /// Length of the path in m.
+    pub path_length: f64,
+    /// Least distance `d` to each obstacle in m; infinite if it was never present.
+    pub min_distance: Vec<f64>,
+    /// First contact with each obstacle.
+    pub contact: Vec<Option<Contact>>,
+    /// Share of the control periods over which the Lyapunov function did not grow, if counted.
+    pub descent_share: f64,
+    /// Number of samples of the force.
+    pub force_evaluations: u64,
+}
+

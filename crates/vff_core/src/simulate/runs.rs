@@ -1,0 +1,294 @@
+//! State of the robots of one lane group, and what is counted of their runs.
+
+use crate::error::{NavigationError, Result};
+use crate::forces::geometry::Body;
+use crate::lanes::{Mask, Real, Vec2};
+use crate::robots::WheelModel;
+use crate::scenario::Scenario;
+use crate::simulate::options::Clock;
+use crate::simulate::outcome::{Contact, Outcome, RunSummary};
+use crate::simulate::record::Recorder;
+use crate::simulate::scene::body_at;
+
+/// A robot slower than this is at rest, in m/s.
+const REST_SPEED: f64 = 1e-3;
+
+/// Room for rounding where a distance bound spares work, in m.
+const BOUND_MARGIN: f64 = 1e-6;
+
+/// State of the robots of one lane group.
+pub(crate) struct Runs<'a, R: Real> {
+    pub scenario: &'a Scenario,
+    pub clock: Clock,
+    pub position: Vec2<R>,
+    pub velocity: Vec2<R>,
+    pub speed: R,
+    pub currents: [R; 3],
+    pub running: R::Mask,
+    /// Change of velocity in one step of the held force, in m/s.
+    pub push: Vec2<R>,
+    /// Measured position at the sample before, if it was measured with an error.
+    pub last_measured: Option<Vec2<R>>,
+    goal: Vec2<R>,
+    wheels: WheelModel,
+    wheel_speeds: [R; 3],
+    squared_current: R,
+    path: R,
+    /// Whether any robot can arrive before the next sample.
+    near_goal: bool,
+    /// Whether the least distance to each obstacle can change before the next sample.
+    watched: Vec<bool>,
+    /// Last sample at which each robot was not at rest, in s.
+    moved: R,
+    end_time: R,
+    arrival_time: R,
+    stopped: R::Mask,
+    force_evaluations: R,
+    min_distance_squared: Vec<R>,
+    contact_time: Vec<R>,
+    contact_speed: Vec<R>,
+}
+
+impl<'a, R: Real> Runs<'a, R> {
+    pub fn new(scenario: &'a Scenario, clock: Clock, bodies: &[Body]) -> Self {
+        let count = scenario.obstacles.len();
+        let velocity = Vec2::zero();
+        let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
+        let unset = R::splat(f64::NAN);
+        let mut runs = Self {
+            scenario,
+            clock,
+            position: Vec2::splat(scenario.start),
+            velocity,
+            speed: R::zero(),
+            currents: [R::zero(); 3],
+            running: R::Mask::splat(true),
+            push: Vec2::zero(),
+            last_measured: None,
+            goal: Vec2::splat(scenario.goal),
+            wheels,
+            wheel_speeds: wheels.speeds(velocity),
+            squared_current: R::zero(),
+            path: R::zero(),
+            near_goal: true,
+            watched: vec![true; count],
+            moved: R::zero(),
+            end_time: unset,
+            arrival_time: unset,
+            stopped: R::Mask::none(),
+            force_evaluations: R::zero(),
+            min_distance_squared: vec![R::splat(f64::INFINITY); count],
+            contact_time: vec![unset; count],
+            contact_speed: vec![unset; count],
+        };
+        for (index, body) in bodies.iter().enumerate() {
+            runs.watch(index, body, 0.0, runs.running);
+        }
+        runs
+    }
+
+    /// Counts a sample of the force.
+    #[inline(always)]
+    pub fn count_sample(&mut self) {
+        let one = R::splat(1.0);
+        self.force_evaluations += R::select(self.running, one, R::zero());
+    }
+
+    /// Accounts for a motion step from `before`, after which the obstacles are as given.
+    #[inline(always)]
+    pub fn account(&mut self, bodies: &[Body], before: Vec2<R>, time: f64) {
+        let speeds = self.wheels.speeds(self.velocity);
+        self.currents = self.wheels.currents(&self.wheel_speeds, &speeds);
+        self.wheel_speeds = speeds;
+        let [first, second, third] = self.currents;
+        let squared = first * first + second * second + third * third;
+        let way = self.speed * R::splat(self.clock.step);
+        if self.near_goal {
+            let to_goal = self.goal - self.position;
+            let tolerance = self.scenario.rules.arrival_tolerance;
+            let near = to_goal.dot(to_goal).le(R::splat(tolerance * tolerance));
+            let arrived = self.running & near;
+            if arrived.any() {
+                self.arrive(before, time, arrived, squared, way);
+            }
+        }
+        self.squared_current += R::select(self.running, squared, R::zero());
+        self.path += R::select(self.running, way, R::zero());
+        for (index, body) in bodies.iter().enumerate() {
+            if self.watched[index] {
+                self.watch(index, body, time, self.running);
+            }
+        }
+    }
+
+    /// Least distance and contact of some lanes with an obstacle.
+    #[inline(always)]
+    fn watch(&mut self, index: usize, body: &Body, time: f64, lanes: R::Mask) {
+        if !body.state.present {
+            return;
+        }
+        let squared = body.offset(self.position).distance_squared;
+        let least = &mut self.min_distance_squared[index];
+        *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
+        let reach = self.scenario.obstacles[index].contact_distance;
+        let touching = lanes & squared.le(R::splat(reach * reach));
+        if touching.any() {
+            self.touch(index, time, touching);
+        }
+    }
+
+    /// Finds out what cannot happen before the next sample, so that it need not be looked for:
+    /// nothing moves farther than its largest speed takes it.
+    #[inline(always)]
+    pub fn look_ahead(&mut self, bodies: &[Body]) {
+        let Clock { interval, steps_per_sample, .. } = self.clock;
+        if steps_per_sample == 1 {
+            return;
+        }
+        let own = self.scenario.robot.max_speed;
+        let to_goal = self.goal - self.position;
+        let reach = self.scenario.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
+        let near = to_goal.dot(to_goal).lt(R::splat(reach * reach));
+        self.near_goal = (near & self.running).any();
+        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+            let body = &bodies[index];
+            self.watched[index] = match placed.speed_bound {
+                Some(speed) if body.state.present => {
+                    let way = R::splat((own + speed) * interval + BOUND_MARGIN);
+                    let least = self.min_distance_squared[index].sqrt() + way;
+                    let squared = body.offset(self.position).distance_squared;
+                    (squared.lt(least * least) & self.running).any()
+                }
+                _ => true,
+            };
+        }
+    }
+
+    #[cold]
+    fn touch(&mut self, index: usize, time: f64, touching: R::Mask) {
+        for lane in 0..R::WIDTH {
+            if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
+                let speed = self.speed.lane(lane);
+                self.contact_time[index] = self.contact_time[index].replace(lane, time);
+                self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
+            }
+        }
+    }
+
+    /// Ends the runs of lanes that entered the circle around the goal in this step, at the
+    /// instant of entry, linear inside the step.
+    #[cold]
+    #[inline(never)]
+    fn arrive(&mut self, before: Vec2<R>, time: f64, arrived: R::Mask, squared: R, way: R) {
+        let tolerance = self.scenario.rules.arrival_tolerance;
+        let after = self.position;
+        let length = |vector: Vec2<R>| vector.dot(vector).sqrt();
+        let (from, to) = (length(self.goal - before), length(self.goal - after));
+        let share = (from - R::splat(tolerance)) / (from - to);
+        let entry = before + (after - before).scale(share);
+        self.position = Vec2::select(arrived, entry, after);
+        self.squared_current += R::select(arrived, squared * share, R::zero());
+        self.path += R::select(arrived, way * share, R::zero());
+        for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
+            let instant = (time - self.clock.step) + share.lane(lane) * self.clock.step;
+            self.arrival_time = self.arrival_time.replace(lane, instant);
+            self.end_time = self.end_time.replace(lane, instant);
+            // Only this lane is watched at its own instant.
+            let others = (0..R::WIDTH).filter(|other| *other != lane);
+            let only = others.fold(R::Mask::splat(true), Mask::without);
+            for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+                self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
+            }
+        }
+        self.running = self.running & !arrived;
+    }
+
+    /// Ends the runs of lanes that have been at rest for too long.
+    #[inline(always)]
+    pub fn rest(&mut self, time: f64) {
+        let still = self.speed.lt(R::splat(REST_SPEED));
+        self.moved = R::select(still, self.moved, R::splat(time));
+        let long = R::splat(self.scenario.rules.rest_time).le(R::splat(time) - self.moved);
+        let ended = self.running & long;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of lanes that have touched an obstacle.
+    pub fn stop_at_contact(&mut self, time: f64) {
+        let mut touched = R::Mask::none();
+        for contact in &self.contact_time {
+            touched = touched | contact.le(R::splat(time));
+        }
+        let ended = self.running & touched;
+        if ended.any() {
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of some lanes.
+    pub fn end(&mut self, lanes: R::Mask, time: f64) {
+        self.end_time = R::select(lanes, R::splat(time), self.end_time);
+        self.running = self.running & !lanes;
+    }
+
+    /// When the run of the first lane ended, in s.
+    pub fn first_end(&self) -> f64 {
+        self.end_time.lane(0)
+    }
+
+    #[inline(always)]
+    pub fn check_finite(&self, time: f64) -> Result<()> {
+        let probe = (self.position.x - self.position.x)
+            + (self.position.y - self.position.y)
+            + (self.velocity.x - self.velocity.x)
+            + (self.velocity.y - self.velocity.y);
+        let lost = self.running & !probe.abs().le(R::zero());
+        if lost.any() {
+            let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
+            return Err(NavigationError::NonFinite { run, time });
+        }
+        Ok(())
+    }
+
+    pub fn summary(&self, lane: usize, recorder: &impl Recorder<R>) -> RunSummary {
+        let set = |value: f64| if value.is_nan() { None } else { Some(value) };
+        let contact: Vec<_> = self
+            .contact_time
+            .iter()
+            .zip(&self.contact_speed)
+            .map(|(time, speed)| {
+                set(time.lane(lane)).map(|time| Contact { time, speed: speed.lane(lane) })
+            })
+            .collect();
+        let arrival_time = set(self.arrival_time.lane(lane));
+        let outcome = if contact.iter().any(Option::is_some) {
+            Outcome::Collided
+        } else if arrival_time.is_some() {
+            Outcome::Arrived
+        } else if self.stopped.lane(lane) {
+            Outcome::Stopped
+        } else {
+            Outcome::TimedOut
+        };
+        let root = |squared: &R| squared.lane(lane).sqrt();
+        RunSummary {
+            outcome,
+            end_time: self.end_time.lane(lane),
+            arrival_time,
+            energy: self.squared_current.lane(lane) * self.wheels.loss_per_square(),
+            path_length: self.path.lane(lane),
+            min_distance: self.min_distance_squared.iter().map(root).collect(),
+            contact,
+            descent_share: recorder.descent_share(lane),
+            force_evaluations: count_of(self.force_evaluations.lane(lane)),
+        }
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a counted number of samples
+fn count_of(whole: f64) -> u64 {
+    whole as u64
+}
