@@ -29,13 +29,23 @@ impl<'py> Fields<'py> {
     }
 
     /// Adds a matrix stored by rows.
-    pub fn matrix(&self, name: &str, values: Vec<f64>, rows: usize, columns: usize) -> PyResult<()> {
-        self.0.set_item(name, values.into_pyarray(self.0.py()).reshape([rows, columns])?)
+    pub fn matrix(
+        &self,
+        name: &str,
+        values: Vec<f64>,
+        rows: usize,
+        columns: usize,
+    ) -> PyResult<()> {
+        self.0.set_item(
+            name,
+            values.into_pyarray(self.0.py()).reshape([rows, columns])?,
+        )
     }
 
     /// Adds an array of three axes stored by rows.
     pub fn cube(&self, name: &str, values: Vec<f64>, shape: [usize; 3]) -> PyResult<()> {
-        self.0.set_item(name, values.into_pyarray(self.0.py()).reshape(shape)?)
+        self.0
+            .set_item(name, values.into_pyarray(self.0.py()).reshape(shape)?)
     }
 
     /// Adds a vector of words of at most nine ASCII letters.

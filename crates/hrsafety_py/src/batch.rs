@@ -57,9 +57,16 @@ pub fn simulate_batch<'py>(
         .chunks_exact(gains.shape()[1])
         .map(|row| gain_set([row[0], row[1], row[2], row[3]]))
         .collect();
-    let scenarios: Vec<scenario::Scenario> =
-        scenarios.iter().map(|scenario| scenario.0.clone()).collect();
-    let job = Job { scenarios: &scenarios, law: &law.0, sets: &sets, options: &options };
+    let scenarios: Vec<scenario::Scenario> = scenarios
+        .iter()
+        .map(|scenario| scenario.0.clone())
+        .collect();
+    let job = Job {
+        scenarios: &scenarios,
+        law: &law.0,
+        sets: &sets,
+        options: &options,
+    };
     let rows = py.detach(|| job.run(progress.as_ref()))?;
     columns(py, &scenarios, &sets, rows)
 }
@@ -154,18 +161,32 @@ fn columns<'py>(
     let fields = Fields::new(py);
     let per_set = scenarios.len();
     let indices = || (0..rows.len()).map(|row| (row / per_set, row % per_set));
-    let widest = scenarios.iter().map(scenario::Scenario::obstacle_count).max().unwrap_or(0);
+    let widest = scenarios
+        .iter()
+        .map(scenario::Scenario::obstacle_count)
+        .max()
+        .unwrap_or(0);
     let of = |value: fn(&ScoredRun) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
     let contacts = |moving: bool| -> Vec<usize> {
         let counts = |row: &ScoredRun| {
             let kind = |speed: f64| (speed > CONTACT_SPEED) == moving;
-            row.run.contact.iter().flatten().filter(|touch| kind(touch.speed)).count()
+            row.run
+                .contact
+                .iter()
+                .flatten()
+                .filter(|touch| kind(touch.speed))
+                .count()
         };
         rows.iter().map(counts).collect()
     };
     let gains = indices()
         .flat_map(|(set, _)| {
-            let Gains { attractive, repulsive, detour, ratio } = sets[set];
+            let Gains {
+                attractive,
+                repulsive,
+                detour,
+                ratio,
+            } = sets[set];
             [attractive, repulsive, detour, ratio]
         })
         .collect();
@@ -177,31 +198,67 @@ fn columns<'py>(
         let own = &row.run.min_distance;
         distances.extend(own);
         distances.resize(distances.len() + widest - own.len(), f64::NAN);
-        least.push(clearances(scenario, &row.run).into_iter().fold(f64::INFINITY, f64::min));
+        least.push(
+            clearances(scenario, &row.run)
+                .into_iter()
+                .fold(f64::INFINITY, f64::min),
+        );
         let near = |(distance, placed): (&f64, &scenario::PlacedObstacle)| {
             *distance < placed.regions.active_radius
         };
-        entered.push(own.iter().zip(scenario.obstacles()).filter(|pair| near(*pair)).count());
+        entered.push(
+            own.iter()
+                .zip(scenario.obstacles())
+                .filter(|pair| near(*pair))
+                .count(),
+        );
     }
-    fields.vector("gain_index", indices().map(|(set, _)| signed(set)).collect())?;
-    fields.vector("scenario_index", indices().map(|(_, index)| signed(index)).collect())?;
+    fields.vector(
+        "gain_index",
+        indices().map(|(set, _)| signed(set)).collect(),
+    )?;
+    fields.vector(
+        "scenario_index",
+        indices().map(|(_, index)| signed(index)).collect(),
+    )?;
     fields.matrix("gains", gains, rows.len(), 4)?;
-    fields.words("outcome", rows.iter().map(|row| outcome_word(row.run.outcome)))?;
+    fields.words(
+        "outcome",
+        rows.iter().map(|row| outcome_word(row.run.outcome)),
+    )?;
     fields.vector("end_time", of(|row| row.run.end_time))?;
-    fields.vector("arrival_time", of(|row| row.run.arrival_time.unwrap_or(f64::NAN)))?;
+    fields.vector(
+        "arrival_time",
+        of(|row| row.run.arrival_time.unwrap_or(f64::NAN)),
+    )?;
     fields.vector("energy", of(|row| row.run.energy))?;
     fields.vector("path_length", of(|row| row.run.path_length))?;
     fields.matrix("min_distance", distances, rows.len(), widest)?;
     fields.vector("min_clearance", least)?;
     fields.vector("entered_active", entered.into_iter().map(signed).collect())?;
-    fields.vector("contacts_moving", contacts(true).into_iter().map(signed).collect())?;
-    fields.vector("contacts_standing", contacts(false).into_iter().map(signed).collect())?;
+    fields.vector(
+        "contacts_moving",
+        contacts(true).into_iter().map(signed).collect(),
+    )?;
+    fields.vector(
+        "contacts_standing",
+        contacts(false).into_iter().map(signed).collect(),
+    )?;
     fields.vector("performance_total", of(|row| row.performance.total))?;
-    fields.vector("performance_arrival_time", of(|row| row.performance.arrival_time))?;
+    fields.vector(
+        "performance_arrival_time",
+        of(|row| row.performance.arrival_time),
+    )?;
     fields.vector("performance_avoidance", of(|row| row.performance.avoidance))?;
-    fields.vector("performance_energy_saving", of(|row| row.performance.energy_saving))?;
+    fields.vector(
+        "performance_energy_saving",
+        of(|row| row.performance.energy_saving),
+    )?;
     fields.vector("descent_share", of(|row| row.run.descent_share))?;
-    let evaluations = rows.iter().map(|row| row.run.force_evaluations.cast_signed()).collect();
+    let evaluations = rows
+        .iter()
+        .map(|row| row.run.force_evaluations.cast_signed())
+        .collect();
     fields.vector("force_evaluations", evaluations)?;
     Ok(fields.finish())
 }

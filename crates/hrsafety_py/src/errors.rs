@@ -22,7 +22,11 @@ impl From<NavigationError> for CoreError {
 impl From<CoreError> for PyErr {
     fn from(CoreError(error): CoreError) -> Self {
         match error {
-            NavigationError::InvalidParameter { name, requirement, value } => match value {
+            NavigationError::InvalidParameter {
+                name,
+                requirement,
+                value,
+            } => match value {
                 Given::Number(number) => {
                     InvalidParameterError::new_err((name, requirement, number))
                 }

@@ -42,7 +42,13 @@ impl HolonomicRobot {
             viscous_friction: wheel_viscous_friction,
             static_friction: wheel_static_friction,
         };
-        let robot = robots::HolonomicRobot { mass, radius, max_speed, max_acceleration, wheels };
+        let robot = robots::HolonomicRobot {
+            mass,
+            radius,
+            max_speed,
+            max_acceleration,
+            wheels,
+        };
         Ok(Self(robot.checked()?))
     }
 }
@@ -89,8 +95,14 @@ impl Obstacle {
         critical_radius: Option<f64>,
         max_speed: Option<f64>,
     ) -> CoreResult<Self> {
-        let limits = Limits { active_radius, critical_radius, max_speed };
-        Ok(Self(obstacle::Obstacle::disc_at_rest(center, radius, limits)?))
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
+        Ok(Self(obstacle::Obstacle::disc_at_rest(
+            center, radius, limits,
+        )?))
     }
 
     /// Rectangle at rest.
@@ -105,8 +117,17 @@ impl Obstacle {
         critical_radius: Option<f64>,
         max_speed: Option<f64>,
     ) -> CoreResult<Self> {
-        let limits = Limits { active_radius, critical_radius, max_speed };
-        Ok(Self(obstacle::Obstacle::rectangle(center, [length, width], heading, limits)?))
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
+        Ok(Self(obstacle::Obstacle::rectangle(
+            center,
+            [length, width],
+            heading,
+            limits,
+        )?))
     }
 
     /// Disc with constant acceleration or a sudden stop.
@@ -124,7 +145,11 @@ impl Obstacle {
         max_speed: Option<f64>,
     ) -> CoreResult<Self> {
         let motion = Motion::moving(start, velocity, acceleration, stop)?;
-        let limits = Limits { active_radius, critical_radius, max_speed };
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
         Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
     }
 
@@ -141,9 +166,17 @@ impl Obstacle {
     ) -> CoreResult<Self> {
         let segments: Vec<Segment> = segments
             .into_iter()
-            .map(|(duration, velocity, acceleration)| Segment { duration, velocity, acceleration })
+            .map(|(duration, velocity, acceleration)| Segment {
+                duration,
+                velocity,
+                acceleration,
+            })
             .collect();
-        let limits = Limits { active_radius, critical_radius, max_speed };
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
         let motion = Motion::piecewise(start, &segments)?;
         Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
     }
@@ -159,7 +192,11 @@ impl Obstacle {
         critical_radius: Option<f64>,
         max_speed: Option<f64>,
     ) -> CoreResult<Self> {
-        let limits = Limits { active_radius, critical_radius, max_speed };
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
         let motion = Motion::recorded(&time, &position)?;
         Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
     }
@@ -174,11 +211,17 @@ impl Measurement {
     #[new]
     #[pyo3(signature = (*, scale, distribution, of))]
     fn new(scale: f64, distribution: &Bound<'_, PyAny>, of: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let kinds = [("uniform", Distribution::Uniform), ("gaussian", Distribution::Gaussian)];
+        let kinds = [
+            ("uniform", Distribution::Uniform),
+            ("gaussian", Distribution::Gaussian),
+        ];
         let rule = "be \"uniform\" or \"gaussian\"";
         let distribution = word("distribution", distribution, rule, &kinds)?;
-        let bodies =
-            [("obstacles", Noisy::Obstacles), ("robot", Noisy::Robot), ("both", Noisy::Both)];
+        let bodies = [
+            ("obstacles", Noisy::Obstacles),
+            ("robot", Noisy::Robot),
+            ("both", Noisy::Both),
+        ];
         let noisy = word("of", of, "be \"obstacles\", \"robot\" or \"both\"", &bodies)?;
         let built = measurement::Measurement::new(scale, distribution, noisy);
         Ok(Self(built.map_err(crate::errors::CoreError::from)?))
@@ -192,7 +235,9 @@ pub fn word<T: Copy>(
     requirement: &'static str,
     meanings: &[(&str, T)],
 ) -> PyResult<T> {
-    let text = given.extract::<String>().or_else(|_| given.repr().map(|shown| shown.to_string()))?;
+    let text = given
+        .extract::<String>()
+        .or_else(|_| given.repr().map(|shown| shown.to_string()))?;
     let known = meanings.iter().find(|(key, _)| *key == text);
     known.map(|(_, meaning)| *meaning).ok_or_else(|| {
         let error = NavigationError::invalid(name, requirement, Given::Word(text));
@@ -224,10 +269,22 @@ impl Scenario {
         measurement: Option<PyRef<'_, Measurement>>,
         seed: u64,
     ) -> CoreResult<Self> {
-        let obstacles = obstacles.iter().map(|obstacle| obstacle.0.clone()).collect();
-        let rules = Rules { control_period, time_limit, arrival_tolerance, rest_time, heading };
+        let obstacles = obstacles
+            .iter()
+            .map(|obstacle| obstacle.0.clone())
+            .collect();
+        let rules = Rules {
+            control_period,
+            time_limit,
+            arrival_tolerance,
+            rest_time,
+            heading,
+        };
         let scenario = scenario::Scenario::new(robot.0, start, goal, obstacles, rules)?;
-        Ok(Self(scenario.measured(measurement.map(|measurement| measurement.0), seed)))
+        Ok(Self(scenario.measured(
+            measurement.map(|measurement| measurement.0),
+            seed,
+        )))
     }
 }
 
@@ -254,7 +311,10 @@ impl VirtualForceField {
         let build = || {
             let stabilizing =
                 Stabilizing::named(&mode, stabilizing_force_cap, stabilizing_momentum_cap)?;
-            let rules = SideRules { pass_behind, hysteresis: side_hysteresis };
+            let rules = SideRules {
+                pass_behind,
+                hysteresis: side_hysteresis,
+            };
             laws::VirtualForceField::new(gain_set(gains), stabilizing, rules)
         };
         Ok(Self(build().map_err(crate::errors::CoreError::from)?))
@@ -263,7 +323,12 @@ impl VirtualForceField {
 
 /// A gain set in the order of Python's `GAIN_NAMES`.
 pub fn gain_set([attractive, repulsive, detour, ratio]: [f64; 4]) -> Gains {
-    Gains { attractive, repulsive, detour, ratio }
+    Gains {
+        attractive,
+        repulsive,
+        detour,
+        ratio,
+    }
 }
 
 /// Critical and active radius of an obstacle for a robot.

@@ -32,11 +32,18 @@ pub fn run_options(
     hold: bool,
     stop_on_contact: bool,
 ) -> PyResult<Options> {
-    let kinds =
-        [("semi_implicit_euler", Integrator::SemiImplicitEuler), ("rk4", Integrator::Rk4)];
+    let kinds = [
+        ("semi_implicit_euler", Integrator::SemiImplicitEuler),
+        ("rk4", Integrator::Rk4),
+    ];
     let rule = "be \"semi_implicit_euler\" or \"rk4\"";
     let integrator = word("integrator", integrator, rule, &kinds)?;
-    Ok(Options { integrator, step, hold, stop_on_contact })
+    Ok(Options {
+        integrator,
+        step,
+        hold,
+        stop_on_contact,
+    })
 }
 
 /// Runs with the interpreter released; signals are looked at now and then.
@@ -80,7 +87,11 @@ fn trajectory_fields<'py>(
     fields.vector("lyapunov", columns.lyapunov)?;
     fields.vector("heading", vec![rules_heading; rows])?;
     fields.matrix("wheel_current", columns.wheel_current, rows, 3)?;
-    fields.cube("obstacle_position", columns.obstacle_position, [rows, obstacles, 2])?;
+    fields.cube(
+        "obstacle_position",
+        columns.obstacle_position,
+        [rows, obstacles, 2],
+    )?;
     fields.matrix("distance", columns.distance, rows, obstacles)?;
     fields.value("outcome", outcome_word(summary.outcome))?;
     fields.value("arrival_time", summary.arrival_time.unwrap_or(f64::NAN))?;
@@ -88,7 +99,11 @@ fn trajectory_fields<'py>(
     fields.value("path_length", summary.path_length)?;
     fields.vector("min_clearance", metrics::clearances(scenario, &summary))?;
     let contact = |value: fn(&Contact) -> f64| -> Vec<f64> {
-        summary.contact.iter().map(|touch| touch.as_ref().map_or(f64::NAN, value)).collect()
+        summary
+            .contact
+            .iter()
+            .map(|touch| touch.as_ref().map_or(f64::NAN, value))
+            .collect()
     };
     fields.vector("contact_time", contact(|touch| touch.time))?;
     fields.vector("contact_speed", contact(|touch| touch.speed))?;
@@ -142,7 +157,11 @@ pub fn evaluate<'py>(
 
 /// Weights of time, distance and energy.
 pub fn weights_of((arrival_time, avoidance, energy_saving): (f64, f64, f64)) -> Weights {
-    Weights { arrival_time, avoidance, energy_saving }
+    Weights {
+        arrival_time,
+        avoidance,
+        energy_saving,
+    }
 }
 
 fn terms(
@@ -168,15 +187,30 @@ pub fn force_terms<'py>(
     let terms = terms(scenario, law, position, velocity, time)?;
     let fields = Fields::new(py);
     let count = terms.obstacles.len();
-    let repulsive = terms.obstacles.iter().flat_map(|obstacle| obstacle.repulsive).collect();
-    let detour = terms.obstacles.iter().flat_map(|obstacle| obstacle.detour).collect();
+    let repulsive = terms
+        .obstacles
+        .iter()
+        .flat_map(|obstacle| obstacle.repulsive)
+        .collect();
+    let detour = terms
+        .obstacles
+        .iter()
+        .flat_map(|obstacle| obstacle.detour)
+        .collect();
     fields.vector("attractive", terms.attractive.to_vec())?;
     fields.matrix("repulsive", repulsive, count, 2)?;
     fields.matrix("detour", detour, count, 2)?;
     fields.vector("stabilizing", terms.stabilizing.to_vec())?;
     fields.vector("total", terms.total.to_vec())?;
-    fields.words("region", terms.obstacles.iter().map(|obstacle| obstacle.region))?;
-    let side: Vec<i64> = terms.obstacles.iter().map(|obstacle| obstacle.side.into()).collect();
+    fields.words(
+        "region",
+        terms.obstacles.iter().map(|obstacle| obstacle.region),
+    )?;
+    let side: Vec<i64> = terms
+        .obstacles
+        .iter()
+        .map(|obstacle| obstacle.side.into())
+        .collect();
     fields.vector("side", side)?;
     fields.value("omega", terms.omega)?;
     Ok(fields.finish())
@@ -199,10 +233,20 @@ pub fn force_field<'py>(
     let mut columns = names.map(|_| Vec::with_capacity(2 * rows));
     let mut potential = Vec::with_capacity(rows);
     for (place, speed) in places.chunks_exact(2).zip(speeds.chunks_exact(2)) {
-        let terms = terms(scenario, law, [place[0], place[1]], [speed[0], speed[1]], time)?;
+        let terms = terms(
+            scenario,
+            law,
+            [place[0], place[1]],
+            [speed[0], speed[1]],
+            time,
+        )?;
         let undefined = terms.lyapunov.is_none();
         let sum = |part: fn(&vff_core::laws::ObstacleTerms) -> [f64; 2]| {
-            terms.obstacles.iter().map(part).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
+            terms
+                .obstacles
+                .iter()
+                .map(part)
+                .fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
         };
         let parts = [
             terms.attractive,
@@ -236,7 +280,11 @@ pub fn lyapunov(
     let terms = terms(scenario, law, position, velocity, time)?;
     let Some((value, derivative)) = terms.lyapunov else {
         let rule = "lie outside every critical region";
-        return Err(InvalidParameterError::new_err(("position", rule, (position[0], position[1]))));
+        return Err(InvalidParameterError::new_err((
+            "position",
+            rule,
+            (position[0], position[1]),
+        )));
     };
     Ok((value, derivative, terms.omega))
 }

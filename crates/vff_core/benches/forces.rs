@@ -27,15 +27,21 @@ fn width<R: Real>(criterion: &mut Criterion, name: &str, mode: &str) {
     let gains = GainLanes::<R>::gather(sets[0], &sets[1..]);
     let mut law = ForceFieldLaw::<R, false>::new(&scenes::law(mode), gains, &scenario);
     let robot = RobotState {
-        position: Vec2 { x: R::from_fn(|lane| 2.0 + 0.01 * lane as f64), y: R::splat(0.6) },
+        position: Vec2 {
+            x: R::from_fn(|lane| 2.0 + 0.01 * lane as f64),
+            y: R::splat(0.6),
+        },
         velocity: Vec2::splat([-0.6, 0.1]),
     };
     let mut group = criterion.benchmark_group(format!("forces/{mode}"));
     group.throughput(Throughput::Elements(R::WIDTH as u64));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
-            let situation =
-                Situation { bodies: black_box(&bodies), robot: black_box(robot), interval: 0.06 };
+            let situation = Situation {
+                bodies: black_box(&bodies),
+                robot: black_box(robot),
+                interval: 0.06,
+            };
             law.command(&situation)
         });
     });

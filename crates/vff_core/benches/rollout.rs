@@ -15,21 +15,38 @@ fn batch(scenario: &Scenario, law: &VirtualForceField, width: Width) -> Vec<Scor
     let third = 1.0 / 3.0;
     let options = BatchOptions {
         run: Options::default(),
-        weights: Weights { arrival_time: third, avoidance: third, energy_saving: third },
+        weights: Weights {
+            arrival_time: third,
+            avoidance: third,
+            energy_saving: third,
+        },
         descent: false,
         threads: Some(1),
         width: Some(width),
     };
     let scenarios = std::slice::from_ref(scenario);
-    run_batch(scenarios, law, &scenes::sets(512), &options, &|| false, &|_| ()).unwrap()
+    run_batch(
+        scenarios,
+        law,
+        &scenes::sets(512),
+        &options,
+        &|| false,
+        &|_| (),
+    )
+    .unwrap()
 }
 
 fn rollouts(criterion: &mut Criterion) {
-    let widths =
-        [("1", Width::One), ("4", Width::Four), ("8", Width::Eight), ("16", Width::Sixteen)];
-    for (scene, scenario) in
-        [("c4", scenes::configuration_4()), ("always_active", scenes::always_active())]
-    {
+    let widths = [
+        ("1", Width::One),
+        ("4", Width::Four),
+        ("8", Width::Eight),
+        ("16", Width::Sixteen),
+    ];
+    for (scene, scenario) in [
+        ("c4", scenes::configuration_4()),
+        ("always_active", scenes::always_active()),
+    ] {
         for mode in ["off", "capped", "full"] {
             let law = scenes::law(mode);
             let mut group = criterion.benchmark_group(format!("batch/{scene}/{mode}"));

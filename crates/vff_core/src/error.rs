@@ -66,16 +66,26 @@ pub type Result<T> = std::result::Result<T, NavigationError>;
 impl NavigationError {
     /// An argument breaks a rule.
     pub fn invalid(name: impl Into<String>, requirement: &'static str, value: Given) -> Self {
-        Self::InvalidParameter { name: name.into(), requirement, value }
+        Self::InvalidParameter {
+            name: name.into(),
+            requirement,
+            value,
+        }
     }
 
     /// The same error with the owner of the argument in front of its name.
     #[must_use]
     pub fn within(self, owner: &str) -> Self {
         match self {
-            Self::InvalidParameter { name, requirement, value } => {
-                Self::InvalidParameter { name: format!("{owner}.{name}"), requirement, value }
-            }
+            Self::InvalidParameter {
+                name,
+                requirement,
+                value,
+            } => Self::InvalidParameter {
+                name: format!("{owner}.{name}"),
+                requirement,
+                value,
+            },
             other => other,
         }
     }
@@ -86,7 +96,11 @@ pub(crate) fn finite(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(NavigationError::invalid(name, "be finite", Given::Number(value)))
+        Err(NavigationError::invalid(
+            name,
+            "be finite",
+            Given::Number(value),
+        ))
     }
 }
 
@@ -95,7 +109,11 @@ pub(crate) fn positive(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err(NavigationError::invalid(name, "be finite and positive", Given::Number(value)))
+        Err(NavigationError::invalid(
+            name,
+            "be finite and positive",
+            Given::Number(value),
+        ))
     }
 }
 
@@ -104,7 +122,11 @@ pub(crate) fn not_negative(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
-        Err(NavigationError::invalid(name, "be finite and not negative", Given::Number(value)))
+        Err(NavigationError::invalid(
+            name,
+            "be finite and not negative",
+            Given::Number(value),
+        ))
     }
 }
 
@@ -113,6 +135,10 @@ pub(crate) fn finite_pair(name: &str, value: [f64; 2]) -> Result<[f64; 2]> {
     if value.iter().all(|component| component.is_finite()) {
         Ok(value)
     } else {
-        Err(NavigationError::invalid(name, "be finite", Given::Pair(value)))
+        Err(NavigationError::invalid(
+            name,
+            "be finite",
+            Given::Pair(value),
+        ))
     }
 }

@@ -368,7 +368,10 @@ impl<R: Real> Vec2<R> {
     #[inline(always)]
     #[must_use]
     pub fn splat(vector: [f64; 2]) -> Self {
-        Self { x: R::splat(vector[0]), y: R::splat(vector[1]) }
+        Self {
+            x: R::splat(vector[0]),
+            y: R::splat(vector[1]),
+        }
     }
     /// The zero vector.
     #[inline(always)]
@@ -390,13 +393,19 @@ impl<R: Real> Vec2<R> {
     #[inline(always)]
     #[must_use]
     pub fn perp(self) -> Self {
-        Self { x: -self.y, y: self.x }
+        Self {
+            x: -self.y,
+            y: self.x,
+        }
     }
     /// Product with a number.
     #[inline(always)]
     #[must_use]
     pub fn scale(self, factor: R) -> Self {
-        Self { x: self.x * factor, y: self.y * factor }
+        Self {
+            x: self.x * factor,
+            y: self.y * factor,
+        }
     }
     /// `then` where the mask is true, `otherwise` elsewhere.
     #[inline(always)]
@@ -418,7 +427,10 @@ impl<R: Real> Add for Vec2<R> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y }
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+        }
     }
 }
 
@@ -426,7 +438,10 @@ impl<R: Real> Sub for Vec2<R> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y }
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+        }
     }
 }
 
@@ -434,6 +449,9 @@ impl<R: Real> Neg for Vec2<R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { x: -self.x, y: -self.y }
+        Self {
+            x: -self.x,
+            y: -self.y,
+        }
     }
 }

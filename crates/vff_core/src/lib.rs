@@ -1,7 +1,7 @@
 //! Navigation of mobile robots by virtual force fields among people and things.
 //!
-//! Equations follow L. Zeng, "Design and control of human-friendly robots", `PhD` thesis, McMaster
-//! University, 2011, chapters 5 and 6 and appendices B to D, with their misprints corrected.
+//! Equations follow L. Zeng, "Design and control of human-friendly robots", doctoral thesis,
+//! Canada, 2011, chapters 5 and 6 and appendices B to D, with their misprints corrected.
 //! SI units and radians throughout.
 
 #![forbid(unsafe_code)]

@@ -46,7 +46,11 @@ impl Measurement {
     /// # Errors
     /// The scale is negative or not finite.
     pub fn new(scale: f64, distribution: Distribution, noisy: Noisy) -> Result<Self> {
-        Ok(Self { scale: not_negative("scale", scale)?, distribution, noisy })
+        Ok(Self {
+            scale: not_negative("scale", scale)?,
+            distribution,
+            noisy,
+        })
     }
 }
 
@@ -61,7 +65,10 @@ impl Noise {
     fn new(measurement: Measurement, seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
-        Self { generator, measurement }
+        Self {
+            generator,
+            measurement,
+        }
     }
 
     /// Uniform in [0, 1) with 53 bits.
@@ -134,13 +141,18 @@ impl Sensor {
             measured.state = self.obstacle(index, body.state);
         }
         let robot_error = self.robot.as_mut().map(Noise::draw);
-        Measured { robot_error, period: self.period }
+        Measured {
+            robot_error,
+            period: self.period,
+        }
     }
 
     /// Measured state of an obstacle; the first velocity is the true one, the acceleration is
     /// not measured and counts as zero.
     fn obstacle(&mut self, index: usize, state: BodyState) -> BodyState {
-        let Some(noise) = &mut self.obstacles[index] else { return state };
+        let Some(noise) = &mut self.obstacles[index] else {
+            return state;
+        };
         let [x, y] = noise.draw();
         if !state.present {
             self.last_positions[index] = None;
@@ -148,12 +160,18 @@ impl Sensor {
         }
         let position = [state.position[0] + x, state.position[1] + y];
         let velocity = match self.last_positions[index] {
-            Some(last) => {
-                [(position[0] - last[0]) / self.period, (position[1] - last[1]) / self.period]
-            }
+            Some(last) => [
+                (position[0] - last[0]) / self.period,
+                (position[1] - last[1]) / self.period,
+            ],
             None => state.velocity,
         };
         self.last_positions[index] = Some(position);
-        BodyState { position, velocity, acceleration: [0.0; 2], present: true }
+        BodyState {
+            position,
+            velocity,
+            acceleration: [0.0; 2],
+            present: true,
+        }
     }
 }

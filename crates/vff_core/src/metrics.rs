@@ -31,7 +31,9 @@ pub struct Performance {
 #[must_use]
 pub fn clearances(scenario: &Scenario, run: &RunSummary) -> Vec<f64> {
     let pairs = run.min_distance.iter().zip(&scenario.obstacles);
-    pairs.map(|(distance, placed)| distance - placed.contact_distance).collect()
+    pairs
+        .map(|(distance, placed)| distance - placed.contact_distance)
+        .collect()
 }
 
 /// Score of a run against the run of the same law without obstacles, (5.6.1)-(5.6.6):
@@ -45,17 +47,35 @@ pub fn performance(
     weights: Weights,
 ) -> Performance {
     let contact = run.outcome == Outcome::Collided;
-    let avoidance = if contact { 0.0 } else { avoidance(scenario, run) };
+    let avoidance = if contact {
+        0.0
+    } else {
+        avoidance(scenario, run)
+    };
     let (Some(time), Some(nominal_time)) = (run.arrival_time, nominal.arrival_time) else {
-        return Performance { total: 0.0, arrival_time: 0.0, avoidance, energy_saving: 0.0 };
+        return Performance {
+            total: 0.0,
+            arrival_time: 0.0,
+            avoidance,
+            energy_saving: 0.0,
+        };
     };
     let arrival_time = nominal_time / time;
     // A robot without motor losses saves all there is to save.
-    let energy_saving = if run.energy == 0.0 { 1.0 } else { nominal.energy / run.energy };
+    let energy_saving = if run.energy == 0.0 {
+        1.0
+    } else {
+        nominal.energy / run.energy
+    };
     let total = weights.arrival_time * arrival_time
         + weights.avoidance * avoidance
         + weights.energy_saving * energy_saving;
-    Performance { total: if contact { 0.0 } else { total }, arrival_time, avoidance, energy_saving }
+    Performance {
+        total: if contact { 0.0 } else { total },
+        arrival_time,
+        avoidance,
+        energy_saving,
+    }
 }
 
 /// Mean over the obstacles of `min(d_s/d_s*, 1)`; 1 without obstacles.
@@ -66,6 +86,10 @@ fn avoidance(scenario: &Scenario, run: &RunSummary) -> f64 {
     let share = |(clearance, placed): (f64, &crate::scenario::PlacedObstacle)| {
         (clearance / (placed.regions.active_radius - placed.contact_distance)).min(1.0)
     };
-    let sum: f64 = clearances(scenario, run).into_iter().zip(&scenario.obstacles).map(share).sum();
+    let sum: f64 = clearances(scenario, run)
+        .into_iter()
+        .zip(&scenario.obstacles)
+        .map(share)
+        .sum();
     sum / scenario.obstacles.len() as f64
 }

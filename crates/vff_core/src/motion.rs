@@ -27,9 +27,8 @@ struct Piece {
 impl Piece {
     fn at(&self, time: f64) -> ([f64; 2], [f64; 2]) {
         let t = time - self.start;
-        let along = |i: usize| {
-            self.position[i] + (self.velocity[i] + 0.5 * self.acceleration[i] * t) * t
-        };
+        let along =
+            |i: usize| self.position[i] + (self.velocity[i] + 0.5 * self.acceleration[i] * t) * t;
         let speed = |i: usize| self.velocity[i] + self.acceleration[i] * t;
         ([along(0), along(1)], [speed(0), speed(1)])
     }
@@ -63,8 +62,16 @@ impl Motion {
     }
 
     fn constant(position: [f64; 2], velocity: [f64; 2], acceleration: [f64; 2]) -> Self {
-        let piece = Piece { start: 0.0, position, velocity, acceleration };
-        Self { pieces: vec![piece], presence: (f64::NEG_INFINITY, f64::INFINITY) }
+        let piece = Piece {
+            start: 0.0,
+            position,
+            velocity,
+            acceleration,
+        };
+        Self {
+            pieces: vec![piece],
+            presence: (f64::NEG_INFINITY, f64::INFINITY),
+        }
     }
 
     /// Constant acceleration, or constant velocity until a sudden stop.
@@ -86,7 +93,11 @@ impl Motion {
             finite_pair("stop", stop)?;
             if acceleration != [0.0; 2] {
                 let rule = "be zero for a body with a stop";
-                return Err(NavigationError::invalid("acceleration", rule, Given::Pair(acceleration)));
+                return Err(NavigationError::invalid(
+                    "acceleration",
+                    rule,
+                    Given::Pair(acceleration),
+                ));
             }
             let way = [stop[0] - start[0], stop[1] - start[1]];
             let speed_squared = velocity[0] * velocity[0] + velocity[1] * velocity[1];
@@ -116,7 +127,11 @@ impl Motion {
         finite_pair("start", start)?;
         if segments.is_empty() {
             let none = Given::Word("an empty list".into());
-            return Err(NavigationError::invalid("segments", "hold at least one segment", none));
+            return Err(NavigationError::invalid(
+                "segments",
+                "hold at least one segment",
+                none,
+            ));
         }
         let mut motion = Self::at_rest(start);
         motion.pieces.clear();
@@ -126,9 +141,13 @@ impl Motion {
             finite_pair("velocity", segment.velocity).map_err(|error| error.within(&owner))?;
             finite_pair("acceleration", segment.acceleration)
                 .map_err(|error| error.within(&owner))?;
-            if !(segment.duration > 0.0) {
+            if segment.duration.is_nan() || segment.duration <= 0.0 {
                 let name = format!("{owner}.duration");
-                return Err(NavigationError::invalid(name, "be positive", Given::Number(segment.duration)));
+                return Err(NavigationError::invalid(
+                    name,
+                    "be positive",
+                    Given::Number(segment.duration),
+                ));
             }
             let piece = Piece {
                 start: time,
@@ -144,7 +163,12 @@ impl Motion {
             let (reached, velocity) = piece.at(time);
             position = reached;
             if index + 1 == segments.len() {
-                motion.pieces.push(Piece { start: time, position, velocity, acceleration: [0.0; 2] });
+                motion.pieces.push(Piece {
+                    start: time,
+                    position,
+                    velocity,
+                    acceleration: [0.0; 2],
+                });
             }
         }
         Ok(motion)
@@ -157,11 +181,19 @@ impl Motion {
     pub fn recorded(time: &[f64], position: &[[f64; 2]]) -> Result<Self> {
         let (Some(first), Some(last)) = (time.first(), time.last()) else {
             let none = Given::Word("an empty recording".into());
-            return Err(NavigationError::invalid("time", "hold at least one sample", none));
+            return Err(NavigationError::invalid(
+                "time",
+                "hold at least one sample",
+                none,
+            ));
         };
         if time.len() != position.len() {
             let count = Given::Count(position.len() as u64);
-            return Err(NavigationError::invalid("position", "have one row for each time", count));
+            return Err(NavigationError::invalid(
+                "position",
+                "have one row for each time",
+                count,
+            ));
         }
         for (index, (&instant, &place)) in time.iter().zip(position).enumerate() {
             if !instant.is_finite() {
@@ -183,14 +215,27 @@ impl Motion {
             .zip(position.windows(2))
             .map(|(t, p)| {
                 let rate = |i: usize| (p[1][i] - p[0][i]) / (t[1] - t[0]);
-                Piece { start: t[0], position: p[0], velocity: [rate(0), rate(1)], acceleration: [0.0; 2] }
+                Piece {
+                    start: t[0],
+                    position: p[0],
+                    velocity: [rate(0), rate(1)],
+                    acceleration: [0.0; 2],
+                }
             })
             .collect();
         if pieces.is_empty() {
             let start = *first;
-            pieces.push(Piece { start, position: position[0], velocity: [0.0; 2], acceleration: [0.0; 2] });
+            pieces.push(Piece {
+                start,
+                position: position[0],
+                velocity: [0.0; 2],
+                acceleration: [0.0; 2],
+            });
         }
-        Ok(Self { pieces, presence: (*first, *last) })
+        Ok(Self {
+            pieces,
+            presence: (*first, *last),
+        })
     }
 
     /// Whether the body stands where it is for all time.
@@ -203,7 +248,10 @@ impl Motion {
     /// Largest speed at any time in m/s, or `None` for a motion that accelerates.
     #[must_use]
     pub fn speed_bound(&self) -> Option<f64> {
-        let steady = self.pieces.iter().all(|piece| piece.acceleration == [0.0; 2]);
+        let steady = self
+            .pieces
+            .iter()
+            .all(|piece| piece.acceleration == [0.0; 2]);
         steady.then(|| self.max_initial_speed())
     }
 
@@ -215,6 +263,7 @@ impl Motion {
     }
 
     /// State at an instant. `cursor` remembers the piece; start it at 0.
+    #[inline]
     #[must_use]
     pub fn at(&self, time: f64, cursor: &mut usize) -> BodyState {
         let mut index = (*cursor).min(self.pieces.len() - 1);
@@ -228,7 +277,12 @@ impl Motion {
         let piece = &self.pieces[index];
         let (position, velocity) = piece.at(time);
         let present = self.presence.0 <= time && time <= self.presence.1;
-        BodyState { position, velocity, acceleration: piece.acceleration, present }
+        BodyState {
+            position,
+            velocity,
+            acceleration: piece.acceleration,
+            present,
+        }
     }
 }
 
@@ -252,9 +306,21 @@ mod tests {
     fn segments_follow_each_other_without_a_jump() {
         let still = [0.0; 2];
         let segments = [
-            Segment { duration: 1.0, velocity: [1.0, 0.0], acceleration: still },
-            Segment { duration: 1.0, velocity: [1.0, 0.0], acceleration: [-1.0, 0.0] },
-            Segment { duration: 1.0, velocity: still, acceleration: [0.0, 1.0] },
+            Segment {
+                duration: 1.0,
+                velocity: [1.0, 0.0],
+                acceleration: still,
+            },
+            Segment {
+                duration: 1.0,
+                velocity: [1.0, 0.0],
+                acceleration: [-1.0, 0.0],
+            },
+            Segment {
+                duration: 1.0,
+                velocity: still,
+                acceleration: [0.0, 1.0],
+            },
         ];
         let walk = Motion::piecewise([0.6, 0.0], &segments).unwrap();
         let mut cursor = 0;
@@ -268,7 +334,10 @@ mod tests {
         let mut cursor = 0;
         assert!(!walk.at(0.9, &mut cursor).present);
         let middle = walk.at(1.5, &mut cursor);
-        assert_eq!((middle.position, middle.velocity, middle.present), ([0.25, 0.0], [0.5, 0.0], true));
+        assert_eq!(
+            (middle.position, middle.velocity, middle.present),
+            ([0.25, 0.0], [0.5, 0.0], true)
+        );
         assert!(walk.at(2.0, &mut cursor).present && !walk.at(2.1, &mut cursor).present);
         assert!(Motion::recorded(&[1.0, 1.0], &[[0.0; 2]; 2]).is_err());
         assert!(Motion::recorded(&[], &[]).is_err());

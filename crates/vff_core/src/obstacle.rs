@@ -63,9 +63,16 @@ impl Limits {
         }
         if let Some(active) = self.active_radius {
             positive("active_radius", active)?;
-            if self.critical_radius.is_some_and(|critical| active <= critical) {
+            if self
+                .critical_radius
+                .is_some_and(|critical| active <= critical)
+            {
                 let rule = "be larger than critical_radius";
-                return Err(NavigationError::invalid("active_radius", rule, Given::Number(active)));
+                return Err(NavigationError::invalid(
+                    "active_radius",
+                    rule,
+                    Given::Number(active),
+                ));
             }
         }
         Ok(self)
@@ -89,8 +96,14 @@ impl Obstacle {
     /// # Errors
     /// Names the value that is not allowed.
     pub fn disc(radius: f64, motion: Motion, limits: Limits) -> Result<Self> {
-        let shape = Shape::Disc { radius: positive("radius", radius)? };
-        Ok(Self { shape, motion, limits: limits.checked()? })
+        let shape = Shape::Disc {
+            radius: positive("radius", radius)?,
+        };
+        Ok(Self {
+            shape,
+            motion,
+            limits: limits.checked()?,
+        })
     }
 
     /// A disc at rest.
@@ -98,7 +111,11 @@ impl Obstacle {
     /// # Errors
     /// Names the value that is not allowed.
     pub fn disc_at_rest(center: [f64; 2], radius: f64, limits: Limits) -> Result<Self> {
-        Self::disc(radius, Motion::at_rest(finite_pair("center", center)?), limits)
+        Self::disc(
+            radius,
+            Motion::at_rest(finite_pair("center", center)?),
+            limits,
+        )
     }
 
     /// A rectangle at rest.
@@ -117,20 +134,30 @@ impl Obstacle {
         finite("heading", heading)?;
         if let Some(speed) = limits.max_speed.filter(|speed| *speed != 0.0) {
             let rule = "be absent or zero for a rectangle, which does not move";
-            return Err(NavigationError::invalid("max_speed", rule, Given::Number(speed)));
+            return Err(NavigationError::invalid(
+                "max_speed",
+                rule,
+                Given::Number(speed),
+            ));
         }
         let shape = Shape::Rectangle {
             half_length: 0.5 * sides[0],
             half_width: 0.5 * sides[1],
             axis: [heading.cos(), heading.sin()],
         };
-        Ok(Self { shape, motion: Motion::at_rest(center), limits: limits.checked()? })
+        Ok(Self {
+            shape,
+            motion: Motion::at_rest(center),
+            limits: limits.checked()?,
+        })
     }
 
     /// Speed that the regions are sized for, in m/s.
     #[must_use]
     pub fn max_speed(&self) -> f64 {
-        self.limits.max_speed.unwrap_or_else(|| self.motion.max_initial_speed())
+        self.limits
+            .max_speed
+            .unwrap_or_else(|| self.motion.max_initial_speed())
     }
 
     /// Distance `d` from the centre of a disc or the contour of a rectangle to a point, in m.
@@ -139,7 +166,11 @@ impl Obstacle {
         let offset = [point[0] - center[0], point[1] - center[1]];
         match self.shape {
             Shape::Disc { .. } => (offset[0] * offset[0] + offset[1] * offset[1]).sqrt(),
-            Shape::Rectangle { half_length, half_width, axis } => {
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => {
                 let along = offset[0] * axis[0] + offset[1] * axis[1];
                 let across = offset[1] * axis[0] - offset[0] * axis[1];
                 let beyond = [

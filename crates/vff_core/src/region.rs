@@ -41,13 +41,25 @@ pub fn radii(
         Shape::Disc { radius } => {
             if let Some(side) = faced_side {
                 let rule = "be given for a rectangle only";
-                return Err(NavigationError::invalid("faced_side", rule, Given::Number(side)));
+                return Err(NavigationError::invalid(
+                    "faced_side",
+                    rule,
+                    Given::Number(side),
+                ));
             }
             let obstacle_speed = obstacle.max_speed();
             let obstacle_way = obstacle_speed * (stopping_time + period);
-            (robot_way + obstacle_way + radius + robot.radius, 0.0, speed + obstacle_speed)
+            (
+                robot_way + obstacle_way + radius + robot.radius,
+                0.0,
+                speed + obstacle_speed,
+            )
         }
-        Shape::Rectangle { half_length, half_width, .. } => {
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            ..
+        } => {
             let half_side = match faced_side {
                 Some(side) => 0.5 * positive("faced_side", side)?,
                 None => half_length.max(half_width),
@@ -57,7 +69,10 @@ pub fn radii(
     };
     let avoiding_time =
         (critical_radius + half_side - ramp) / speed + stopping_time + robot.turn_time;
-    Ok(Regions { critical_radius, active_radius: closing * (avoiding_time + period) })
+    Ok(Regions {
+        critical_radius,
+        active_radius: closing * (avoiding_time + period),
+    })
 }
 
 #[cfg(test)]
@@ -67,7 +82,12 @@ mod tests {
     use crate::obstacle::Limits;
 
     fn robot(turn_time: f64) -> RobotLimits {
-        RobotLimits { radius: 0.2, max_speed: 0.7, max_acceleration: 10.0, turn_time }
+        RobotLimits {
+            radius: 0.2,
+            max_speed: 0.7,
+            max_acceleration: 10.0,
+            turn_time,
+        }
     }
 
     #[test]
@@ -76,7 +96,10 @@ mod tests {
         let person = Obstacle::disc(
             0.4,
             Motion::at_rest([0.0; 2]),
-            Limits { max_speed: Some(1.0), ..Limits::default() },
+            Limits {
+                max_speed: Some(1.0),
+                ..Limits::default()
+            },
         )
         .unwrap();
         let disc = Obstacle::disc_at_rest([0.0; 2], 0.1, Limits::default()).unwrap();

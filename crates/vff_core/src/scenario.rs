@@ -97,7 +97,15 @@ impl Scenario {
         for placed in &obstacles {
             check_ends(placed, start, goal)?;
         }
-        Ok(Self { robot, start, goal, obstacles, rules, measurement: None, seed: 0 })
+        Ok(Self {
+            robot,
+            start,
+            goal,
+            obstacles,
+            rules,
+            measurement: None,
+            seed: 0,
+        })
     }
 
     /// The same scenario with noisy measurements drawn from a seed.
@@ -111,7 +119,12 @@ impl Scenario {
     /// The same way without obstacles and without noise: what the nominal run uses.
     #[must_use]
     pub fn nominal(&self) -> Self {
-        Self { obstacles: Vec::new(), measurement: None, seed: 0, ..self.clone() }
+        Self {
+            obstacles: Vec::new(),
+            measurement: None,
+            seed: 0,
+            ..self.clone()
+        }
     }
 
     /// Number of obstacles.
@@ -145,16 +158,23 @@ impl Scenario {
     }
 }
 
-fn place(robot: &HolonomicRobot, obstacle: Obstacle, control_period: f64) -> Result<PlacedObstacle> {
+fn place(
+    robot: &HolonomicRobot,
+    obstacle: Obstacle,
+    control_period: f64,
+) -> Result<PlacedObstacle> {
     let limits = obstacle.limits;
-    let regions = match (limits.critical_radius, limits.active_radius) {
-        (Some(critical_radius), Some(active_radius)) => Regions { critical_radius, active_radius },
-        _ => {
-            let computed = region::radii(&robot.limits(), &obstacle, control_period, None)?;
-            Regions {
-                critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
-                active_radius: limits.active_radius.unwrap_or(computed.active_radius),
-            }
+    let given = limits.critical_radius.zip(limits.active_radius);
+    let regions = if let Some((critical_radius, active_radius)) = given {
+        Regions {
+            critical_radius,
+            active_radius,
+        }
+    } else {
+        let computed = region::radii(&robot.limits(), &obstacle, control_period, None)?;
+        Regions {
+            critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
+            active_radius: limits.active_radius.unwrap_or(computed.active_radius),
         }
     };
     if regions.active_radius <= regions.critical_radius {
@@ -176,7 +196,13 @@ fn place(robot: &HolonomicRobot, obstacle: Obstacle, control_period: f64) -> Res
     }
     let stationary = obstacle.motion.is_stationary();
     let speed_bound = obstacle.motion.speed_bound();
-    Ok(PlacedObstacle { obstacle, regions, contact_distance, stationary, speed_bound })
+    Ok(PlacedObstacle {
+        obstacle,
+        regions,
+        contact_distance,
+        stationary,
+        speed_bound,
+    })
 }
 
 fn check_ends(placed: &PlacedObstacle, start: [f64; 2], goal: [f64; 2]) -> Result<()> {

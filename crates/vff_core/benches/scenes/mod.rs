@@ -10,12 +10,26 @@ use vff_core::robots::HolonomicRobot;
 use vff_core::scenario::{Rules, Scenario};
 
 fn limits(active: f64, critical: f64) -> Limits {
-    Limits { active_radius: Some(active), critical_radius: Some(critical), max_speed: None }
+    Limits {
+        active_radius: Some(active),
+        critical_radius: Some(critical),
+        max_speed: None,
+    }
 }
 
 fn scenario(obstacles: Vec<Obstacle>) -> Scenario {
-    let rules = Rules { time_limit: 20.0, ..Rules::default() };
-    Scenario::new(HolonomicRobot::default(), [3.9, 0.6], [0.0, 0.6], obstacles, rules).unwrap()
+    let rules = Rules {
+        time_limit: 20.0,
+        ..Rules::default()
+    };
+    Scenario::new(
+        HolonomicRobot::default(),
+        [3.9, 0.6],
+        [0.0, 0.6],
+        obstacles,
+        rules,
+    )
+    .unwrap()
 }
 
 /// A walking person, a rectangle and a disc: configuration 4.
@@ -48,17 +62,30 @@ pub fn law(mode: &str) -> VirtualForceField {
         "capped" => Stabilizing::Capped(Cap::Momentum(0.1)),
         _ => Stabilizing::Full,
     };
-    let rules = SideRules { pass_behind: true, hysteresis: f64::INFINITY };
+    let rules = SideRules {
+        pass_behind: true,
+        hysteresis: f64::INFINITY,
+    };
     VirtualForceField::new(set(20.0, 17.0), stabilizing, rules).unwrap()
 }
 
 fn set(repulsive: f64, detour: f64) -> Gains {
-    Gains { attractive: 3.0, repulsive, detour, ratio: 0.25 }
+    Gains {
+        attractive: 3.0,
+        repulsive,
+        detour,
+        ratio: 0.25,
+    }
 }
 
 /// Neighbouring gain sets that share `K_1` and `b`.
 pub fn sets(count: u32) -> Vec<Gains> {
     (0..count)
-        .map(|k| set(15.0 + 10.0 * f64::from(k) / f64::from(count), 15.0 + f64::from(k % 16)))
+        .map(|k| {
+            set(
+                15.0 + 10.0 * f64::from(k) / f64::from(count),
+                15.0 + f64::from(k % 16),
+            )
+        })
         .collect()
 }

@@ -48,7 +48,11 @@ impl Body {
         let from_center = position - Vec2::splat(self.state.position);
         let vector = match self.shape {
             Shape::Disc { .. } => from_center,
-            Shape::Rectangle { half_length, half_width, axis } => {
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => {
                 let local = into_axes(from_center, axis);
                 let beyond = Vec2 {
                     x: local.x - clamped(local.x, half_length),
@@ -57,7 +61,10 @@ impl Body {
                 out_of_axes(beyond, axis)
             }
         };
-        Offset { vector, distance_squared: vector.dot(vector) }
+        Offset {
+            vector,
+            distance_squared: vector.dot(vector),
+        }
     }
 }
 
@@ -69,7 +76,10 @@ fn clamped<R: Real>(value: R, limit: f64) -> R {
 #[inline(always)]
 fn into_axes<R: Real>(vector: Vec2<R>, axis: [f64; 2]) -> Vec2<R> {
     let axis = Vec2::splat(axis);
-    Vec2 { x: axis.dot(vector), y: axis.cross(vector) }
+    Vec2 {
+        x: axis.dot(vector),
+        y: axis.cross(vector),
+    }
 }
 
 #[inline(always)]
@@ -175,7 +185,11 @@ fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vec2<R>, point_velocity: Vec
 fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vec2<R>, R::Mask) {
     match body.shape {
         Shape::Disc { .. } => (Vec2::splat(body.state.velocity), R::Mask::none()),
-        Shape::Rectangle { half_length, half_width, axis } => {
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
             let local = into_axes(robot.position - Vec2::splat(body.state.position), axis);
             let velocity = into_axes(robot.velocity, axis);
             let beside = local.x.abs().le(R::splat(half_length));
@@ -209,6 +223,9 @@ pub fn separation<R: Real>(
     let (half_x, half_y) = (R::splat(half[0]), R::splat(half[1]));
     let overlaps = middle.x.abs().le(half_x + reach.x.abs())
         & middle.y.abs().le(half_y + reach.y.abs())
-        & middle.cross(reach).abs().le(half_x * reach.y.abs() + half_y * reach.x.abs());
+        & middle
+            .cross(reach)
+            .abs()
+            .le(half_x * reach.y.abs() + half_y * reach.x.abs());
     (overlaps, from.cross(to), from.dot(to))
 }

@@ -19,12 +19,17 @@ impl<R: Real> Repulsion<R> {
     pub fn new(approach: &Approach<R>) -> Self {
         let inverse = R::splat(1.0) / approach.margin;
         let potential = approach.depth * approach.depth * inverse;
-        Self { potential, rate: -(approach.range_rate * potential * inverse) }
+        Self {
+            potential,
+            rate: -(approach.range_rate * potential * inverse),
+        }
     }
 
     /// `F_Lambda = K_3 (L + b Ld) u` in N.
     #[inline(always)]
     pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vec2<R> {
-        approach.outward.scale(gains.repulsive * (self.potential + gains.ratio * self.rate))
+        approach
+            .outward
+            .scale(gains.repulsive * (self.potential + gains.ratio * self.rate))
     }
 }

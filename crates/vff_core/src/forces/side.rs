@@ -58,7 +58,11 @@ pub fn decide<R: Real>(
                 side = R::select(straddled, robot_side.sign(), side);
             }
         }
-        Shape::Rectangle { half_length, half_width, axis } => {
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
             let half = [half_length, half_width];
             let (between, cross, dot) = separation(body, half, axis, robot.position, goal);
             let open = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
@@ -74,14 +78,22 @@ pub fn decide<R: Real>(
 /// `latched` is the side at the sample before, 0 if the robot was outside the active region.
 #[inline(always)]
 pub fn latch<R: Real>(rules: &SideRules, approach: &Approach<R>, side: R, latched: R) -> Detour<R> {
-    let mut detour = Detour { side, turn: approach.angle, descent: side * approach.shortest_side };
+    let mut detour = Detour {
+        side,
+        turn: approach.angle,
+        descent: side * approach.shortest_side,
+    };
     if rules.hysteresis.is_finite() {
         let kept = latched.abs().gt(R::zero()) & approach.angle.gt(R::splat(rules.hysteresis));
         let long_way = kept & (latched * approach.shortest_side).lt(R::zero());
         detour.side = R::select(kept, latched, side);
         let whole = R::splat(std::f64::consts::TAU);
         detour.turn = R::select(long_way, whole - approach.angle, approach.angle);
-        detour.descent = R::select(long_way, R::splat(1.0), detour.side * approach.shortest_side);
+        detour.descent = R::select(
+            long_way,
+            R::splat(1.0),
+            detour.side * approach.shortest_side,
+        );
     }
     detour
 }

@@ -55,7 +55,11 @@ impl Stabilizing {
             (Some(_), Some(share)) => {
                 let rule = "be absent when stabilizing_force_cap is given";
                 let given = Given::Number(share);
-                return Err(NavigationError::invalid("stabilizing_momentum_cap", rule, given));
+                return Err(NavigationError::invalid(
+                    "stabilizing_momentum_cap",
+                    rule,
+                    given,
+                ));
             }
             (Some(force), None) => Some(Cap::Force(force).checked()?),
             (None, Some(share)) => Some(Cap::Momentum(share).checked()?),
@@ -67,11 +71,19 @@ impl Stabilizing {
             ("full", None) => Ok(Self::Full),
             ("off" | "full", Some(_)) => {
                 let rule = "be \"capped\" when a cap is given";
-                Err(NavigationError::invalid("stabilizing", rule, Given::Word(mode.into())))
+                Err(NavigationError::invalid(
+                    "stabilizing",
+                    rule,
+                    Given::Word(mode.into()),
+                ))
             }
             _ => {
                 let rule = "be \"off\", \"capped\" or \"full\"";
-                Err(NavigationError::invalid("stabilizing", rule, Given::Word(mode.into())))
+                Err(NavigationError::invalid(
+                    "stabilizing",
+                    rule,
+                    Given::Word(mode.into()),
+                ))
             }
         }
     }
@@ -104,7 +116,11 @@ impl<R: Real> Dissipation<R> {
     #[inline(always)]
     #[must_use]
     pub fn zero() -> Self {
-        Self { omega: R::zero(), rate: Vec2::zero(), force: Vec2::zero() }
+        Self {
+            omega: R::zero(),
+            rate: Vec2::zero(),
+            force: Vec2::zero(),
+        }
     }
 
     /// Adds an obstacle.

@@ -3,7 +3,7 @@
 use crate::error::{Given, NavigationError, Result};
 use crate::forces::attractive::attractive_force;
 use crate::forces::detour::Turning;
-use crate::forces::geometry::{Approach, Body, RobotState};
+use crate::forces::geometry::{Approach, Body, Offset, RobotState};
 use crate::forces::lyapunov;
 use crate::forces::repulsive::Repulsion;
 use crate::forces::side::{self, Detour, SideRules};
@@ -34,9 +34,40 @@ impl VirtualForceField {
         let angle = rules.hysteresis;
         if angle != f64::INFINITY && !(0.0..std::f64::consts::PI).contains(&angle) {
             let rule = "be an angle from 0 to below pi";
-            return Err(NavigationError::invalid("side_hysteresis", rule, Given::Number(angle)));
+            return Err(NavigationError::invalid(
+                "side_hysteresis",
+                rule,
+                Given::Number(angle),
+            ));
         }
-        Ok(Self { gains, stabilizing, rules })
+        Ok(Self {
+            gains,
+            stabilizing,
+            rules,
+        })
+    }
+}
+
+/// Which lanes an obstacle concerns.
+struct Near<R: Real> {
+    offset: Offset<R>,
+    active: R::Mask,
+    critical: R::Mask,
+}
+
+impl<R: Real> Near<R> {
+    #[inline(always)]
+    fn new(body: &Body, robot: &RobotState<R>) -> Self {
+        let offset = body.offset(robot.position);
+        let (r2, r3) = (body.regions.active_radius, body.regions.critical_radius);
+        let here = R::Mask::splat(body.state.present);
+        let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
+        let critical = offset.distance_squared.le(R::splat(r3 * r3)) & here;
+        Self {
+            offset,
+            active,
+            critical,
+        }
     }
 }
 
@@ -88,47 +119,39 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         }
     }
 
-    /// Sum of repulsion and detour, and lanes inside a critical region; `None` if a side hangs
-    /// on the other obstacles.
+    /// Adds repulsion and detour of every obstacle to a sum and tells the lanes inside a critical
+    /// region. False if a side hangs on the other obstacles; the sum is void then.
     #[inline(always)]
-    fn sum(&self, situation: &Situation<'_, R>) -> Option<(Vec2<R>, R::Mask)> {
-        let mut total = Vec2::zero();
-        let mut critical = R::Mask::none();
+    fn add_up(
+        &self,
+        situation: &Situation<'_, R>,
+        total: &mut Vec2<R>,
+        critical: &mut R::Mask,
+    ) -> bool {
+        let robot = &situation.robot;
         for body in situation.bodies {
-            let Some((approach, inside)) = self.near(body, &situation.robot) else { continue };
-            critical = critical | inside;
-            let side = side::decide(&self.rules, body, &approach, &situation.robot, self.goal);
-            let open = approach.active & side.abs().lt(R::splat(0.5));
+            let near = Near::new(body, robot);
+            if !near.active.any() {
+                continue;
+            }
+            *critical = *critical | near.critical;
+            let approach = Approach::new(body, near.offset, near.active, robot, self.goal);
+            let side = side::decide(&self.rules, body, &approach, robot, self.goal);
+            let open = near.active & side.abs().lt(R::splat(0.5));
             if open.any() {
-                return None;
+                return false;
             }
             let detour = side::latch(&self.rules, &approach, side, R::zero());
             let repulsive = Repulsion::new(&approach).force(&self.gains, &approach);
             let detouring = Turning::new(&approach, &detour).force(&self.gains, &approach);
-            let both = total + (repulsive + detouring);
-            total = Vec2::select(approach.active, both, total);
+            let both = *total + (repulsive + detouring);
+            *total = Vec2::select(near.active, both, *total);
         }
-        Some((total, critical))
+        true
     }
 
-    /// Geometry of an obstacle if any lane is inside its active region, and the lanes inside its
-    /// critical region.
+    /// As [`Self::add_up`], with the sides of every rule, Omega and the terms kept in the slots.
     #[inline(always)]
-    fn near(&self, body: &Body, robot: &RobotState<R>) -> Option<(Approach<R>, R::Mask)> {
-        if !body.state.present {
-            return None;
-        }
-        let offset = body.offset(robot.position);
-        let (r2, r3) = (body.regions.active_radius, body.regions.critical_radius);
-        let active = offset.distance_squared.lt(R::splat(r2 * r2));
-        if !active.any() {
-            return None;
-        }
-        let critical = offset.distance_squared.le(R::splat(r3 * r3));
-        Some((Approach::new(body, offset, active, robot, self.goal), critical))
-    }
-
-    /// As [`Self::sum`], with the sides of every rule, Omega and the terms kept in the slots.
     fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vec2<R>, R::Mask) {
         let critical = self.fill_slots(situation);
         self.break_ties();
@@ -144,18 +167,25 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             total = Vec2::select(slot.approach.active, both, total);
             *latched = R::select(slot.approach.active, slot.detour.side, R::zero());
             let seen = (&slot.approach, &slot.repulsion, &slot.turning, &slot.detour);
-            self.dissipation.add(&self.gains, &robot, &situation.bodies[slot.index], seen);
+            self.dissipation
+                .add(&self.gains, &robot, &situation.bodies[slot.index], seen);
         }
         (total, critical)
     }
 
+    #[inline(always)]
     fn fill_slots(&mut self, situation: &Situation<'_, R>) -> R::Mask {
         let mut critical = R::Mask::none();
         self.slots.clear();
         for (index, body) in situation.bodies.iter().enumerate() {
-            let Some((approach, inside)) = self.near(body, &situation.robot) else { continue };
-            critical = critical | inside;
-            let side = side::decide(&self.rules, body, &approach, &situation.robot, self.goal);
+            let robot = &situation.robot;
+            let near = Near::new(body, robot);
+            if !near.active.any() {
+                continue;
+            }
+            critical = critical | near.critical;
+            let approach = Approach::new(body, near.offset, near.active, robot, self.goal);
+            let side = side::decide(&self.rules, body, &approach, robot, self.goal);
             let detour = side::latch(&self.rules, &approach, side, self.latched[index]);
             let repulsion = Repulsion::new(&approach);
             let turning = Turning::new(&approach, &detour);
@@ -174,6 +204,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 
     /// Decides the sides left open, in the order of the list.
+    #[inline(always)]
     fn break_ties(&mut self) {
         let half = R::splat(0.5);
         let open = |slot: &Slot<R>| slot.approach.active & slot.side.abs().lt(half);
@@ -209,12 +240,18 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         }
     }
 
+    #[inline(always)]
     fn dissipative(&self, robot: &RobotState<R>) -> Dissipative<R> {
         let to_goal = self.goal - robot.position;
-        Dissipative { mass: self.mass, to_goal, velocity: robot.velocity }
+        Dissipative {
+            mass: self.mass,
+            to_goal,
+            velocity: robot.velocity,
+        }
     }
 
     /// Braking along `-V` with `min(a_max, |V|/interval)`, which never reverses the robot.
+    #[inline(always)]
     fn braking(&self, velocity: Vec2<R>, interval: f64) -> Vec2<R> {
         let speed = velocity.dot(velocity).sqrt();
         let deceleration = (speed / R::splat(interval)).min(R::splat(self.max_acceleration));
@@ -223,6 +260,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 
     /// Lyapunov function of the slots of the last full evaluation.
+    #[inline(always)]
     fn lyapunov(&self, robot: &RobotState<R>) -> R {
         let to_goal = self.goal - robot.position;
         let mut value = lyapunov::free_part(&self.gains, self.mass, to_goal, robot.velocity);
@@ -242,12 +280,11 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
         let robot = &situation.robot;
         let stabilizes = self.stabilizing != Stabilizing::Off;
         let remembers = self.rules.hysteresis.is_finite();
-        let quick =
-            if RECORD || stabilizes || remembers { None } else { self.sum(situation) };
-        let (obstacles, critical) = match quick {
-            Some(sums) => sums,
-            None => self.sum_in_full(situation),
-        };
+        let (mut obstacles, mut critical) = (Vec2::zero(), R::Mask::none());
+        let in_full = RECORD || stabilizes || remembers;
+        if in_full || !self.add_up(situation, &mut obstacles, &mut critical) {
+            (obstacles, critical) = self.sum_in_full(situation);
+        }
         let attraction = attractive_force(&self.gains, self.goal - robot.position, robot.velocity);
         let mut command = Command {
             force: attraction + obstacles,
@@ -257,7 +294,9 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
         if stabilizes {
             let state = self.dissipative(robot);
             let period = self.control_period;
-            let force = self.dissipation.force(self.stabilizing, &self.gains, &state, period);
+            let force = self
+                .dissipation
+                .force(self.stabilizing, &self.gains, &state, period);
             command.stabilizing = Vec2::select(critical, Vec2::zero(), force);
             command.force = command.force + force;
         }
@@ -310,13 +349,21 @@ impl ForceFieldLaw<f64, true> {
         let robot = &situation.robot;
         let mut terms = FieldTerms {
             attractive: [0.0; 2],
-            obstacles: situation.bodies.iter().map(|body| idle(body, robot.position)).collect(),
+            obstacles: situation
+                .bodies
+                .iter()
+                .map(|body| idle(body, robot.position))
+                .collect(),
             stabilizing: command.stabilizing.lane(0),
             total: command.force.lane(0),
             omega: self.dissipation.omega,
             lyapunov: None,
         };
-        if terms.obstacles.iter().any(|obstacle| obstacle.region == "critical") {
+        if terms
+            .obstacles
+            .iter()
+            .any(|obstacle| obstacle.region == "critical")
+        {
             terms.omega = 0.0;
             return terms;
         }
@@ -352,5 +399,10 @@ fn idle(body: &Body, position: Vec2<f64>) -> ObstacleTerms {
     } else {
         "free"
     };
-    ObstacleTerms { repulsive: [0.0; 2], detour: [0.0; 2], region, side: 0 }
+    ObstacleTerms {
+        repulsive: [0.0; 2],
+        detour: [0.0; 2],
+        region,
+        side: 0,
+    }
 }

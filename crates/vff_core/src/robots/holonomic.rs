@@ -69,7 +69,10 @@ impl HolonomicRobot {
         positive("wheel_radius", self.wheels.radius)?;
         not_negative("winding_resistance", self.wheels.resistance)?;
         for wheel in 0..3 {
-            not_negative(&format!("wheel_inertia[{wheel}]"), self.wheels.inertia[wheel])?;
+            not_negative(
+                &format!("wheel_inertia[{wheel}]"),
+                self.wheels.inertia[wheel],
+            )?;
             let friction = self.wheels.viscous_friction[wheel];
             not_negative(&format!("wheel_viscous_friction[{wheel}]"), friction)?;
             let friction = self.wheels.static_friction[wheel];
@@ -92,7 +95,11 @@ impl HolonomicRobot {
     /// Acceleration from a commanded force: `F/m`, shortened to the largest acceleration.
     #[inline(always)]
     pub fn acceleration<R: Real>(&self, force: Vec2<R>) -> Vec2<R> {
-        limited(force.scale(R::splat(1.0 / self.mass)), self.max_acceleration).0
+        limited(
+            force.scale(R::splat(1.0 / self.mass)),
+            self.max_acceleration,
+        )
+        .0
     }
 
     /// Velocity shortened to the largest speed, and the speed that is left.
@@ -137,9 +144,16 @@ impl WheelModel {
         let own = [[-half_root_3, -0.5], [half_root_3, -0.5], [0.0, 1.0]];
         let per_meter = 1.0 / robot.wheels.radius;
         let rows = own.map(|[forward, left]| {
-            [(forward * cos - left * sin) * per_meter, (forward * sin + left * cos) * per_meter]
+            [
+                (forward * cos - left * sin) * per_meter,
+                (forward * sin + left * cos) * per_meter,
+            ]
         });
-        Self { rows, wheels: robot.wheels, step }
+        Self {
+            rows,
+            wheels: robot.wheels,
+            step,
+        }
     }
 
     /// Wheel speeds in rad/s.
@@ -193,7 +207,10 @@ mod tests {
         let turned = WheelModel::new(&robot, 0.4, 0.01);
         let straight = WheelModel::new(&robot, 0.0, 0.01);
         let (sin, cos) = 0.4f64.sin_cos();
-        let world = turned.speeds(Vec2 { x: 0.3 * cos - 0.2 * sin, y: 0.3 * sin + 0.2 * cos });
+        let world = turned.speeds(Vec2 {
+            x: 0.3 * cos - 0.2 * sin,
+            y: 0.3 * sin + 0.2 * cos,
+        });
         let own = straight.speeds(Vec2 { x: 0.3, y: 0.2 });
         for wheel in 0..3 {
             assert!((world[wheel] - own[wheel]).abs() < 1e-14);
@@ -203,7 +220,10 @@ mod tests {
     #[test]
     fn limits_shorten_without_turning() {
         let robot = HolonomicRobot::default();
-        let acceleration = robot.acceleration(Vec2 { x: 300.0, y: -400.0 });
+        let acceleration = robot.acceleration(Vec2 {
+            x: 300.0,
+            y: -400.0,
+        });
         assert!((acceleration.x - 6.0).abs() < 1e-12 && (acceleration.y + 8.0).abs() < 1e-12);
         let (velocity, speed) = robot.limited_velocity(Vec2 { x: 0.3, y: 0.4 });
         assert_eq!((velocity.x, velocity.y, speed), (0.3, 0.4, 0.5));

@@ -13,7 +13,7 @@ use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
 use crate::simulate::options::Options;
 use crate::simulate::outcome::RunSummary;
-use crate::simulate::record::DescentCounter;
+use crate::simulate::record::{DescentCounter, Recorder};
 use crate::simulate::rollout::{Member, run_team};
 
 /// Number of gain sets that are stepped side by side.
@@ -53,7 +53,8 @@ impl Width {
         match count {
             0 | 1 => Self::One,
             2..=4 => Self::Four,
-            _ => Self::Eight,
+            5..=8 => Self::Eight,
+            _ => Self::Sixteen,
         }
     }
 
@@ -110,14 +111,21 @@ pub fn run_batch(
         Some(threads) => rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
-            .map_err(|error| NavigationError::Threads { threads, reason: error.to_string() })?
+            .map_err(|error| NavigationError::Threads {
+                threads,
+                reason: error.to_string(),
+            })?
             .install(work),
     }
 }
 
 fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
     let empty = |name: &str, rule| {
-        Err(NavigationError::invalid(name, rule, Given::Word("an empty list".into())))
+        Err(NavigationError::invalid(
+            name,
+            rule,
+            Given::Word("an empty list".into()),
+        ))
     };
     if scenarios.is_empty() {
         return empty("scenarios", "hold at least one scenario");
@@ -126,10 +134,12 @@ fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
         return empty("gains", "hold at least one gain set");
     }
     for (index, set) in gains.iter().enumerate() {
-        set.checked().map_err(|error| error.within(&format!("gains[{index}]")))?;
+        set.checked()
+            .map_err(|error| error.within(&format!("gains[{index}]")))?;
     }
     for (index, scenario) in scenarios.iter().enumerate() {
-        run.clock(scenario).map_err(|error| error.within(&format!("scenarios[{index}]")))?;
+        run.clock(scenario)
+            .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
     }
     Ok(())
 }
@@ -142,7 +152,9 @@ fn run_all(
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<ScoredRun>> {
-    let width = options.width.unwrap_or_else(|| Width::for_sets(gains.len()));
+    let width = options
+        .width
+        .unwrap_or_else(|| Width::for_sets(gains.len()));
     let nominal = NominalRuns::new(scenarios, law, gains, options, interrupted)?;
     let lanes = width.lanes();
     let groups = gains.len().div_ceil(lanes);
@@ -162,7 +174,9 @@ fn run_all(
     let mut rows = Vec::with_capacity(gains.len() * scenarios.len());
     for (set, gain) in gains.iter().enumerate() {
         for (index, scenario) in scenarios.iter().enumerate() {
-            let Some(run) = tasks[index * groups + set / lanes].next() else { continue };
+            let Some(run) = tasks[index * groups + set / lanes].next() else {
+                continue;
+            };
             let free = nominal.of(index, gain);
             let performance = performance(scenario, &run, free, options.weights);
             rows.push(ScoredRun { run, performance });
@@ -179,16 +193,15 @@ fn renumbered(
     scenario: usize,
 ) -> NavigationError {
     match error {
-        NavigationError::NonFinite { run, time } => {
-            NavigationError::NonFinite { run: (first_set + run) * scenarios + scenario, time }
-        }
+        NavigationError::NonFinite { run, time } => NavigationError::NonFinite {
+            run: (first_set + run) * scenarios + scenario,
+            time,
+        },
         other => other,
     }
 }
 
-/// Lanes of a group: what fits the vector registers of the baseline instruction set.
-type Group = Lanes<2>;
-
+/// Gain sets of one task through one scenario.
 fn run_group(
     width: Width,
     scenario: &Scenario,
@@ -197,37 +210,72 @@ fn run_group(
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<RunSummary>> {
-    let mut runs = match width {
-        Width::One => run_width::<f64>(scenario, law, sets, options, interrupted),
-        _ => run_width::<Group>(scenario, law, sets, options, interrupted),
-    }?;
+    let job = GroupJob {
+        width,
+        scenario,
+        law,
+        sets,
+        options,
+        interrupted,
+    };
+    let mut runs = pulp::Arch::new().dispatch(job)?;
     runs.truncate(sets.len());
     Ok(runs)
 }
 
-fn run_width<R: Real>(
-    scenario: &Scenario,
-    law: &VirtualForceField,
-    sets: &[Gains],
-    options: &BatchOptions,
-    interrupted: Interrupted<'_>,
-) -> Result<Vec<RunSummary>> {
-    let lanes = sets.chunks(R::WIDTH).filter_map(<[Gains]>::split_first);
-    let lanes = lanes.map(|(first, rest)| GainLanes::<R>::gather(*first, rest));
-    if options.descent {
-        let member = |gains| Member {
-            law: ForceFieldLaw::<R, true>::new(law, gains, scenario),
-            recorder: DescentCounter::<R>::default(),
-        };
-        let mut team: Vec<_> = lanes.map(member).collect();
-        run_team(scenario, &mut team, &options.run, interrupted)
-    } else {
-        let member = |gains| Member {
-            law: ForceFieldLaw::<R, false>::new(law, gains, scenario),
-            recorder: (),
-        };
-        let mut team: Vec<_> = lanes.map(member).collect();
-        run_team(scenario, &mut team, &options.run, interrupted)
+/// A task that is compiled once for each instruction set; the widest one that the processor has
+/// is chosen at run time. The arithmetic is the same, bit for bit.
+struct GroupJob<'a> {
+    width: Width,
+    scenario: &'a Scenario,
+    law: &'a VirtualForceField,
+    sets: &'a [Gains],
+    options: &'a BatchOptions,
+    interrupted: Interrupted<'a>,
+}
+
+impl pulp::NullaryFnOnce for GroupJob<'_> {
+    type Output = Result<Vec<RunSummary>>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        match (self.width, self.options.descent) {
+            (Width::One, false) => self.run::<f64, (), false>(),
+            (Width::One, true) => self.run::<f64, DescentCounter<f64>, true>(),
+            (Width::Four, false) => self.run::<Lanes<4>, (), false>(),
+            // Sixteen lanes are two groups of eight in step, which share the obstacles' motion.
+            (Width::Eight | Width::Sixteen, false) => self.run::<Lanes<8>, (), false>(),
+            (_, true) => self.run::<Lanes<8>, DescentCounter<Lanes<8>>, true>(),
+        }
+    }
+}
+
+impl GroupJob<'_> {
+    #[inline(always)]
+    fn run<R: Real, C: Recorder<R> + Default, const RECORD: bool>(
+        &self,
+    ) -> Result<Vec<RunSummary>> {
+        let Self {
+            scenario,
+            law,
+            options,
+            ..
+        } = *self;
+        let lanes = self
+            .sets
+            .chunks(R::WIDTH)
+            .filter_map(<[Gains]>::split_first);
+        let mut team: Vec<_> = lanes
+            .map(|(first, rest)| {
+                let gains = GainLanes::<R>::gather(*first, rest);
+                let law = ForceFieldLaw::<R, RECORD>::new(law, gains, scenario);
+                Member {
+                    law,
+                    recorder: C::default(),
+                }
+            })
+            .collect();
+        run_team(scenario, &mut team, &options.run, self.interrupted)
     }
 }
 
@@ -261,7 +309,10 @@ impl NominalRuns {
         sets.sort_by_key(key);
         sets.dedup_by_key(|set| key(set));
         let width = Width::for_sets(sets.len());
-        let free = BatchOptions { descent: false, ..*options };
+        let free = BatchOptions {
+            descent: false,
+            ..*options
+        };
         let groups: Vec<(usize, &[Gains])> = (0..ways.len())
             .flat_map(|index| sets.chunks(width.lanes()).map(move |chunk| (index, chunk)))
             .collect();
@@ -282,6 +333,10 @@ impl NominalRuns {
     }
 
     fn of(&self, scenario: usize, set: &Gains) -> &RunSummary {
-        &self.runs[&(self.way[scenario], set.attractive.to_bits(), set.ratio.to_bits())]
+        &self.runs[&(
+            self.way[scenario],
+            set.attractive.to_bits(),
+            set.ratio.to_bits(),
+        )]
     }
 }

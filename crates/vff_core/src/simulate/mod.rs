@@ -10,8 +10,8 @@ mod scene;
 
 pub use batch::{BatchOptions, ScoredRun, Width, run_batch};
 pub use options::{Integrator, Options};
-pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary};
+pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use rollout::{Member, run_team};
 
 use crate::error::Result;
@@ -36,7 +36,10 @@ pub fn simulate(
 ) -> Result<(RunSummary, Trajectory)> {
     let gains = GainLanes::<f64>::gather(law.gains, &[]);
     let law = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    let mut team = [Member { law, recorder: TrajectoryRecorder::new(scenario) }];
+    let mut team = [Member {
+        law,
+        recorder: TrajectoryRecorder::new(scenario),
+    }];
     let mut summaries = run_team(scenario, &mut team, options, interrupted)?;
     let [member] = team;
     Ok((summaries.swap_remove(0), member.recorder.finish()))
@@ -63,7 +66,14 @@ pub fn terms_at(
         .collect();
     let gains = GainLanes::<f64>::gather(law.gains, &[]);
     let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    let robot = RobotState { position: Vec2::splat(position), velocity: Vec2::splat(velocity) };
+    let robot = RobotState {
+        position: Vec2::splat(position),
+        velocity: Vec2::splat(velocity),
+    };
     let interval = scenario.rules.control_period;
-    Ok(field.terms(&Situation { bodies: &bodies, robot, interval }))
+    Ok(field.terms(&Situation {
+        bodies: &bodies,
+        robot,
+        interval,
+    }))
 }

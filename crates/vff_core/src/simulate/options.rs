@@ -34,7 +34,12 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let integrator = Integrator::SemiImplicitEuler;
-        Self { integrator, step: 0.01, hold: true, stop_on_contact: false }
+        Self {
+            integrator,
+            step: 0.01,
+            hold: true,
+            stop_on_contact: false,
+        }
     }
 }
 
@@ -79,9 +84,18 @@ impl Options {
             (steps_per_sample, interval) = (count_of(whole), period);
         } else if scenario.measurement.is_some() {
             let rule = "be true with a measurement, which is taken every control period";
-            return Err(NavigationError::invalid("hold", rule, Given::Word("False".into())));
+            return Err(NavigationError::invalid(
+                "hold",
+                rule,
+                Given::Word("False".into()),
+            ));
         }
-        Ok(Clock { step, steps_per_sample, steps: count_of(count).max(1), interval })
+        Ok(Clock {
+            step,
+            steps_per_sample,
+            steps: count_of(count).max(1),
+            interval,
+        })
     }
 }
 

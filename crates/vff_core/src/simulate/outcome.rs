@@ -47,4 +47,3 @@ pub struct RunSummary {
     /// Number of samples of the force.
     pub force_evaluations: u64,
 }
-

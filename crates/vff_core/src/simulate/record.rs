@@ -49,7 +49,11 @@ pub struct DescentCounter<R> {
 
 impl<R: Real> Default for DescentCounter<R> {
     fn default() -> Self {
-        Self { last: R::splat(f64::NAN), periods: R::zero(), descents: R::zero() }
+        Self {
+            last: R::splat(f64::NAN),
+            periods: R::zero(),
+            descents: R::zero(),
+        }
     }
 }
 
@@ -118,8 +122,11 @@ impl TrajectoryRecorder {
             obstacle_position: Vec::with_capacity(2 * rows * obstacles),
             distance: Vec::with_capacity(rows * obstacles),
         };
-        let command =
-            Command { force: Vec2::zero(), stabilizing: Vec2::zero(), lyapunov: f64::NAN };
+        let command = Command {
+            force: Vec2::zero(),
+            stabilizing: Vec2::zero(),
+            lyapunov: f64::NAN,
+        };
         Self { columns, command }
     }
 
@@ -167,7 +174,9 @@ impl Recorder<f64> for TrajectoryRecorder {
         for body in bodies {
             if body.state.present {
                 columns.obstacle_position.extend(body.state.position);
-                columns.distance.push(body.offset(position).distance_squared.sqrt());
+                columns
+                    .distance
+                    .push(body.offset(position).distance_squared.sqrt());
             } else {
                 columns.obstacle_position.extend([f64::NAN; 2]);
                 columns.distance.push(f64::NAN);
@@ -185,8 +194,11 @@ mod tests {
     fn counts_only_periods_with_two_values() {
         let mut counter = DescentCounter::<f64>::default();
         for value in [3.0, 2.0, 2.5, f64::NAN, 1.0, 0.5] {
-            let command =
-                Command { force: Vec2::zero(), stabilizing: Vec2::zero(), lyapunov: value };
+            let command = Command {
+                force: Vec2::zero(),
+                stabilizing: Vec2::zero(),
+                lyapunov: value,
+            };
             counter.sample(&command, bool::splat(true));
         }
         // 3 -> 2 fell, 2 -> 2.5 grew, 1 -> 0.5 fell.

@@ -38,20 +38,28 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<RunSummary>> {
     let clock = options.clock(scenario)?;
-    let mut scene = Scene::new(scenario, &clock);
+    let mut scene = Scene::new(scenario, &clock, options.integrator == Integrator::Rk4);
     let mut sensor = Sensor::new(scenario);
     let mut seen = scene.frames[0].clone();
-    let mut groups: Vec<Runs<'_, R>> =
-        team.iter().map(|_| Runs::new(scenario, clock, &seen)).collect();
+    let mut groups: Vec<Runs<'_, R>> = team
+        .iter()
+        .map(|_| Runs::new(scenario, clock, &seen))
+        .collect();
     let mut until_question = SAMPLES_PER_QUESTION;
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
         let steps = clock.steps_per_sample.min(clock.steps - first);
         scene.advance(&clock, first);
-        let measured = sensor.as_mut().map(|sensor| sensor.measure(&scene.frames[0], &mut seen));
+        let measured = sensor
+            .as_mut()
+            .map(|sensor| sensor.measure(&scene.frames[0], &mut seen));
         let period = Period {
             scene: &scene,
-            seen: if measured.is_some() { &seen } else { &scene.frames[0] },
+            seen: if measured.is_some() {
+                &seen
+            } else {
+                &scene.frames[0]
+            },
             measured,
             first,
             steps,
@@ -74,12 +82,23 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let mut summaries = Vec::with_capacity(team.len() * R::WIDTH);
     for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
         let time = clock.time(first);
-        runs.check_finite(time).map_err(|error| of_group(error, index * R::WIDTH))?;
+        runs.check_finite(time)
+            .map_err(|error| of_group(error, index * R::WIDTH))?;
         runs.end(runs.running, time);
-        member.recorder.end(runs.first_end(), runs.position, runs.velocity, &runs.currents, || {
-            let end = runs.first_end();
-            scenario.obstacles.iter().map(|placed| body_at(placed, end, &mut 0)).collect()
-        });
+        member.recorder.end(
+            runs.first_end(),
+            runs.position,
+            runs.velocity,
+            &runs.currents,
+            || {
+                let end = runs.first_end();
+                scenario
+                    .obstacles
+                    .iter()
+                    .map(|placed| body_at(placed, end, &mut 0))
+                    .collect()
+            },
+        );
         summaries.extend((0..R::WIDTH).map(|lane| runs.summary(lane, &member.recorder)));
     }
     Ok(summaries)
@@ -88,9 +107,10 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
 /// The error of a lane as the error of a run of the team.
 fn of_group(error: NavigationError, first: usize) -> NavigationError {
     match error {
-        NavigationError::NonFinite { run, time } => {
-            NavigationError::NonFinite { run: first + run, time }
-        }
+        NavigationError::NonFinite { run, time } => NavigationError::NonFinite {
+            run: first + run,
+            time,
+        },
         other => other,
     }
 }
@@ -122,7 +142,11 @@ fn run_period<R: Real, L: Law<R>, C: Recorder<R>>(
         return Ok(());
     }
     let robot = observe(runs, period.measured);
-    let situation = Situation { bodies: period.seen, robot, interval: clock.interval };
+    let situation = Situation {
+        bodies: period.seen,
+        robot,
+        interval: clock.interval,
+    };
     let command = member.law.command(&situation);
     let acceleration = runs.scenario.robot.acceleration(command.force);
     runs.push = acceleration.scale(R::splat(clock.step));
@@ -159,14 +183,25 @@ fn record<R: Real, L, C: Recorder<R>>(
     command: &Command<R>,
     bodies: &[Body],
 ) {
-    member.recorder.row(time, runs.position, runs.velocity, &runs.currents, command, bodies);
+    member.recorder.row(
+        time,
+        runs.position,
+        runs.velocity,
+        &runs.currents,
+        command,
+        bodies,
+    );
 }
 
 /// State of the robots as the controller knows it.
 #[inline(always)]
 fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> RobotState<R> {
     let (position, velocity) = (runs.position, runs.velocity);
-    let Some(Measured { robot_error: Some(error), period }) = measured else {
+    let Some(Measured {
+        robot_error: Some(error),
+        period,
+    }) = measured
+    else {
         return RobotState { position, velocity };
     };
     let position = position + Vec2::splat(error);
@@ -174,7 +209,10 @@ fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> Robot
     // The first velocity is the true one.
     let velocity = runs.last_measured.map_or(velocity, |last| {
         let way = position - last;
-        Vec2 { x: way.x / rate, y: way.y / rate }
+        Vec2 {
+            x: way.x / rate,
+            y: way.y / rate,
+        }
     });
     runs.last_measured = Some(position);
     RobotState { position, velocity }
@@ -199,20 +237,27 @@ fn rk4_held<R: Real>(runs: &mut Runs<'_, R>, acceleration: Vec2<R>) {
     (runs.velocity, runs.speed) = (last, speed);
 }
 
+/// Force of a later stage; out of line, or the kernel would hold four copies of the law.
+#[inline(never)]
+fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) -> Vec2<R> {
+    law.command(situation).force
+}
+
 /// Runge-Kutta of order 4 with the force evaluated in every stage.
-fn rk4<R: Real, L: Law<R>>(
-    runs: &mut Runs<'_, R>,
-    first: Vec2<R>,
-    law: &mut L,
-    scene: &Scene<'_>,
-) {
+fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, first: Vec2<R>, law: &mut L, scene: &Scene<'_>) {
     let robot = &runs.scenario.robot;
     let Clock { step, interval, .. } = runs.clock;
     let (start, velocity) = (runs.position, runs.velocity);
     let mut push = |bodies: &[Body], position, velocity| {
-        let robot_state = RobotState { position, velocity };
-        let situation = Situation { bodies, robot: robot_state, interval };
-        robot.acceleration(law.command(&situation).force)
+        let state = RobotState { position, velocity };
+        robot.acceleration(stage_force(
+            law,
+            &Situation {
+                bodies,
+                robot: state,
+                interval,
+            },
+        ))
     };
     let limited = |velocity| robot.limited_velocity(velocity).0;
     let (half, whole) = (R::splat(0.5 * step), R::splat(step));

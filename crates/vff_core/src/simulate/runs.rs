@@ -141,7 +141,11 @@ impl<'a, R: Real> Runs<'a, R> {
     /// nothing moves farther than its largest speed takes it.
     #[inline(always)]
     pub fn look_ahead(&mut self, bodies: &[Body]) {
-        let Clock { interval, steps_per_sample, .. } = self.clock;
+        let Clock {
+            interval,
+            steps_per_sample,
+            ..
+        } = self.clock;
         if steps_per_sample == 1 {
             return;
         }
@@ -241,11 +245,9 @@ impl<'a, R: Real> Runs<'a, R> {
 
     #[inline(always)]
     pub fn check_finite(&self, time: f64) -> Result<()> {
-        let probe = (self.position.x - self.position.x)
-            + (self.position.y - self.position.y)
-            + (self.velocity.x - self.velocity.x)
-            + (self.velocity.y - self.velocity.y);
-        let lost = self.running & !probe.abs().le(R::zero());
+        let limit = R::splat(f64::INFINITY);
+        let finite = |vector: Vec2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
+        let lost = self.running & !(finite(self.position) & finite(self.velocity));
         if lost.any() {
             let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
             return Err(NavigationError::NonFinite { run, time });
@@ -260,7 +262,10 @@ impl<'a, R: Real> Runs<'a, R> {
             .iter()
             .zip(&self.contact_speed)
             .map(|(time, speed)| {
-                set(time.lane(lane)).map(|time| Contact { time, speed: speed.lane(lane) })
+                set(time.lane(lane)).map(|time| Contact {
+                    time,
+                    speed: speed.lane(lane),
+                })
             })
             .collect();
         let arrival_time = set(self.arrival_time.lane(lane));

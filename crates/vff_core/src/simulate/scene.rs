@@ -10,26 +10,34 @@ pub(crate) struct Scene<'a> {
     cursors: Vec<usize>,
     /// Bodies at the begin of the period and after each of its steps.
     pub frames: Vec<Vec<Body>>,
-    /// Bodies in the middle of the first step.
+    /// Bodies in the middle of the first step, if an integrator asks for them.
     pub middle: Vec<Body>,
+    staged: bool,
 }
 
 /// An obstacle at an instant.
 pub(crate) fn body_at(placed: &PlacedObstacle, time: f64, cursor: &mut usize) -> Body {
     let state = placed.obstacle.motion.at(time, cursor);
-    Body { shape: placed.obstacle.shape, regions: placed.regions, state }
+    Body {
+        shape: placed.obstacle.shape,
+        regions: placed.regions,
+        state,
+    }
 }
 
 impl<'a> Scene<'a> {
-    pub fn new(scenario: &'a Scenario, clock: &Clock) -> Self {
+    pub fn new(scenario: &'a Scenario, clock: &Clock, staged: bool) -> Self {
         let obstacles = &scenario.obstacles;
-        let bodies: Vec<Body> =
-            obstacles.iter().map(|placed| body_at(placed, 0.0, &mut 0)).collect();
+        let bodies: Vec<Body> = obstacles
+            .iter()
+            .map(|placed| body_at(placed, 0.0, &mut 0))
+            .collect();
         Self {
             obstacles,
             cursors: vec![0; obstacles.len()],
             frames: vec![bodies.clone(); clock.steps_per_sample + 1],
             middle: bodies,
+            staged,
         }
     }
 
@@ -44,8 +52,10 @@ impl<'a> Scene<'a> {
             for (step, frame) in self.frames.iter_mut().enumerate() {
                 frame[index].state = motion.at(clock.time(first + step), cursor);
             }
-            let half = clock.time(first) + 0.5 * clock.step;
-            self.middle[index].state = motion.at(half, cursor);
+            if self.staged {
+                let half = clock.time(first) + 0.5 * clock.step;
+                self.middle[index].state = motion.at(half, cursor);
+            }
         }
     }
 }
