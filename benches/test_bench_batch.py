@@ -30,7 +30,7 @@ CHECKED = 32
 ROUNDS = 7
 EQUAL = 1e-6  # s, J, m: the contestants do the same work; roundings grow along a run
 SCENARIO = scenarios.configuration("c4")
-LAW = nav.VirtualForceField()
+LAW = nav.VirtualForceField(stabilizing="off")
 
 
 def gain_sets() -> Array:

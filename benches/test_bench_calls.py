@@ -13,7 +13,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 
 IMPORTS = 15
-LAW = nav.VirtualForceField()
+LAW = nav.VirtualForceField(stabilizing="off")
 
 
 @pytest.mark.benchmark(group="one call")

@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-# Two threads have work for more than ten seconds, so the signal always arrives while it runs: a
-# robot without forces waits for its time limit in each of the runs.
+# There is work for several seconds, so the signal always arrives while it runs: a robot without
+# forces waits for its time limit in each of the long runs; the short runs arrive.
 BATCH = """
 import sys, time
 import numpy as np
@@ -19,11 +19,11 @@ scene = nav.Scenario(
     start=(3.9, 0.6), goal=(0.0, 0.6), time_limit=60.0, rest_time=60.0,
     obstacles=[nav.Human(start=(0.0, y), velocity=(0.01, 0.0)) for y in (-5.0, 5.0, 8.0)],
 )
-gains = np.zeros((400_000, 4))
+gains = np.tile({gains}, (400_000, 1))
 report = {report}
 print("started", flush=True)
 try:
-    nav.simulate_batch([scene], nav.VirtualForceField(), gains, threads=2, progress=report)
+    nav.simulate_batch([scene], nav.VirtualForceField(), gains, {options}, progress=report)
 except KeyboardInterrupt:
     print("interrupted", time.monotonic(), flush=True)
 else:
@@ -40,9 +40,17 @@ LIMIT = 2.0
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
 @pytest.mark.parametrize("report", ["None", "lambda done, total: None"])
-def test_running_batch_answers_ctrl_c(report: str, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("gains", "options"),
+    [("(0.0, 0.0, 0.0, 0.0)", "threads=2"), ("(3.0, 20.0, 17.0, 0.25)", "threads=1, lanes=1")],
+    ids=["long runs", "short runs"],
+)
+def test_running_batch_answers_ctrl_c(
+    gains: str, options: str, report: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = BATCH.replace("{report}", report).replace("{gains}", gains).replace("{options}", options)
     process = subprocess.Popen(
-        [sys.executable, "-c", BATCH.replace("{report}", report)],
+        [sys.executable, "-c", program],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -160,7 +160,7 @@ def variants(gains: pf.Gains) -> dict[str, pf.Law]:
         "off": pf.Law(gains),
         "ignoring passage behind": pf.Law(gains, pass_behind=False),
         "capped in newtons": pf.Law(gains, pf.Stabilizing("capped", force_cap=10.0)),
-        "capped in momentum": pf.Law(gains, pf.Stabilizing("capped")),
+        "capped in momentum": pf.Law(gains, pf.Stabilizing("capped", momentum_cap=0.1)),
         "side kept": pf.Law(gains, side_hysteresis=3.0),
     }
 

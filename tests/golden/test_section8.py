@@ -21,8 +21,10 @@ SCORE_3 = 0.001  # H printed to three decimals
 ENERGY = 0.01  # J: printed to 0.01 J
 RADIUS = 0.00005  # m: four printed decimals
 
-NEW = nav.VirtualForceField()
-NEW_STAR = nav.VirtualForceField(attractive_gain=4.3, repulsive_gain=20.3, detour_gain=240.7, gain_ratio=0.68)
+NEW = nav.VirtualForceField(stabilizing="off")
+NEW_STAR = nav.VirtualForceField(
+    attractive_gain=4.3, repulsive_gain=20.3, detour_gain=240.7, gain_ratio=0.68, stabilizing="off"
+)
 LAWS = {"New": NEW, "New*": NEW_STAR}
 
 RUNS = [
@@ -57,6 +59,7 @@ RADII = {
 
 def variant(law: nav.VirtualForceField, **changes: object) -> nav.VirtualForceField:
     fields: dict[str, object] = dict(zip(nav.VirtualForceField.GAIN_NAMES, law.gains, strict=True))
+    fields["stabilizing"] = "off"
     return nav.VirtualForceField(**(fields | changes))  # type: ignore[arg-type]  # keywords of the class
 
 

@@ -322,13 +322,10 @@ def stabilizing_force(law: Law, limits: Limits, omega: float, v_l: Vector, veloc
         return (0.0, 0.0)
     magnitude = omega / size
     if law.stabilizing.mode == "capped":
-        share = law.stabilizing.momentum_cap
-        if law.stabilizing.force_cap is not None:
-            magnitude = min(magnitude, law.stabilizing.force_cap)
-        elif share is None:
-            share = 0.1
+        share, cap = law.stabilizing.momentum_cap, law.stabilizing.force_cap
         if share is not None:
-            magnitude = min(magnitude, share * limits.mass * math.hypot(*velocity) / limits.control_period)
+            cap = share * limits.mass * math.hypot(*velocity) / limits.control_period
+        magnitude = min(magnitude, 10.0 if cap is None else cap)
     return times(magnitude / size, v_l)
 
 

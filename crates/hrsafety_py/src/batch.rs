@@ -68,7 +68,7 @@ pub fn simulate_batch<'py>(
         options: &options,
     };
     let rows = py.detach(|| job.run(progress.as_ref()))?;
-    columns(py, &scenarios, &sets, rows)
+    columns(py, &scenarios, &sets, &rows)
 }
 
 struct Job<'a> {
@@ -121,14 +121,12 @@ impl Job<'_> {
             let result = worker
                 .join()
                 .map_err(|_| SimulationError::new_err("a worker thread ended unexpectedly"))?;
-            match raised {
-                Some(error) => Err(error),
-                None => {
-                    let rows = result.map_err(|error: NavigationError| CoreError::from(error))?;
-                    look(progress, total, total, &mut reported)?;
-                    Ok(rows)
-                }
+            if let Some(error) = raised {
+                return Err(error);
             }
+            let rows = result.map_err(|error: NavigationError| CoreError::from(error))?;
+            look(progress, total, total, &mut reported)?;
+            Ok(rows)
         })
     }
 }
@@ -156,29 +154,24 @@ fn columns<'py>(
     py: Python<'py>,
     scenarios: &[scenario::Scenario],
     sets: &[Gains],
-    rows: Vec<ScoredRun>,
+    rows: &[ScoredRun],
 ) -> PyResult<Bound<'py, PyDict>> {
     let fields = Fields::new(py);
-    let per_set = scenarios.len();
-    let indices = || (0..rows.len()).map(|row| (row / per_set, row % per_set));
-    let widest = scenarios
-        .iter()
-        .map(scenario::Scenario::obstacle_count)
-        .max()
-        .unwrap_or(0);
-    let of = |value: fn(&ScoredRun) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
-    let contacts = |moving: bool| -> Vec<usize> {
-        let counts = |row: &ScoredRun| {
-            let kind = |speed: f64| (speed > CONTACT_SPEED) == moving;
-            row.run
-                .contact
-                .iter()
-                .flatten()
-                .filter(|touch| kind(touch.speed))
-                .count()
-        };
-        rows.iter().map(counts).collect()
-    };
+    index_columns(&fields, scenarios.len(), sets, rows.len())?;
+    run_columns(&fields, rows)?;
+    distance_columns(&fields, scenarios, rows)?;
+    score_columns(&fields, rows)?;
+    Ok(fields.finish())
+}
+
+/// Which gains and which scenario; the scenarios vary fastest.
+fn index_columns(
+    fields: &Fields<'_>,
+    scenarios: usize,
+    sets: &[Gains],
+    rows: usize,
+) -> PyResult<()> {
+    let indices = || (0..rows).map(|row| (row / scenarios, row % scenarios));
     let gains = indices()
         .flat_map(|(set, _)| {
             let Gains {
@@ -190,77 +183,80 @@ fn columns<'py>(
             [attractive, repulsive, detour, ratio]
         })
         .collect();
-    let mut distances = Vec::with_capacity(rows.len() * widest);
-    let mut least = Vec::with_capacity(rows.len());
-    let mut entered = Vec::with_capacity(rows.len());
-    for (row, (_, index)) in rows.iter().zip(indices()) {
-        let scenario = &scenarios[index];
-        let own = &row.run.min_distance;
-        distances.extend(own);
-        distances.resize(distances.len() + widest - own.len(), f64::NAN);
-        least.push(
-            clearances(scenario, &row.run)
-                .into_iter()
-                .fold(f64::INFINITY, f64::min),
-        );
-        let near = |(distance, placed): (&f64, &scenario::PlacedObstacle)| {
-            *distance < placed.regions.active_radius
-        };
-        entered.push(
-            own.iter()
-                .zip(scenario.obstacles())
-                .filter(|pair| near(*pair))
-                .count(),
-        );
-    }
-    fields.vector(
-        "gain_index",
-        indices().map(|(set, _)| signed(set)).collect(),
-    )?;
-    fields.vector(
-        "scenario_index",
-        indices().map(|(_, index)| signed(index)).collect(),
-    )?;
-    fields.matrix("gains", gains, rows.len(), 4)?;
-    fields.words(
-        "outcome",
-        rows.iter().map(|row| outcome_word(row.run.outcome)),
-    )?;
+    let of_gains = indices().map(|(set, _)| signed(set)).collect();
+    fields.vector("gain_index", of_gains)?;
+    let of_scenarios = indices().map(|(_, index)| signed(index)).collect();
+    fields.vector("scenario_index", of_scenarios)?;
+    fields.matrix("gains", gains, rows, 4)
+}
+
+/// How the runs ended and what they took.
+fn run_columns(fields: &Fields<'_>, rows: &[ScoredRun]) -> PyResult<()> {
+    let of = |value: fn(&ScoredRun) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
+    let outcomes = rows.iter().map(|row| outcome_word(row.run.outcome));
+    fields.words("outcome", outcomes)?;
     fields.vector("end_time", of(|row| row.run.end_time))?;
-    fields.vector(
-        "arrival_time",
-        of(|row| row.run.arrival_time.unwrap_or(f64::NAN)),
-    )?;
+    let arrival_time = of(|row| row.run.arrival_time.unwrap_or(f64::NAN));
+    fields.vector("arrival_time", arrival_time)?;
     fields.vector("energy", of(|row| row.run.energy))?;
     fields.vector("path_length", of(|row| row.run.path_length))?;
-    fields.matrix("min_distance", distances, rows.len(), widest)?;
-    fields.vector("min_clearance", least)?;
-    fields.vector("entered_active", entered.into_iter().map(signed).collect())?;
-    fields.vector(
-        "contacts_moving",
-        contacts(true).into_iter().map(signed).collect(),
-    )?;
-    fields.vector(
-        "contacts_standing",
-        contacts(false).into_iter().map(signed).collect(),
-    )?;
-    fields.vector("performance_total", of(|row| row.performance.total))?;
-    fields.vector(
-        "performance_arrival_time",
-        of(|row| row.performance.arrival_time),
-    )?;
-    fields.vector("performance_avoidance", of(|row| row.performance.avoidance))?;
-    fields.vector(
-        "performance_energy_saving",
-        of(|row| row.performance.energy_saving),
-    )?;
     fields.vector("descent_share", of(|row| row.run.descent_share))?;
     let evaluations = rows
         .iter()
         .map(|row| row.run.force_evaluations.cast_signed())
         .collect();
-    fields.vector("force_evaluations", evaluations)?;
-    Ok(fields.finish())
+    fields.vector("force_evaluations", evaluations)
+}
+
+/// How near the runs came to the obstacles.
+fn distance_columns(
+    fields: &Fields<'_>,
+    scenarios: &[scenario::Scenario],
+    rows: &[ScoredRun],
+) -> PyResult<()> {
+    let count = |scenario: &scenario::Scenario| scenario.obstacle_count();
+    let widest = scenarios.iter().map(count).max().unwrap_or(0);
+    let mut distances = Vec::with_capacity(rows.len() * widest);
+    let mut least = Vec::with_capacity(rows.len());
+    let mut entered = Vec::with_capacity(rows.len());
+    for (row, scenario) in rows.iter().zip(scenarios.iter().cycle()) {
+        let own = &row.run.min_distance;
+        distances.extend(own);
+        distances.resize(distances.len() + widest - own.len(), f64::NAN);
+        let clearances = clearances(scenario, &row.run).into_iter();
+        least.push(clearances.fold(f64::INFINITY, f64::min));
+        let inside = own
+            .iter()
+            .zip(scenario.obstacles())
+            .filter(|(distance, placed)| **distance < placed.regions.active_radius);
+        entered.push(signed(inside.count()));
+    }
+    fields.matrix("min_distance", distances, rows.len(), widest)?;
+    fields.vector("min_clearance", least)?;
+    fields.vector("entered_active", entered)?;
+    fields.vector("contacts_moving", contacts(rows, true))?;
+    fields.vector("contacts_standing", contacts(rows, false))
+}
+
+/// Number of obstacles that each robot touched while it moved, or while it stood.
+fn contacts(rows: &[ScoredRun], moving: bool) -> Vec<i64> {
+    let count = |row: &ScoredRun| {
+        let touches = row.run.contact.iter().flatten();
+        let kind = touches.filter(|touch| (touch.speed > CONTACT_SPEED) == moving);
+        signed(kind.count())
+    };
+    rows.iter().map(count).collect()
+}
+
+/// The scores.
+fn score_columns(fields: &Fields<'_>, rows: &[ScoredRun]) -> PyResult<()> {
+    let of = |value: fn(&ScoredRun) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
+    fields.vector("performance_total", of(|row| row.performance.total))?;
+    let arrival_time = of(|row| row.performance.arrival_time);
+    fields.vector("performance_arrival_time", arrival_time)?;
+    fields.vector("performance_avoidance", of(|row| row.performance.avoidance))?;
+    let energy_saving = of(|row| row.performance.energy_saving);
+    fields.vector("performance_energy_saving", energy_saving)
 }
 
 /// A count as Python's integer type of arrays.

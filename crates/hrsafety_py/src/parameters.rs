@@ -184,6 +184,7 @@ impl Obstacle {
     /// Disc that follows a recording.
     #[staticmethod]
     #[pyo3(signature = (*, time, position, radius, active_radius, critical_radius, max_speed))]
+    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn recorded(
         time: Vec<f64>,
         position: Vec<[f64; 2]>,

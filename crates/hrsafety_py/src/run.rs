@@ -54,6 +54,8 @@ fn run(
     options: &Options,
 ) -> PyResult<(RunSummary, Trajectory)> {
     let pending: Mutex<Option<PyErr>> = Mutex::new(None);
+    // The bare method would be bound to one lifetime.
+    #[allow(clippy::redundant_closure_for_method_calls)]
     let interrupted = || match Python::attach(|py| py.check_signals()) {
         Ok(()) => false,
         Err(error) => {

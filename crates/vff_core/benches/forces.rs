@@ -1,4 +1,5 @@
-//! One evaluation of the force field, three active obstacles.
+//! One evaluation of the force field, three active obstacles: a person, a rectangle and a disc, or
+//! three discs.
 
 mod scenes;
 
@@ -20,20 +21,25 @@ fn bodies(scenario: &Scenario) -> Vec<Body> {
     scenario.obstacles().iter().map(body).collect()
 }
 
-fn width<R: Real>(criterion: &mut Criterion, name: &str, mode: &str) {
-    let scenario = scenes::always_active();
-    let bodies = bodies(&scenario);
+fn width<R: Real>(
+    criterion: &mut Criterion,
+    name: &str,
+    (scene, scenario): (&str, &Scenario),
+    mode: &str,
+) {
+    let bodies = bodies(scenario);
     let sets = scenes::sets(16);
     let gains = GainLanes::<R>::gather(sets[0], &sets[1..]);
-    let mut law = ForceFieldLaw::<R, false>::new(&scenes::law(mode), gains, &scenario);
+    let mut law = ForceFieldLaw::<R, false>::new(&scenes::law(mode), gains, scenario);
+    // Inside every active region of both scenes and outside every critical one.
     let robot = RobotState {
         position: Vec2 {
-            x: R::from_fn(|lane| 2.0 + 0.01 * lane as f64),
-            y: R::splat(0.6),
+            x: R::from_fn(|lane| 2.6 + 0.01 * lane as f64),
+            y: R::splat(0.75),
         },
         velocity: Vec2::splat([-0.6, 0.1]),
     };
-    let mut group = criterion.benchmark_group(format!("forces/{mode}"));
+    let mut group = criterion.benchmark_group(format!("forces/{scene}/{mode}"));
     group.throughput(Throughput::Elements(R::WIDTH as u64));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
@@ -49,11 +55,17 @@ fn width<R: Real>(criterion: &mut Criterion, name: &str, mode: &str) {
 }
 
 fn forces(criterion: &mut Criterion) {
-    for mode in ["off", "capped", "full"] {
-        width::<f64>(criterion, "1", mode);
-        width::<Lanes<4>>(criterion, "4", mode);
-        width::<Lanes<8>>(criterion, "8", mode);
-        width::<Lanes<16>>(criterion, "16", mode);
+    for (name, scenario) in [
+        ("c4", scenes::configuration_4()),
+        ("always_active", scenes::always_active()),
+    ] {
+        let scene = (name, &scenario);
+        for mode in ["off", "capped", "full"] {
+            width::<f64>(criterion, "1", scene, mode);
+            width::<Lanes<4>>(criterion, "4", scene, mode);
+            width::<Lanes<8>>(criterion, "8", scene, mode);
+            width::<Lanes<16>>(criterion, "16", scene, mode);
+        }
     }
 }
 

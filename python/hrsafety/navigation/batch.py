@@ -100,7 +100,7 @@ class BatchSummary:
         >>> from hrsafety import navigation as nav, scenarios
         >>> table = nav.simulate_batch([scenarios.configuration("c1")], nav.VirtualForceField()).columns()
         >>> round(float(table["min_distance_0"][0]), 3)
-        0.488
+        0.536
         """
         table: dict[str, npt.NDArray[np.generic]] = {}
         for entry in fields(self):

@@ -128,7 +128,9 @@ class Rectangle(Obstacle):
         self._set(center=pair("center", self.center))
         sides = {name: number(name, getattr(self, name)) for name in ("length", "width", "heading")}
         self._set(**sides)
-        native = _hrsafety.Obstacle.rectangle(center=self.center, **sides, **self._limits())
+        native = _hrsafety.Obstacle.rectangle(
+            center=self.center, length=self.length, width=self.width, heading=self.heading, **self._limits()
+        )
         self._set(_native=native)
 
 

@@ -409,7 +409,7 @@ def simulate(
     >>> from hrsafety import navigation as nav, scenarios
     >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
     >>> run.outcome, round(run.arrival_time, 2), round(float(run.min_distance[0]), 3)
-    ('arrived', 6.52, 0.488)
+    ('arrived', 6.63, 0.536)
     """
     _check(scenario, law)
     fields = _hrsafety.simulate(
@@ -475,7 +475,7 @@ def evaluate(
     --------
     >>> from hrsafety import navigation as nav, scenarios
     >>> round(nav.evaluate(scenarios.configuration("c1"), nav.VirtualForceField()).total, 2)
-    0.62
+    0.65
     """
     _check(scenario, law)
     scores, run, nominal = _hrsafety.evaluate(

@@ -11,6 +11,10 @@ use crate::lanes::{Mask, Real, Vec2};
 /// Below this `|v_L|` the direction of the force is lost and it is zero, in N/s.
 const NO_DIRECTION: f64 = 1e-6;
 
+/// The cap with the fewest contacts among recorded, random and noisy people; see
+/// `docs/validation.md`.
+const DEFAULT_CAP: Cap = Cap::Force(10.0);
+
 /// Largest magnitude of a capped stabilizing force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cap {
@@ -66,7 +70,7 @@ impl Stabilizing {
             (None, None) => None,
         };
         match (mode, cap) {
-            ("capped", cap) => Ok(Self::Capped(cap.unwrap_or(Cap::Momentum(0.1)))),
+            ("capped", cap) => Ok(Self::Capped(cap.unwrap_or(DEFAULT_CAP))),
             ("off", None) => Ok(Self::Off),
             ("full", None) => Ok(Self::Full),
             ("off" | "full", Some(_)) => {

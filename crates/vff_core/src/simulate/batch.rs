@@ -210,6 +210,9 @@ fn run_group(
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<RunSummary>> {
+    if interrupted() {
+        return Err(NavigationError::Interrupted);
+    }
     let job = GroupJob {
         width,
         scenario,
