@@ -12,7 +12,7 @@ use vff_core::gains::Gains;
 use vff_core::laws;
 use vff_core::metrics::clearances;
 use vff_core::scenario;
-use vff_core::simulate::{BatchOptions, CONTACT_SPEED, ScoredRun, Width, run_batch};
+use vff_core::simulate::{BatchOptions, CONTACT_SPEED, Instructions, ScoredRun, Width, run_batch};
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, SimulationError};
@@ -51,6 +51,7 @@ pub fn simulate_batch<'py>(
         descent,
         threads,
         width,
+        instructions: Instructions::Widest,
     };
     let sets: Vec<Gains> = gains
         .as_slice()?

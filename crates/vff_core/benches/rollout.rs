@@ -9,9 +9,16 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::laws::VirtualForceField;
 use vff_core::metrics::Weights;
 use vff_core::scenario::Scenario;
-use vff_core::simulate::{BatchOptions, Options, ScoredRun, Width, run_batch, simulate};
+use vff_core::simulate::{
+    BatchOptions, Instructions, Options, ScoredRun, Width, run_batch, simulate,
+};
 
-fn batch(scenario: &Scenario, law: &VirtualForceField, width: Width) -> Vec<ScoredRun> {
+fn batch(
+    scenario: &Scenario,
+    law: &VirtualForceField,
+    width: Width,
+    instructions: Instructions,
+) -> Vec<ScoredRun> {
     let third = 1.0 / 3.0;
     let options = BatchOptions {
         run: Options::default(),
@@ -23,6 +30,7 @@ fn batch(scenario: &Scenario, law: &VirtualForceField, width: Width) -> Vec<Scor
         descent: false,
         threads: Some(1),
         width: Some(width),
+        instructions,
     };
     let scenarios = std::slice::from_ref(scenario);
     run_batch(
@@ -43,22 +51,29 @@ fn rollouts(criterion: &mut Criterion) {
         ("8", Width::Eight),
         ("16", Width::Sixteen),
     ];
+    let levels = [
+        ("baseline", Instructions::Baseline),
+        ("widest", Instructions::Widest),
+    ];
     for (scene, scenario) in [
         ("c4", scenes::configuration_4()),
         ("always_active", scenes::always_active()),
     ] {
         for mode in ["off", "capped", "full"] {
             let law = scenes::law(mode);
-            let mut group = criterion.benchmark_group(format!("batch/{scene}/{mode}"));
-            for (name, width) in widths {
-                let rows = batch(&scenario, &law, width);
-                let evaluations = rows.iter().map(|row| row.run.force_evaluations).sum();
-                group.throughput(Throughput::Elements(evaluations));
-                group.bench_function(name, |bencher| {
-                    bencher.iter(|| batch(black_box(&scenario), &law, width));
-                });
+            for (level, instructions) in levels {
+                let name = format!("batch/{scene}/{mode}/{level}");
+                let mut group = criterion.benchmark_group(name);
+                for (name, width) in widths {
+                    let rows = batch(&scenario, &law, width, instructions);
+                    let evaluations = rows.iter().map(|row| row.run.force_evaluations).sum();
+                    group.throughput(Throughput::Elements(evaluations));
+                    group.bench_function(name, |bencher| {
+                        bencher.iter(|| batch(black_box(&scenario), &law, width, instructions));
+                    });
+                }
+                group.finish();
             }
-            group.finish();
         }
     }
     let scenario = scenes::configuration_4();

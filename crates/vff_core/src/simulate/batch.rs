@@ -68,6 +68,16 @@ impl Width {
     }
 }
 
+/// Which instructions of the processor a batch may use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instructions {
+    /// The widest vectors that the processor has.
+    #[default]
+    Widest,
+    /// Those that every processor of its family has.
+    Baseline,
+}
+
 /// Options of a batch.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchOptions {
@@ -81,6 +91,8 @@ pub struct BatchOptions {
     pub threads: Option<usize>,
     /// Lanes; chosen when `None`.
     pub width: Option<Width>,
+    /// Instructions that may be used; never changes a bit of the result.
+    pub instructions: Instructions,
 }
 
 /// A run of a batch with its score.
@@ -221,7 +233,11 @@ fn run_group(
         options,
         interrupted,
     };
-    let mut runs = pulp::Arch::new().dispatch(job)?;
+    let processor = match options.instructions {
+        Instructions::Widest => pulp::Arch::new(),
+        Instructions::Baseline => pulp::Arch::Scalar,
+    };
+    let mut runs = processor.dispatch(job)?;
     runs.truncate(sets.len());
     Ok(runs)
 }

@@ -8,7 +8,7 @@ mod rollout;
 mod runs;
 mod scene;
 
-pub use batch::{BatchOptions, ScoredRun, Width, run_batch};
+pub use batch::{BatchOptions, Instructions, ScoredRun, Width, run_batch};
 pub use options::{Integrator, Options};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
