@@ -98,3 +98,24 @@ def test_moving_obstacle_may_cover_the_goal() -> None:
     run = nav.simulate(nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[person]), nav.VirtualForceField())
     assert np.isfinite(run.position).all()
     assert np.isfinite(run.force).all()
+
+
+def test_force_that_overflows_is_an_error_not_a_robot_at_rest() -> None:
+    far = nav.Scenario(start=(0.0, 0.0), goal=(1e300, 0.0))
+    with pytest.raises(nav.SimulationError, match="non-finite at 0 s"):
+        nav.simulate(far, LAW)
+
+
+def test_error_of_a_batch_names_the_row() -> None:
+    scenes = [nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0)), nav.Scenario(start=(5.0, 0.0), goal=(0.0, 0.0))]
+    sets = [LAW.gains, (1e308, 0.0, 0.0, 0.0)]
+    for lanes in (1, 8):
+        with pytest.raises(nav.SimulationError, match=r"\(run [23]\)"):
+            nav.simulate_batch(scenes, LAW, sets, lanes=lanes)
+
+
+def test_control_period_longer_than_the_run_is_one_sample() -> None:
+    scene = nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), control_period=1e6, time_limit=20.0)
+    table = nav.simulate_batch([scene], LAW)
+    assert table.force_evaluations.tolist() == [1]
+    assert table.outcome.tolist() == ["arrived"]

@@ -39,8 +39,8 @@ pub enum NavigationError {
         /// What was given.
         value: Given,
     },
-    /// The state of a run is no longer finite.
-    #[error("the state became non-finite at {time} s (run {run})")]
+    /// The state of a run, or the force on it, is no longer finite.
+    #[error("the state or the force became non-finite at {time} s (run {run})")]
     NonFinite {
         /// Index of the run.
         run: usize,
@@ -70,6 +70,18 @@ impl NavigationError {
             name: name.into(),
             requirement,
             value,
+        }
+    }
+
+    /// The same error with the index of the run among more runs.
+    #[must_use]
+    pub fn of_run(self, index: impl FnOnce(usize) -> usize) -> Self {
+        match self {
+            Self::NonFinite { run, time } => Self::NonFinite {
+                run: index(run),
+                time,
+            },
+            other => other,
         }
     }
 

@@ -2,6 +2,9 @@
 
 use crate::error::{Given, NavigationError, Result, finite_pair};
 
+/// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
+const STOP_OFFSET: f64 = 5e-7;
+
 /// Position, velocity and acceleration of a body at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
@@ -103,9 +106,7 @@ impl Motion {
             let speed_squared = velocity[0] * velocity[0] + velocity[1] * velocity[1];
             let along = way[0] * velocity[0] + way[1] * velocity[1];
             let across = way[0] * velocity[1] - way[1] * velocity[0];
-            let length = way[0].hypot(way[1]);
-            // Half a micrometre of sideways offset a metre is rounding of typed numbers.
-            if !(along > 0.0 && across.abs() <= 5e-7 * length * speed_squared.sqrt()) {
+            if !(along > 0.0 && across.abs() <= STOP_OFFSET * speed_squared.sqrt()) {
                 let rule = "lie ahead of the start along the velocity";
                 return Err(NavigationError::invalid("stop", rule, Given::Pair(stop)));
             }

@@ -44,9 +44,6 @@ const SPECIAL: [f64; 16] = [
     1e-300,
 ];
 
-/// Stack of a thread in bytes: without optimization every temporary of the kernels has its place.
-const STACK: usize = 16 << 20;
-
 /// Bits of a computed number; Rust leaves the sign and the payload of a computed NaN open.
 fn computed(value: f64) -> u64 {
     if value.is_nan() {
@@ -325,18 +322,11 @@ fn assert_same_in_every_width(
             run,
             weights,
             descent,
-            threads: None,
+            threads: Some(threads),
             width: Some(Width::of(lanes).unwrap()),
             instructions,
         };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .stack_size(STACK)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            bits(&run_batch(scenarios, law, sets, &options, &|| false, &|_| ()).unwrap())
-        })
+        bits(&run_batch(scenarios, law, sets, &options, &|| false, &|_| ()).unwrap())
     };
     let first = table(1, 1, Instructions::Baseline);
     assert_eq!(first.len(), sets.len() * scenarios.len());
@@ -400,7 +390,7 @@ fn neither_width_nor_threads_change_a_bit_of_any_mode() {
         Stabilizing::Full,
     ] {
         let law = law(NEW, stabilizing);
-        assert_same_in_every_width(&law, &scenarios(), &gain_sets()[..7], coarse(), false);
+        assert_same_in_every_width(&law, &scenarios(), &gain_sets()[..5], coarse(), false);
     }
 }
 
@@ -414,7 +404,7 @@ fn neither_width_nor_threads_change_a_bit_with_other_side_rules() {
             },
             ..law(NEW, Stabilizing::Off)
         };
-        assert_same_in_every_width(&law, &scenarios(), &gain_sets()[..5], coarse(), false);
+        assert_same_in_every_width(&law, &scenarios(), &gain_sets()[..3], coarse(), false);
     }
 }
 
@@ -443,6 +433,6 @@ fn neither_width_nor_threads_change_a_bit_of_any_integrator() {
             hold,
             stop_on_contact,
         };
-        assert_same_in_every_width(&law, exact, &gain_sets()[..7], options, false);
+        assert_same_in_every_width(&law, exact, &gain_sets()[..5], options, false);
     }
 }

@@ -1,6 +1,7 @@
 //! Many runs: gain sets side by side in lanes, lane groups and scenarios over all cores.
 
 use std::collections::HashMap;
+use std::marker::PhantomData;
 
 use rayon::prelude::*;
 
@@ -177,7 +178,9 @@ fn run_all(
             let (scenario, group) = (task / groups, task % groups);
             let sets = &gains[group * lanes..gains.len().min((group + 1) * lanes)];
             let runs = run_group(width, &scenarios[scenario], law, sets, options, interrupted)
-                .map_err(|error| renumbered(error, group * lanes, scenarios.len(), scenario))?;
+                .map_err(|error| {
+                    error.of_run(|run| (group * lanes + run) * scenarios.len() + scenario)
+                })?;
             progress(sets.len());
             Ok(runs)
         })
@@ -197,22 +200,6 @@ fn run_all(
     Ok(rows)
 }
 
-/// The error of a lane as the error of a row.
-fn renumbered(
-    error: NavigationError,
-    first_set: usize,
-    scenarios: usize,
-    scenario: usize,
-) -> NavigationError {
-    match error {
-        NavigationError::NonFinite { run, time } => NavigationError::NonFinite {
-            run: (first_set + run) * scenarios + scenario,
-            time,
-        },
-        other => other,
-    }
-}
-
 /// Gain sets of one task through one scenario.
 fn run_group(
     width: Width,
@@ -226,60 +213,67 @@ fn run_group(
         return Err(NavigationError::Interrupted);
     }
     let job = GroupJob {
-        width,
         scenario,
         law,
         sets,
         options,
         interrupted,
+        kind: PhantomData,
     };
-    let processor = match options.instructions {
-        Instructions::Widest => pulp::Arch::new(),
-        Instructions::Baseline => pulp::Arch::Scalar,
-    };
-    let mut runs = processor.dispatch(job)?;
+    // One job for each kind of run: in one body an unoptimized build would need more stack than
+    // a thread has.
+    let mut runs = match (width, options.descent) {
+        (Width::One, false) => job.dispatch::<f64, (), false>(),
+        (Width::One, true) => job.dispatch::<f64, DescentCounter<f64>, true>(),
+        (Width::Four, false) => job.dispatch::<Lanes<4>, (), false>(),
+        // Sixteen lanes are two groups of eight in step, which share the obstacles' motion.
+        (Width::Eight | Width::Sixteen, false) => job.dispatch::<Lanes<8>, (), false>(),
+        (_, true) => job.dispatch::<Lanes<8>, DescentCounter<Lanes<8>>, true>(),
+    }?;
     runs.truncate(sets.len());
     Ok(runs)
 }
 
 /// A task that is compiled once for each instruction set; the widest one that the processor has
 /// is chosen at run time. The arithmetic is the same, bit for bit.
-struct GroupJob<'a> {
-    width: Width,
+struct GroupJob<'a, K = ()> {
     scenario: &'a Scenario,
     law: &'a VirtualForceField,
     sets: &'a [Gains],
     options: &'a BatchOptions,
     interrupted: Interrupted<'a>,
+    kind: PhantomData<K>,
 }
 
-impl pulp::NullaryFnOnce for GroupJob<'_> {
+/// Width, recorder, and whether the Lyapunov function is wanted.
+struct Kind<R, C, const RECORD: bool>(PhantomData<(R, C)>);
+
+impl<'a> GroupJob<'a> {
+    fn dispatch<R: Real, C: Recorder<R> + Default, const RECORD: bool>(
+        self,
+    ) -> Result<Vec<RunSummary>> {
+        let processor = match self.options.instructions {
+            Instructions::Widest => pulp::Arch::new(),
+            Instructions::Baseline => pulp::Arch::Scalar,
+        };
+        processor.dispatch(GroupJob::<'a, Kind<R, C, RECORD>> {
+            scenario: self.scenario,
+            law: self.law,
+            sets: self.sets,
+            options: self.options,
+            interrupted: self.interrupted,
+            kind: PhantomData,
+        })
+    }
+}
+
+impl<R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::NullaryFnOnce
+    for GroupJob<'_, Kind<R, C, RECORD>>
+{
     type Output = Result<Vec<RunSummary>>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        match (self.width, self.options.descent) {
-            (Width::One, false) => self.run::<f64, (), false>(),
-            (Width::One, true) => self.run::<f64, DescentCounter<f64>, true>(),
-            (Width::Four, false) => self.run::<Lanes<4>, (), false>(),
-            // Sixteen lanes are two groups of eight in step, which share the obstacles' motion.
-            (Width::Eight | Width::Sixteen, false) => self.run::<Lanes<8>, (), false>(),
-            (_, true) => self.run::<Lanes<8>, DescentCounter<Lanes<8>>, true>(),
-        }
-    }
-}
-
-impl GroupJob<'_> {
-    #[inline(always)]
-    fn run<R: Real, C: Recorder<R> + Default, const RECORD: bool>(
-        &self,
-    ) -> Result<Vec<RunSummary>> {
-        let Self {
-            scenario,
-            law,
-            options,
-            ..
-        } = *self;
         let lanes = self
             .sets
             .chunks(R::WIDTH)
@@ -287,14 +281,19 @@ impl GroupJob<'_> {
         let mut team: Vec<_> = lanes
             .map(|(first, rest)| {
                 let gains = GainLanes::<R>::gather(*first, rest);
-                let law = ForceFieldLaw::<R, RECORD>::new(law, gains, scenario);
+                let law = ForceFieldLaw::<R, RECORD>::new(self.law, gains, self.scenario);
                 Member {
                     law,
                     recorder: C::default(),
                 }
             })
             .collect();
-        run_team(scenario, &mut team, &options.run, self.interrupted)
+        run_team(
+            self.scenario,
+            &mut team,
+            &self.options.run,
+            self.interrupted,
+        )
     }
 }
 
@@ -337,7 +336,16 @@ impl NominalRuns {
             .collect();
         let runs: Vec<Vec<RunSummary>> = groups
             .par_iter()
-            .map(|(index, chunk)| run_group(width, &ways[*index], law, chunk, &free, interrupted))
+            .map(|(index, chunk)| {
+                let row = |run: usize| {
+                    let same = |set: &Gains| chunk.get(run).is_some_and(|own| key(own) == key(set));
+                    let set = gains.iter().position(same).unwrap_or(0);
+                    let scenario = way.iter().position(|known| known == index).unwrap_or(0);
+                    set * scenarios.len() + scenario
+                };
+                run_group(width, &ways[*index], law, chunk, &free, interrupted)
+                    .map_err(|error| error.of_run(row))
+            })
             .collect::<Result<_>>()?;
         let runs = groups
             .iter()

@@ -3,7 +3,7 @@
 use crate::error::{NavigationError, Result};
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Mask, Real, Vec2};
-use crate::laws::{Command, Law, Situation};
+use crate::laws::{Law, Situation};
 use crate::measurement::{Measured, Sensor};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
@@ -13,8 +13,11 @@ use crate::simulate::record::Recorder;
 use crate::simulate::runs::Runs;
 use crate::simulate::scene::{Scene, body_at};
 
-/// Samples between two questions whether to stop; about a millisecond.
-const SAMPLES_PER_QUESTION: usize = 512;
+/// Blocks of steps between two questions whether to stop; about a millisecond.
+const BLOCKS_PER_QUESTION: usize = 512;
+
+/// Most steps for which the motion of the obstacles is worked out ahead.
+const STEPS_PER_BLOCK: usize = 64;
 
 /// A lane group with its law and its recorder.
 pub struct Member<L, C> {
@@ -38,42 +41,53 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<RunSummary>> {
     let clock = options.clock(scenario)?;
-    let mut scene = Scene::new(scenario, &clock, options.integrator == Integrator::Rk4);
+    let staged = options.integrator == Integrator::Rk4 && !options.hold;
+    let mut scene = Scene::new(
+        scenario,
+        clock.steps_per_sample.min(STEPS_PER_BLOCK),
+        staged,
+    );
     let mut sensor = Sensor::new(scenario);
     let mut seen = scene.frames[0].clone();
     let mut groups: Vec<Runs<'_, R>> = team
         .iter()
         .map(|_| Runs::new(scenario, clock, &seen))
         .collect();
-    let mut until_question = SAMPLES_PER_QUESTION;
+    let mut until_question = BLOCKS_PER_QUESTION;
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
-        let steps = clock.steps_per_sample.min(clock.steps - first);
+        let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
+        let steps = until_sample.min(clock.steps - first).min(STEPS_PER_BLOCK);
+        let samples = until_sample == clock.steps_per_sample;
         scene.advance(&clock, first);
-        let measured = sensor
-            .as_mut()
-            .map(|sensor| sensor.measure(&scene.frames[0], &mut seen));
-        let period = Period {
+        let block = Block {
             scene: &scene,
-            seen: if measured.is_some() {
-                &seen
-            } else {
-                &scene.frames[0]
-            },
-            measured,
             first,
             steps,
         };
+        let measured = sensor
+            .as_mut()
+            .filter(|_| samples)
+            .map(|sensor| sensor.measure(&scene.frames[0], &mut seen));
+        let known = if sensor.is_some() {
+            &seen
+        } else {
+            &scene.frames[0]
+        };
         for (index, (runs, member)) in groups.iter_mut().zip(team.iter_mut()).enumerate() {
+            if samples && runs.running.any() {
+                let time = clock.time(first);
+                sample(runs, member, known, measured, &scene.frames[0], time)
+                    .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
+            }
             if runs.running.any() {
-                run_period(runs, member, &period, options)
-                    .map_err(|error| of_group(error, index * R::WIDTH))?;
+                run_block(runs, member, &block, options);
             }
         }
         first += steps;
         until_question -= 1;
         if until_question == 0 {
-            until_question = SAMPLES_PER_QUESTION;
+            until_question = BLOCKS_PER_QUESTION;
             if interrupted() {
                 return Err(NavigationError::Interrupted);
             }
@@ -83,7 +97,7 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
         let time = clock.time(first);
         runs.check_finite(time)
-            .map_err(|error| of_group(error, index * R::WIDTH))?;
+            .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
         runs.end(runs.running, time);
         member.recorder.end(
             runs.first_end(),
@@ -104,67 +118,67 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     Ok(summaries)
 }
 
-/// The error of a lane as the error of a run of the team.
-fn of_group(error: NavigationError, first: usize) -> NavigationError {
-    match error {
-        NavigationError::NonFinite { run, time } => NavigationError::NonFinite {
-            run: first + run,
-            time,
-        },
-        other => other,
-    }
-}
-
-/// What all groups share in a control period.
-struct Period<'a> {
+/// Steps that all groups take with the same obstacles.
+struct Block<'a> {
     scene: &'a Scene<'a>,
-    seen: &'a [Body],
-    measured: Option<Measured>,
     /// Step at which it begins.
     first: usize,
     /// Number of its steps.
     steps: usize,
 }
 
-/// One control period of a group: a sample of the force, then its steps.
+/// A sample of the force for the runs of a group.
 #[inline(always)]
-fn run_period<R: Real, L: Law<R>, C: Recorder<R>>(
+fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs: &mut Runs<'_, R>,
     member: &mut Member<L, C>,
-    period: &Period<'_>,
-    options: &Options,
+    known: &[Body],
+    measured: Option<Measured>,
+    actual: &[Body],
+    time: f64,
 ) -> Result<()> {
     let clock = runs.clock;
-    let begin = clock.time(period.first);
-    runs.check_finite(begin)?;
-    runs.rest(begin);
+    runs.check_finite(time)?;
+    runs.rest(time);
     if !runs.running.any() {
         return Ok(());
     }
-    let robot = observe(runs, period.measured);
-    let situation = Situation {
-        bodies: period.seen,
+    let robot = observe(runs, measured);
+    let command = member.law.command(&Situation {
+        bodies: known,
         robot,
         interval: clock.interval,
-    };
-    let command = member.law.command(&situation);
-    let acceleration = runs.scenario.robot.acceleration(command.force);
-    runs.push = acceleration.scale(R::splat(clock.step));
+    });
+    runs.check_force(command.force, time)?;
+    runs.command = command;
+    runs.acceleration = runs.scenario.robot.acceleration(command.force);
+    runs.push = runs.acceleration.scale(R::splat(clock.step));
     runs.count_sample();
-    runs.look_ahead(&period.scene.frames[0]);
+    runs.look_ahead(actual);
     member.recorder.sample(&command, runs.running);
-    for step in 0..period.steps {
-        let bodies = &period.scene.frames[step];
-        let time = clock.time(period.first + step);
-        record(runs, member, time, &command, bodies);
+    Ok(())
+}
+
+/// Steps of a group under the held force.
+#[inline(always)]
+fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
+    runs: &mut Runs<'_, R>,
+    member: &mut Member<L, C>,
+    block: &Block<'_>,
+    options: &Options,
+) {
+    let clock = runs.clock;
+    for step in 0..block.steps {
+        let time = clock.time(block.first + step);
+        record(runs, member, time, &block.scene.frames[step]);
         let before = runs.position;
         match options.integrator {
             Integrator::SemiImplicitEuler => semi_implicit_euler(runs),
-            Integrator::Rk4 if options.hold => rk4_held(runs, acceleration),
-            Integrator::Rk4 => rk4(runs, acceleration, &mut member.law, period.scene),
+            Integrator::Rk4 if options.hold => rk4_held(runs),
+            Integrator::Rk4 => rk4(runs, &mut member.law, block.scene),
         }
-        let later = clock.time(period.first + step + 1);
-        runs.account(&period.scene.frames[step + 1], before, later);
+        let later = clock.time(block.first + step + 1);
+        runs.account(&block.scene.frames[step + 1], before, later);
         if options.stop_on_contact {
             runs.stop_at_contact(later);
         }
@@ -172,7 +186,6 @@ fn run_period<R: Real, L: Law<R>, C: Recorder<R>>(
             break;
         }
     }
-    Ok(())
 }
 
 #[inline(always)]
@@ -180,7 +193,6 @@ fn record<R: Real, L, C: Recorder<R>>(
     runs: &Runs<'_, R>,
     member: &mut Member<L, C>,
     time: f64,
-    command: &Command<R>,
     bodies: &[Body],
 ) {
     member.recorder.row(
@@ -188,7 +200,7 @@ fn record<R: Real, L, C: Recorder<R>>(
         runs.position,
         runs.velocity,
         &runs.currents,
-        command,
+        &runs.command,
         bodies,
     );
 }
@@ -226,10 +238,10 @@ fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
-fn rk4_held<R: Real>(runs: &mut Runs<'_, R>, acceleration: Vec2<R>) {
+fn rk4_held<R: Real>(runs: &mut Runs<'_, R>) {
     let robot = &runs.scenario.robot;
     let Clock { step, .. } = runs.clock;
-    let at = |share: f64| runs.velocity + acceleration.scale(R::splat(share * step));
+    let at = |share: f64| runs.velocity + runs.acceleration.scale(R::splat(share * step));
     let middle = robot.limited_velocity(at(0.5)).0;
     let (last, speed) = robot.limited_velocity(at(1.0));
     let weighted = runs.velocity + middle.scale(R::splat(4.0)) + last;
@@ -244,7 +256,8 @@ fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) ->
 }
 
 /// Runge-Kutta of order 4 with the force evaluated in every stage.
-fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, first: Vec2<R>, law: &mut L, scene: &Scene<'_>) {
+fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_>) {
+    let first = runs.acceleration;
     let robot = &runs.scenario.robot;
     let Clock { step, interval, .. } = runs.clock;
     let (start, velocity) = (runs.position, runs.velocity);

@@ -3,6 +3,7 @@
 use crate::error::{NavigationError, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::{Mask, Real, Vec2};
+use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::scenario::Scenario;
 use crate::simulate::options::Clock;
@@ -25,6 +26,9 @@ pub(crate) struct Runs<'a, R: Real> {
     pub speed: R,
     pub currents: [R; 3],
     pub running: R::Mask,
+    /// The held force, and what it accelerates with, in m/s^2.
+    pub command: Command<R>,
+    pub acceleration: Vec2<R>,
     /// Change of velocity in one step of the held force, in m/s.
     pub push: Vec2<R>,
     /// Measured position at the sample before, if it was measured with an error.
@@ -63,6 +67,12 @@ impl<'a, R: Real> Runs<'a, R> {
             speed: R::zero(),
             currents: [R::zero(); 3],
             running: R::Mask::splat(true),
+            command: Command {
+                force: Vec2::zero(),
+                stabilizing: Vec2::zero(),
+                lyapunov: R::splat(f64::NAN),
+            },
+            acceleration: Vec2::zero(),
             push: Vec2::zero(),
             last_measured: None,
             goal: Vec2::splat(scenario.goal),
@@ -247,7 +257,19 @@ impl<'a, R: Real> Runs<'a, R> {
     pub fn check_finite(&self, time: f64) -> Result<()> {
         let limit = R::splat(f64::INFINITY);
         let finite = |vector: Vec2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
-        let lost = self.running & !(finite(self.position) & finite(self.velocity));
+        self.check(finite(self.position) & finite(self.velocity), time)
+    }
+
+    /// A force whose magnitude overflows has no direction left.
+    #[inline(always)]
+    pub fn check_force(&self, force: Vec2<R>, time: f64) -> Result<()> {
+        let sound = force.dot(force).lt(R::splat(f64::INFINITY));
+        self.check(sound, time)
+    }
+
+    #[inline(always)]
+    fn check(&self, sound: R::Mask, time: f64) -> Result<()> {
+        let lost = self.running & !sound;
         if lost.any() {
             let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
             return Err(NavigationError::NonFinite { run, time });

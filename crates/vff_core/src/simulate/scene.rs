@@ -4,11 +4,11 @@ use crate::forces::geometry::Body;
 use crate::scenario::{PlacedObstacle, Scenario};
 use crate::simulate::options::Clock;
 
-/// Where the obstacles are at the steps of one control period.
+/// Where the obstacles are at the steps of one block.
 pub(crate) struct Scene<'a> {
     obstacles: &'a [PlacedObstacle],
     cursors: Vec<usize>,
-    /// Bodies at the begin of the period and after each of its steps.
+    /// Bodies at the begin of the block and after each of its steps.
     pub frames: Vec<Vec<Body>>,
     /// Bodies in the middle of the first step, if an integrator asks for them.
     pub middle: Vec<Body>,
@@ -26,7 +26,7 @@ pub(crate) fn body_at(placed: &PlacedObstacle, time: f64, cursor: &mut usize) ->
 }
 
 impl<'a> Scene<'a> {
-    pub fn new(scenario: &'a Scenario, clock: &Clock, staged: bool) -> Self {
+    pub fn new(scenario: &'a Scenario, steps: usize, staged: bool) -> Self {
         let obstacles = &scenario.obstacles;
         let bodies: Vec<Body> = obstacles
             .iter()
@@ -35,13 +35,13 @@ impl<'a> Scene<'a> {
         Self {
             obstacles,
             cursors: vec![0; obstacles.len()],
-            frames: vec![bodies.clone(); clock.steps_per_sample + 1],
+            frames: vec![bodies.clone(); steps + 1],
             middle: bodies,
             staged,
         }
     }
 
-    /// Moves on to the period that begins at a step.
+    /// Moves on to the block that begins at a step.
     pub fn advance(&mut self, clock: &Clock, first: usize) {
         for (index, placed) in self.obstacles.iter().enumerate() {
             if placed.stationary {
