@@ -1,5 +1,6 @@
 //! The one map from core errors to Python exceptions.
 
+use impact_core::error::{self as impact, ImpactError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use vff_core::error::{Given, NavigationError};
@@ -8,34 +9,70 @@ pyo3::import_exception!(hrsafety.errors, InvalidParameterError);
 pyo3::import_exception!(hrsafety.errors, SimulationError);
 
 /// A core error on its way to Python.
-pub struct CoreError(NavigationError);
+pub enum CoreError {
+    /// From the navigation core.
+    Navigation(NavigationError),
+    /// From the impact core.
+    Impact(ImpactError),
+}
 
 /// Result of a binding function.
 pub type CoreResult<T> = Result<T, CoreError>;
 
 impl From<NavigationError> for CoreError {
     fn from(error: NavigationError) -> Self {
-        Self(error)
+        Self::Navigation(error)
+    }
+}
+
+impl From<ImpactError> for CoreError {
+    fn from(error: ImpactError) -> Self {
+        Self::Impact(error)
     }
 }
 
 impl From<CoreError> for PyErr {
-    fn from(CoreError(error): CoreError) -> Self {
+    fn from(error: CoreError) -> Self {
         match error {
-            NavigationError::InvalidParameter {
-                name,
-                requirement,
-                value,
-            } => match value {
-                Given::Number(number) => {
-                    InvalidParameterError::new_err((name, requirement, number))
-                }
-                Given::Pair([x, y]) => InvalidParameterError::new_err((name, requirement, (x, y))),
-                Given::Count(count) => InvalidParameterError::new_err((name, requirement, count)),
-                Given::Word(word) => InvalidParameterError::new_err((name, requirement, word)),
-            },
-            NavigationError::Interrupted => PyKeyboardInterrupt::new_err(()),
-            other => SimulationError::new_err(other.to_string()),
+            CoreError::Navigation(error) => navigation_exception(error),
+            CoreError::Impact(error) => impact_exception(error),
         }
+    }
+}
+
+fn navigation_exception(error: NavigationError) -> PyErr {
+    match error {
+        NavigationError::InvalidParameter {
+            name,
+            requirement,
+            value,
+        } => match value {
+            Given::Number(number) => InvalidParameterError::new_err((name, requirement, number)),
+            Given::Pair([x, y]) => InvalidParameterError::new_err((name, requirement, (x, y))),
+            Given::Count(count) => InvalidParameterError::new_err((name, requirement, count)),
+            Given::Word(word) => InvalidParameterError::new_err((name, requirement, word)),
+        },
+        NavigationError::Interrupted => PyKeyboardInterrupt::new_err(()),
+        other => SimulationError::new_err(other.to_string()),
+    }
+}
+
+fn impact_exception(error: ImpactError) -> PyErr {
+    match error {
+        ImpactError::InvalidParameter {
+            name,
+            requirement,
+            value,
+        } => match value {
+            impact::Given::Number(number) => {
+                InvalidParameterError::new_err((name, requirement, number))
+            }
+            impact::Given::Count(count) => {
+                InvalidParameterError::new_err((name, requirement, count))
+            }
+            impact::Given::Word(word) => InvalidParameterError::new_err((name, requirement, word)),
+        },
+        ImpactError::Interrupted => PyKeyboardInterrupt::new_err(()),
+        other @ ImpactError::Threads { .. } => SimulationError::new_err(other.to_string()),
     }
 }

@@ -1,8 +1,10 @@
-//! Python binding: registration. The module is private; `hrsafety.navigation` is its face.
+//! Python binding: registration. The module is private; `hrsafety.navigation` and
+//! `hrsafety.impact` are its faces.
 
 mod arrays;
 mod batch;
 mod errors;
+mod impact;
 mod parameters;
 mod run;
 
@@ -13,6 +15,29 @@ use pyo3::prelude::*;
 mod _hrsafety {
     #[pymodule_export]
     use crate::batch::simulate_batch;
+    #[pymodule_export]
+    use crate::impact::design::{foam_boundary, foam_fastest, foam_ratios};
+    #[pymodule_export]
+    use crate::impact::direct_drive::{DirectDrive, simulate_direct_drive};
+    #[pymodule_export]
+    use crate::impact::history::{SetPoint, impact_simulate, stopping_segments};
+    #[pymodule_export]
+    use crate::impact::identify::{
+        drop_trajectory, fit_open_loop, identify_direct_drive, identify_foam, pd_gains,
+        tube_inertia,
+    };
+    #[pymodule_export]
+    use crate::impact::joints::{Joint, effective_one_joint, effective_two_joints, uniform_links};
+    #[pymodule_export]
+    use crate::impact::many::{impact_metrics_batch, impact_status_words};
+    #[pymodule_export]
+    use crate::impact::parameters::{ConstrainedHead, Foam, Head, Manipulator};
+    #[pymodule_export]
+    use crate::impact::signal::{
+        contiguous_level, hic, hic_half_sine, hic_square, hic_triangle, moving_average,
+    };
+    #[pymodule_export]
+    use crate::impact::single::{impact_gradient_names, impact_gradients, impact_metrics};
     #[pymodule_export]
     use crate::parameters::{
         DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, VirtualForceField,

@@ -1,2 +1,29 @@
-//! Impact of a manipulator on a human head: parameters and errors.
+//! Impact of a manipulator with a foam covering on a human head, neck and torso.
+//!
+//! Equations follow L. Zeng, "Design and control of human-friendly robots", doctoral thesis,
+//! Canada, 2011, chapters 3 and 4 and appendix A, with their misprints corrected.
+//! SI units and radians throughout.
+
 #![forbid(unsafe_code)]
+
+pub mod batch;
+pub mod contact;
+pub mod criteria;
+pub mod direct_drive;
+pub mod drive;
+pub mod dual;
+pub mod effective;
+pub mod error;
+pub mod fast;
+pub mod foam_design;
+pub mod gradients;
+pub mod identify;
+pub mod joint;
+pub mod lanes;
+pub mod motion;
+pub mod parameters;
+pub mod response;
+pub mod roots;
+pub mod series;
+pub mod signal;
+pub mod windows;

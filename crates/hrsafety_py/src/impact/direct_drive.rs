@@ -1,0 +1,95 @@
+//! Simulated direct-drive joint in an impact.
+
+use impact_core::direct_drive::{self, DriveImpact};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::impact::parameters::{Foam, Head};
+
+/// Direct-drive joint with its controller.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct DirectDrive(direct_drive::DirectDrive);
+
+#[pymethods]
+impl DirectDrive {
+    #[new]
+    #[pyo3(signature = (*, inertia, lever_arm, torque_constant, amplifier_gain, viscous_friction,
+        static_friction, voltage_limit, proportional, derivative))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        inertia: f64,
+        lever_arm: f64,
+        torque_constant: f64,
+        amplifier_gain: f64,
+        viscous_friction: f64,
+        static_friction: f64,
+        voltage_limit: f64,
+        proportional: f64,
+        derivative: f64,
+    ) -> CoreResult<Self> {
+        let drive = direct_drive::DirectDrive {
+            inertia,
+            lever_arm,
+            torque_constant,
+            amplifier_gain,
+            viscous_friction,
+            static_friction,
+            voltage_limit,
+            proportional,
+            derivative,
+        };
+        Ok(Self(drive.checked()?))
+    }
+
+    /// Mass, damping and stiffness without friction and limit.
+    fn linear(&self) -> (f64, f64, f64) {
+        let manipulator = self.0.linear();
+        (manipulator.mass, manipulator.damping, manipulator.stiffness)
+    }
+}
+
+/// Histories of a direct-drive joint in an impact.
+#[pyfunction]
+#[pyo3(signature = (drive, foam, head, *, closing_speed, manipulator_speed, duration, step))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+pub fn simulate_direct_drive<'py>(
+    py: Python<'py>,
+    drive: &DirectDrive,
+    foam: &Foam,
+    head: &Head,
+    closing_speed: f64,
+    manipulator_speed: f64,
+    duration: f64,
+    step: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let impact = DriveImpact {
+        closing_speed,
+        manipulator_speed,
+        duration,
+        step,
+    };
+    let (drive, foam, head) = (&drive.0, &foam.0, &head.0);
+    let run = py
+        .detach(|| direct_drive::simulate_direct_drive(drive, foam, head, &impact))
+        .map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    fields.vector("time", run.time)?;
+    fields.vector("manipulator_position", run.manipulator_position)?;
+    fields.vector("manipulator_velocity", run.manipulator_velocity)?;
+    fields.vector("head_position", run.head_position)?;
+    fields.vector("head_velocity", run.head_velocity)?;
+    fields.vector("head_acceleration", run.head_acceleration)?;
+    fields.vector("contact_force", run.contact_force)?;
+    fields.vector("compression", run.compression)?;
+    fields.vector("command", run.command)?;
+    fields.vector("requested_command", run.requested_command)?;
+    fields.value("peak_head_acceleration", run.peak_head_acceleration)?;
+    fields.value("peak_contact_force", run.peak_contact_force)?;
+    fields.value("max_compression", run.max_compression)?;
+    fields.value("impact_duration", run.impact_duration)?;
+    fields.value("saturated_from", run.saturated_from.unwrap_or(f64::NAN))?;
+    fields.value("saturated_time", run.saturated_time)?;
+    Ok(fields.finish())
+}

@@ -1,0 +1,165 @@
+//! Histories of one impact.
+
+use impact_core::criteria::{self, MetricOptions, Metrics, Status};
+use impact_core::drive::{self, DriveSegment, Stop};
+use impact_core::parameters::{GRAVITY, System, Target};
+use impact_core::response::{
+    Approach, Contact, Method, ResponsePeaks, SimulationOptions, simulate,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::impact::parameters::{self, Foam, Manipulator, system};
+use crate::impact::single::row_tuple;
+
+/// Motion of the manipulator's set-point.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct SetPoint(drive::SetPoint);
+
+#[pymethods]
+impl SetPoint {
+    #[new]
+    #[pyo3(signature = (*, segments, feed_forward))]
+    fn new(segments: Vec<(f64, f64)>, feed_forward: bool) -> CoreResult<Self> {
+        let segments = segments
+            .into_iter()
+            .map(|(start, acceleration)| DriveSegment {
+                start,
+                acceleration,
+            })
+            .collect();
+        let set_point = drive::SetPoint {
+            segments,
+            feed_forward,
+        };
+        set_point
+            .check()
+            .map_err(|error| error.within("segments"))?;
+        Ok(Self(set_point))
+    }
+}
+
+/// Segments of a stop after detection.
+#[pyfunction]
+#[pyo3(signature = (*, manipulator_speed, detection, rest))]
+pub fn stopping_segments(
+    manipulator_speed: f64,
+    detection: f64,
+    rest: f64,
+) -> CoreResult<Vec<(f64, f64)>> {
+    let stop = Stop {
+        manipulator_speed,
+        detection,
+        rest,
+    };
+    let set_point = drive::SetPoint::stopping(&stop, false)?;
+    Ok(set_point
+        .segments
+        .iter()
+        .map(|segment| (segment.start, segment.acceleration))
+        .collect())
+}
+
+/// Columns of the response, and the row of its metrics.
+#[pyfunction]
+#[pyo3(signature = (manipulator, foam, head, *, closing_speed, manipulator_speed, duration, step,
+    runge_kutta, unilateral, set_point))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // extracted from a Python object
+pub fn impact_simulate<'py>(
+    py: Python<'py>,
+    manipulator: &Manipulator,
+    foam: &Foam,
+    head: parameters::Target,
+    closing_speed: f64,
+    manipulator_speed: Option<f64>,
+    duration: f64,
+    step: f64,
+    runge_kutta: bool,
+    unilateral: bool,
+    set_point: &SetPoint,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyTuple>)> {
+    let system = system(manipulator, foam, &head);
+    let approach = Approach {
+        closing_speed,
+        manipulator_speed,
+    };
+    let options = SimulationOptions {
+        duration,
+        step,
+        method: if runge_kutta {
+            Method::RungeKutta
+        } else {
+            Method::Exact
+        },
+        contact: if unilateral {
+            Contact::Unilateral
+        } else {
+            Contact::Linear
+        },
+        set_point: set_point.0.clone(),
+    };
+    let run = py
+        .detach(|| simulate(&system, &approach, &options))
+        .map_err(CoreError::from)?;
+    let row = metrics(&system, &approach, &options, run.peaks)?;
+    let fields = Fields::new(py);
+    fields.vector("time", run.time)?;
+    fields.vector("contact_force", run.contact_force)?;
+    fields.vector("head_acceleration", run.head_acceleration)?;
+    fields.vector("head_position", run.head_position)?;
+    fields.vector("head_velocity", run.head_velocity)?;
+    fields.vector("manipulator_position", run.manipulator_position)?;
+    fields.vector("manipulator_velocity", run.manipulator_velocity)?;
+    fields.vector("compression", run.compression)?;
+    fields.vector("release_times", run.releases)?;
+    fields.vector("touch_times", run.touches)?;
+    Ok((fields.finish(), row_tuple(py, &row, foam.0.linear_range)?))
+}
+
+/// Metrics of a response: all of them at constant speed, peaks with a moving set-point.
+fn metrics(
+    system: &System,
+    approach: &Approach,
+    options: &SimulationOptions,
+    peaks: Option<ResponsePeaks>,
+) -> CoreResult<Metrics> {
+    if options.set_point.segments.is_empty() {
+        let settings = MetricOptions {
+            manipulator_speed: approach.manipulator_speed,
+            ..MetricOptions::default()
+        };
+        return Ok(criteria::metrics(
+            system,
+            approach.closing_speed,
+            &settings,
+        )?);
+    }
+    let peaks = if peaks.is_some() {
+        peaks
+    } else {
+        let exact = SimulationOptions {
+            method: Method::Exact,
+            step: options.duration,
+            ..options.clone()
+        };
+        simulate(system, approach, &exact)?.peaks
+    };
+    let status = match peaks {
+        _ if system.head == Target::Constrained => Status::Constrained,
+        Some(found) if found.impact_duration.is_infinite() => Status::NoRelease,
+        Some(found) if found.compression > system.foam.linear_range => Status::BeyondLinearRange,
+        _ => Status::Released,
+    };
+    let row = Metrics::none(status);
+    Ok(peaks.map_or(row, |found| Metrics {
+        peak_head_acceleration: found.head_acceleration,
+        peak_head_acceleration_g: found.head_acceleration / GRAVITY,
+        peak_contact_force: found.contact_force,
+        max_compression: found.compression,
+        impact_duration: found.impact_duration,
+        ..row
+    }))
+}

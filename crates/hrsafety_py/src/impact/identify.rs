@@ -1,0 +1,203 @@
+//! Identification of foam and direct-drive joint.
+
+use impact_core::identify::{
+    self, DriveConstants, Drop, DropContact, DropModel, FoamFitSettings, Tube,
+};
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::Fields;
+use crate::errors::CoreError;
+
+type Samples<'py> = PyReadonlyArray1<'py, f64>;
+
+fn contact(attached: bool) -> DropContact {
+    if attached {
+        DropContact::Attached
+    } else {
+        DropContact::Unilateral
+    }
+}
+
+fn rows<const N: usize, const M: usize>(matrix: &[[f64; M]; N]) -> Vec<f64> {
+    matrix.iter().flatten().copied().collect()
+}
+
+/// Stiffness, damping ratio and friction from static and drop tests.
+#[pyfunction]
+#[pyo3(signature = (static_force, static_compression, drops, *, moving_mass, gravity, confidence,
+    attached, bootstrap, seed))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn identify_foam<'py>(
+    py: Python<'py>,
+    static_force: Samples<'py>,
+    static_compression: Samples<'py>,
+    drops: Vec<(Samples<'py>, Samples<'py>)>,
+    moving_mass: f64,
+    gravity: f64,
+    confidence: f64,
+    attached: bool,
+    bootstrap: usize,
+    seed: u64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let settings = FoamFitSettings {
+        moving_mass,
+        gravity,
+        confidence,
+        contact: contact(attached),
+        bootstrap,
+        seed,
+    };
+    let mut signals = Vec::with_capacity(drops.len());
+    for (time, position) in &drops {
+        signals.push(Drop {
+            time: time.as_slice()?,
+            position: position.as_slice()?,
+        });
+    }
+    let (force, compression) = (static_force.as_slice()?, static_compression.as_slice()?);
+    let fit = py
+        .detach(|| identify::identify_foam(force, compression, &signals, &settings))
+        .map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    fields.value("stiffness", fit.stiffness)?;
+    fields.value("damping_ratio", fit.damping_ratio)?;
+    fields.value("friction", fit.friction)?;
+    fields.matrix("covariance", rows(&fit.covariance), 3, 3)?;
+    fields.matrix("interval", rows(&fit.interval), 3, 2)?;
+    match fit.bootstrap_interval {
+        Some(interval) => fields.matrix("bootstrap_interval", rows(&interval), 3, 2)?,
+        None => fields.value("bootstrap_interval", py.None())?,
+    }
+    fields.vector("drop_heights", fit.drop_heights)?;
+    fields.value("force_deviation", fit.force_deviation)?;
+    fields.value("position_deviation", fit.position_deviation)?;
+    fields.value("degrees_of_freedom", fit.degrees_of_freedom)?;
+    fields.value("iterations", fit.iterations)?;
+    Ok(fields.finish())
+}
+
+/// Height of a mass that is dropped on foam.
+#[pyfunction]
+#[pyo3(signature = (time, *, height, mass, stiffness, damping_ratio, friction, gravity, attached))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn drop_trajectory<'py>(
+    py: Python<'py>,
+    time: Samples<'py>,
+    height: f64,
+    mass: f64,
+    stiffness: f64,
+    damping_ratio: f64,
+    friction: f64,
+    gravity: f64,
+    attached: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let model = DropModel {
+        mass,
+        stiffness,
+        damping_ratio,
+        friction,
+        height,
+        gravity,
+        contact: contact(attached),
+    };
+    let heights = identify::drop_trajectory(time.as_slice()?, &model).map_err(CoreError::from)?;
+    Ok(heights.into_pyarray(py).into_any())
+}
+
+/// Acceleration and decay of an open-loop test.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn fit_open_loop<'py>(
+    py: Python<'py>,
+    time: Samples<'py>,
+    angle: Samples<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let fit =
+        identify::fit_open_loop(time.as_slice()?, angle.as_slice()?).map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    fields.value("acceleration", fit.acceleration)?;
+    fields.value("decay", fit.decay)?;
+    fields.matrix("covariance", rows(&fit.covariance), 2, 2)?;
+    fields.matrix("interval", rows(&fit.interval), 2, 2)?;
+    fields.value("residual_deviation", fit.residual_deviation)?;
+    Ok(fields.finish())
+}
+
+/// Constants of a direct-drive joint from open-loop tests.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn identify_direct_drive<'py>(
+    py: Python<'py>,
+    voltage: Samples<'py>,
+    acceleration: Samples<'py>,
+    decay: Samples<'py>,
+    inertia: f64,
+    amplifier_gain: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let fit = identify::identify_direct_drive(
+        voltage.as_slice()?,
+        acceleration.as_slice()?,
+        decay.as_slice()?,
+        inertia,
+        amplifier_gain,
+    )
+    .map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    fields.value("command_gain", fit.command_gain)?;
+    fields.value("friction_offset", fit.friction_offset)?;
+    fields.value("decay", fit.decay)?;
+    fields.value("torque_constant", fit.torque_constant)?;
+    fields.value("viscous_friction", fit.viscous_friction)?;
+    fields.value("static_friction", fit.static_friction)?;
+    fields.matrix("covariance", rows(&fit.covariance), 2, 2)?;
+    fields.matrix("interval", rows(&fit.interval), 2, 2)?;
+    fields.vector("decay_interval", fit.decay_interval.to_vec())?;
+    Ok(fields.finish())
+}
+
+/// Proportional and derivative gain for a wanted stiffness and damping.
+#[pyfunction]
+#[pyo3(signature = (*, stiffness, damping, lever_arm, torque_constant, viscous_friction,
+    amplifier_gain))]
+pub fn pd_gains(
+    stiffness: f64,
+    damping: f64,
+    lever_arm: f64,
+    torque_constant: f64,
+    viscous_friction: f64,
+    amplifier_gain: f64,
+) -> PyResult<(f64, f64)> {
+    let constants = DriveConstants {
+        lever_arm,
+        torque_constant,
+        viscous_friction,
+        amplifier_gain,
+    };
+    let gains = identify::pd_gains(stiffness, damping, &constants).map_err(CoreError::from)?;
+    Ok((gains.proportional, gains.derivative))
+}
+
+/// Mass and inertia of a rectangular tube.
+#[pyfunction]
+#[pyo3(signature = (*, density, length, width, height, wall))]
+pub fn tube_inertia(
+    density: f64,
+    length: f64,
+    width: f64,
+    height: f64,
+    wall: f64,
+) -> PyResult<(f64, f64)> {
+    let tube = Tube {
+        density,
+        length,
+        width,
+        height,
+        wall,
+    };
+    let found = identify::tube_inertia(&tube).map_err(CoreError::from)?;
+    Ok((found.mass, found.inertia))
+}

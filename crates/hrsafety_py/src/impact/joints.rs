@@ -1,0 +1,114 @@
+//! Joints and the effective manipulator that they make.
+
+use impact_core::effective::{OneJoint, TwoJoints, UniformLinks};
+use impact_core::joint;
+use impact_core::parameters::Manipulator;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::errors::{CoreError, CoreResult};
+
+/// Elastic joint under control.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Joint(joint::Joint);
+
+#[pymethods]
+impl Joint {
+    #[new]
+    #[pyo3(signature = (*, inertia, mechanical_stiffness, mechanical_damping, control_stiffness,
+        control_damping))]
+    fn new(
+        inertia: f64,
+        mechanical_stiffness: f64,
+        mechanical_damping: f64,
+        control_stiffness: f64,
+        control_damping: f64,
+    ) -> CoreResult<Self> {
+        let joint = joint::Joint {
+            inertia,
+            mechanical_stiffness,
+            mechanical_damping,
+            control_stiffness,
+            control_damping,
+        };
+        Ok(Self(joint.checked()?))
+    }
+
+    /// Reduced stiffness.
+    #[getter]
+    fn stiffness(&self) -> f64 {
+        self.0.stiffness()
+    }
+
+    /// Reduced damping.
+    #[getter]
+    fn damping(&self) -> f64 {
+        self.0.damping()
+    }
+
+    /// Error of the reduced joint at frequencies.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn model_error<'py>(
+        &self,
+        py: Python<'py>,
+        omega: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let errors: Result<Vec<f64>, _> = omega
+            .as_slice()?
+            .iter()
+            .map(|frequency| self.0.model_error(*frequency))
+            .collect();
+        Ok(errors.map_err(CoreError::from)?.into_pyarray(py))
+    }
+}
+
+fn triple(manipulator: Manipulator) -> (f64, f64, f64) {
+    (manipulator.mass, manipulator.damping, manipulator.stiffness)
+}
+
+/// Effective mass, damping and stiffness of one joint.
+#[pyfunction]
+#[pyo3(signature = (*, inertia, damping, stiffness, lever_arm))]
+pub fn effective_one_joint(
+    inertia: f64,
+    damping: f64,
+    stiffness: f64,
+    lever_arm: f64,
+) -> CoreResult<(f64, f64, f64)> {
+    let joint = OneJoint {
+        inertia,
+        damping,
+        stiffness,
+        lever_arm,
+    };
+    Ok(triple(joint.manipulator()?))
+}
+
+/// Effective mass, damping and stiffness of two joints.
+#[pyfunction]
+#[pyo3(signature = (*, mass_matrix, damping, stiffness, second_link, lever_arm, elbow))]
+pub fn effective_two_joints(
+    mass_matrix: [[f64; 2]; 2],
+    damping: [f64; 2],
+    stiffness: [f64; 2],
+    second_link: f64,
+    lever_arm: f64,
+    elbow: f64,
+) -> CoreResult<(f64, f64, f64)> {
+    let joints = TwoJoints {
+        mass_matrix,
+        damping,
+        stiffness,
+        second_link,
+        lever_arm,
+        elbow,
+    };
+    Ok(triple(joints.manipulator()?))
+}
+
+/// Mass matrix of two uniform links.
+#[pyfunction]
+#[pyo3(signature = (*, mass, length, elbow))]
+pub fn uniform_links(mass: [f64; 2], length: [f64; 2], elbow: f64) -> CoreResult<[[f64; 2]; 2]> {
+    Ok(UniformLinks { mass, length }.mass_matrix(elbow)?)
+}

@@ -1,0 +1,12 @@
+//! Impact: conversions only, everything is computed by the core.
+
+pub mod design;
+pub mod direct_drive;
+pub mod history;
+pub mod identify;
+pub mod joints;
+pub mod many;
+pub mod parameters;
+pub mod signal;
+pub mod single;
+pub mod watch;

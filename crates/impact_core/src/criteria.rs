@@ -1,0 +1,472 @@
+//! Metrics of an impact on its continuous linear response.
+
+use crate::batch;
+use crate::error::{Result, finite, positive};
+use crate::motion::{Motion, cell_length};
+use crate::parameters::{GRAVITY, System, Target};
+use crate::roots::{Peak, maximum};
+use crate::series::Plant;
+use crate::windows::{Window, first_fall, held, injury};
+
+/// Widths of the windows of the head injury criteria, in s.
+pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
+/// Width of the windows of the 3 ms criteria, in s.
+pub const HELD_WINDOW: f64 = 0.003;
+/// Default time without release after which an impact counts as lasting, in s.
+pub const FREE_HORIZON: f64 = 0.2;
+/// Default time over which a constrained impact is looked at, in s.
+pub const CONSTRAINED_HORIZON: f64 = 0.05;
+/// Pieces of a cell between nodes of a search: a quarter of a radian of the fastest root.
+pub(crate) const PIECES: usize = 8;
+/// Rounding errors of the acceleration over the terms that it is the sum of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// What a row of metrics means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The acceleration of the head came back to zero.
+    Released,
+    /// It did not within the horizon; maxima are over the horizon.
+    NoRelease,
+    /// Released, but the foam was compressed beyond its linear range.
+    BeyondLinearRange,
+    /// The head cannot move; maxima are over the horizon.
+    Constrained,
+    /// The bodies do not close in.
+    NoImpact,
+    /// A parameter is out of range.
+    InvalidParameter,
+}
+
+impl Status {
+    /// All of them; the place of one is its code in a batch.
+    pub const ALL: [Self; 6] = [
+        Self::Released,
+        Self::NoRelease,
+        Self::BeyondLinearRange,
+        Self::Constrained,
+        Self::NoImpact,
+        Self::InvalidParameter,
+    ];
+
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Released => "released",
+            Self::NoRelease => "no_release",
+            Self::BeyondLinearRange => "beyond_linear_range",
+            Self::Constrained => "constrained",
+            Self::NoImpact => "no_impact",
+            Self::InvalidParameter => "invalid_parameter",
+        }
+    }
+}
+
+/// What metrics depend on beside system and closing speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MetricOptions {
+    /// Speed of the manipulator `v_r`, in m/s; the closing speed when `None`.
+    pub manipulator_speed: Option<f64>,
+    /// Time without release after which the search ends, in s; the default of the head when `None`.
+    pub horizon: Option<f64>,
+    /// Acceleration of gravity, in m/s^2.
+    pub gravity: f64,
+}
+
+impl Default for MetricOptions {
+    fn default() -> Self {
+        Self {
+            manipulator_speed: None,
+            horizon: None,
+            gravity: GRAVITY,
+        }
+    }
+}
+
+/// Metrics of one impact. Numbers that have no meaning are NaN: all of them without an impact,
+/// those of the head when it is constrained, those of 3 ms when the impact is shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metrics {
+    /// Largest acceleration of the head, in m/s^2.
+    pub peak_head_acceleration: f64,
+    /// The same in g.
+    pub peak_head_acceleration_g: f64,
+    /// Mean acceleration of the head over the impact, in g.
+    pub mean_head_acceleration_g: f64,
+    /// Largest contact force, in N.
+    pub peak_contact_force: f64,
+    /// Largest compression of the foam, in m.
+    pub max_compression: f64,
+    /// Time to the first zero of the head's acceleration, in s; infinite without one.
+    pub impact_duration: f64,
+    /// Head injury criterion, windows up to 15 ms.
+    pub hic15: f64,
+    /// Head injury criterion, windows up to 36 ms.
+    pub hic36: f64,
+    /// Largest mean over 3 ms, in g.
+    pub average_3ms_g: f64,
+    /// Largest level held for 3 ms, in g.
+    pub clip_3ms_g: f64,
+    /// Largest power from the manipulator into the foam `f_c x_r'`, in W.
+    pub peak_power_manipulator: f64,
+    /// Largest power of compression `f_c eps'`, in W.
+    pub peak_power_foam: f64,
+    /// What the row means.
+    pub status: Status,
+}
+
+impl Metrics {
+    /// A row without numbers.
+    #[must_use]
+    pub fn none(status: Status) -> Self {
+        let nan = f64::NAN;
+        Self {
+            peak_head_acceleration: nan,
+            peak_head_acceleration_g: nan,
+            mean_head_acceleration_g: nan,
+            peak_contact_force: nan,
+            max_compression: nan,
+            impact_duration: nan,
+            hic15: nan,
+            hic36: nan,
+            average_3ms_g: nan,
+            clip_3ms_g: nan,
+            peak_power_manipulator: nan,
+            peak_power_foam: nan,
+            status,
+        }
+    }
+}
+
+/// The four numbers that design needs, and where the compression is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// Acceleration of the head, in m/s^2; NaN if constrained.
+    pub head_acceleration: Peak,
+    /// Contact force, in N.
+    pub contact_force: Peak,
+    /// Compression of the foam, in m.
+    pub compression: Peak,
+    /// End of the impact, in s; infinite without one.
+    pub impact_duration: f64,
+    /// End of the search, in s.
+    pub end: f64,
+}
+
+/// Everything found on one response, with places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Findings {
+    /// The peaks.
+    pub peaks: Peaks,
+    /// Velocity gained by the head against the torso over the mean's duration, in m/s.
+    pub mean: f64,
+    /// Windows of the injury criteria, accelerations in m/s^2.
+    pub injury: [Window; 2],
+    /// Windows of the largest mean and held level over 3 ms, in m/s^2.
+    pub held: Option<(Window, Window)>,
+    /// Power from the manipulator, in W.
+    pub manipulator_power: Peak,
+    /// Power of compression, in W.
+    pub foam_power: Peak,
+}
+
+/// A response on which metrics are searched.
+pub struct Impact {
+    motion: Motion<f64>,
+    plant: Plant<f64>,
+    constrained: bool,
+    duration: f64,
+    end: f64,
+    pieces: usize,
+}
+
+impl Impact {
+    /// The response up to its first zero of the head's acceleration or the horizon.
+    ///
+    /// # Errors
+    /// The system is too fast for the horizon.
+    pub fn new(system: &System, closing_speed: f64, horizon: Option<f64>) -> Result<Self> {
+        let constrained = system.head == Target::Constrained;
+        let horizon = horizon.unwrap_or(if constrained {
+            CONSTRAINED_HORIZON
+        } else {
+            FREE_HORIZON
+        });
+        let plant = Plant::of(system);
+        let length = cell_length(&plant, horizon)?;
+        let mut impact = Self {
+            motion: Motion::new(&plant, closing_speed, length),
+            plant,
+            constrained,
+            duration: f64::INFINITY,
+            end: horizon,
+            pieces: 0,
+        };
+        impact.run(horizon);
+        impact.pieces = impact.pieces_of(impact.end);
+        Ok(impact)
+    }
+
+    fn run(&mut self, horizon: f64) {
+        while self.motion.end() < horizon {
+            let from = self.motion.end();
+            self.motion.grow();
+            if self.constrained {
+                continue;
+            }
+            let piece = self.motion.length() / PIECES as f64;
+            for index in 0..PIECES {
+                let start = from + piece * index as f64;
+                let stop = if index + 1 == PIECES {
+                    self.motion.end()
+                } else {
+                    from + piece * (index + 1) as f64
+                };
+                let stop = stop.min(horizon);
+                if start >= stop {
+                    break;
+                }
+                let fall = first_fall(
+                    |time| self.motion.head(time),
+                    start,
+                    stop,
+                    |time| self.noise(time),
+                );
+                if let Some(time) = fall {
+                    self.duration = time;
+                    self.end = time;
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Rounding error of the head's acceleration.
+    fn noise(&self, time: f64) -> f64 {
+        let [_, damping, stiffness] = self.plant.head;
+        let terms = self.plant.head[0] * self.motion.force(time)[0].abs()
+            + damping * self.motion.head(time)[0].abs()
+            + stiffness * self.motion.head_displacement(time).abs();
+        ROUNDING * terms
+    }
+
+    fn pieces_of(&self, duration: f64) -> usize {
+        let exact = duration / self.motion.length() * PIECES as f64;
+        // Bounded by the number of cells.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let pieces = exact.ceil() as usize;
+        pieces.max(PIECES)
+    }
+
+    /// The motion behind it.
+    #[must_use]
+    pub fn motion(&self) -> &Motion<f64> {
+        &self.motion
+    }
+
+    /// End of the search, in s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Largest acceleration of the head, in m/s^2; NaN if constrained.
+    #[must_use]
+    pub fn peak_head_acceleration(&self) -> Peak {
+        if self.constrained {
+            return Peak {
+                value: f64::NAN,
+                time: f64::NAN,
+            };
+        }
+        self.maximum(|time| {
+            let [_, value, first, second] = self.motion.head(time);
+            [value, first, second]
+        })
+    }
+
+    /// Largest contact force, in N.
+    #[must_use]
+    pub fn peak_contact_force(&self) -> Peak {
+        self.maximum(|time| self.motion.force(time))
+    }
+
+    /// Largest compression, in m.
+    #[must_use]
+    pub fn max_compression(&self) -> Peak {
+        self.maximum(|time| {
+            let [value, first, second, _] = self.motion.compression(time);
+            [value, first, second]
+        })
+    }
+
+    /// Window of the head injury criterion, accelerations in m/s^2.
+    #[must_use]
+    pub fn injury(&self, width: f64) -> Window {
+        injury(|time| self.motion.head(time), self.end, width, self.pieces)
+    }
+
+    /// The peaks and the impact period.
+    #[must_use]
+    pub fn peaks(&self) -> Peaks {
+        Peaks {
+            head_acceleration: self.peak_head_acceleration(),
+            contact_force: self.peak_contact_force(),
+            compression: self.max_compression(),
+            impact_duration: self.duration,
+            end: self.end,
+        }
+    }
+
+    fn maximum(&self, function: impl Fn(f64) -> [f64; 3]) -> Peak {
+        maximum(function, 0.0, self.end, self.pieces)
+    }
+
+    /// Everything, for a speed of the manipulator.
+    #[must_use]
+    pub fn findings(&self, manipulator_speed: f64) -> Findings {
+        let head = |time: f64| self.motion.head(time);
+        let manipulator_power = |time: f64| {
+            let [rate, first, second, _] = self.motion.lag_rate(time);
+            product(
+                self.motion.force(time),
+                [manipulator_speed - rate, -first, -second],
+            )
+        };
+        let foam_power = |time: f64| {
+            let compression = self.motion.compression(time);
+            let [_, first, second, third] = compression;
+            product(self.motion.force_of(compression), [first, second, third])
+        };
+        let nothing = Window {
+            value: f64::NAN,
+            start: f64::NAN,
+            end: f64::NAN,
+        };
+        let free = !self.constrained;
+        Findings {
+            peaks: self.peaks(),
+            mean: if free {
+                head(self.end)[0] / self.end
+            } else {
+                f64::NAN
+            },
+            injury: if free {
+                INJURY_WINDOWS.map(|width| self.injury(width))
+            } else {
+                [nothing; 2]
+            },
+            held: held(head, self.end, HELD_WINDOW, self.pieces).filter(|_| free),
+            manipulator_power: self.maximum(manipulator_power),
+            foam_power: self.maximum(foam_power),
+        }
+    }
+}
+
+/// Value, first and second derivative of a product.
+fn product([f, f1, f2]: [f64; 3], [g, g1, g2]: [f64; 3]) -> [f64; 3] {
+    [f * g, f1 * g + f * g1, f2 * g + 2.0 * f1 * g1 + f * g2]
+}
+
+/// Metrics of an impact at a closing speed, in m/s.
+///
+/// # Errors
+/// An argument is out of range.
+pub fn metrics(system: &System, closing_speed: f64, options: &MetricOptions) -> Result<Metrics> {
+    system.checked()?;
+    finite("closing_speed", closing_speed)?;
+    options.check()?;
+    if closing_speed <= 0.0 {
+        return Ok(Metrics::none(Status::NoImpact));
+    }
+    match batch::usual(system, closing_speed, options) {
+        Some(metrics) => Ok(metrics),
+        None => searched(system, closing_speed, options),
+    }
+}
+
+/// The same by the general search, whatever the shape of the response.
+///
+/// # Errors
+/// The system is too fast for the horizon.
+pub fn searched(system: &System, closing_speed: f64, options: &MetricOptions) -> Result<Metrics> {
+    let impact = Impact::new(system, closing_speed, options.horizon)?;
+    let speed = options.manipulator_speed.unwrap_or(closing_speed);
+    Ok(impact.findings(speed).metrics(system, options.gravity))
+}
+
+impl MetricOptions {
+    /// Passes options that can be.
+    ///
+    /// # Errors
+    /// Names the number that is out of range.
+    pub fn check(&self) -> Result<()> {
+        positive("gravity", self.gravity)?;
+        if let Some(horizon) = self.horizon {
+            positive("horizon", horizon)?;
+        }
+        if let Some(speed) = self.manipulator_speed {
+            finite("manipulator_speed", speed)?;
+        }
+        Ok(())
+    }
+}
+
+impl Findings {
+    /// The metrics in their units.
+    #[must_use]
+    pub fn metrics(&self, system: &System, gravity: f64) -> Metrics {
+        // T mean^2.5 with the mean in g.
+        let injury = |window: Window| window.value / (gravity * gravity * gravity.sqrt());
+        let (average, clip) = self.held.map_or((f64::NAN, f64::NAN), |(average, clip)| {
+            (average.value, clip.value)
+        });
+        Metrics {
+            mean_head_acceleration_g: self.mean / gravity,
+            hic15: injury(self.injury[0]),
+            hic36: injury(self.injury[1]),
+            average_3ms_g: average / gravity,
+            clip_3ms_g: clip / gravity,
+            peak_power_manipulator: self.manipulator_power.value,
+            peak_power_foam: self.foam_power.value,
+            ..self.peaks.metrics(system, gravity)
+        }
+    }
+}
+
+impl Peaks {
+    /// The metrics that peaks give; NaN elsewhere.
+    #[must_use]
+    pub fn metrics(&self, system: &System, gravity: f64) -> Metrics {
+        Metrics {
+            peak_head_acceleration: self.head_acceleration.value,
+            peak_head_acceleration_g: self.head_acceleration.value / gravity,
+            peak_contact_force: self.contact_force.value,
+            max_compression: self.compression.value,
+            impact_duration: if system.head == Target::Constrained {
+                f64::NAN
+            } else {
+                self.impact_duration
+            },
+            ..Metrics::none(self.status(system))
+        }
+    }
+
+    fn status(&self, system: &System) -> Status {
+        let Self {
+            compression,
+            impact_duration,
+            ..
+        } = *self;
+        if system.head == Target::Constrained {
+            Status::Constrained
+        } else if impact_duration.is_infinite() {
+            Status::NoRelease
+        } else if compression.value > system.foam.linear_range {
+            Status::BeyondLinearRange
+        } else {
+            Status::Released
+        }
+    }
+}
