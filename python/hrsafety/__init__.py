@@ -1,8 +1,9 @@
 """Numbers, pictures and evidence for robots that work near people.
 
 `navigation` simulates mobile robots under virtual force fields among people and things and
-scores how well and how safely they reach their goal. Sub-modules load on first use, so
-importing the package costs little more than importing numpy.
+scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
+manipulator that hits a head, and designs the foam. Sub-modules load on first use, so importing
+the package costs little more than importing numpy.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from hrsafety.errors import (
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from hrsafety import datasets, navigation, plotting, reproduce, scenarios
+    from hrsafety import datasets, impact, navigation, plotting, reproduce, scenarios
 
 __all__ = [
     "HrsafetyError",
@@ -29,6 +30,7 @@ __all__ = [
     "SimulationError",
     "__version__",
     "datasets",
+    "impact",
     "navigation",
     "plotting",
     "reproduce",
@@ -37,7 +39,7 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_LAZY = frozenset({"datasets", "navigation", "plotting", "reproduce", "scenarios"})
+_LAZY = frozenset({"datasets", "impact", "navigation", "plotting", "reproduce", "scenarios"})
 
 
 def __getattr__(name: str) -> ModuleType:

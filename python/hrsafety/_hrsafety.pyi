@@ -1,4 +1,4 @@
-"""Native core of hrsafety; private, with `hrsafety.navigation` as its face.
+"""Native core of hrsafety; private, with `hrsafety.navigation` and `hrsafety.impact` as its faces.
 
 The callers convert once and give every argument, in SI units and radians. A value out of range
 raises `hrsafety.errors.InvalidParameterError`. Words are plain strings here: the core refuses an
@@ -6,25 +6,58 @@ unknown one and quotes its rule.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Literal, Self, TypedDict, final
+from typing import Any, Literal, Self, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "ConstrainedHead",
     "DifferentialDriveRobot",
+    "DirectDrive",
+    "Foam",
+    "Head",
     "HolonomicRobot",
+    "Joint",
+    "Manipulator",
     "Measurement",
     "Obstacle",
     "Scenario",
+    "SetPoint",
     "VirtualForceField",
+    "contiguous_level",
+    "drop_trajectory",
+    "effective_one_joint",
+    "effective_two_joints",
     "evaluate",
+    "fit_open_loop",
+    "foam_boundary",
+    "foam_fastest",
+    "foam_ratios",
     "force_field",
     "force_terms",
+    "hic",
+    "hic_half_sine",
+    "hic_square",
+    "hic_triangle",
+    "identify_direct_drive",
+    "identify_foam",
+    "impact_gradient_names",
+    "impact_gradients",
+    "impact_metrics",
+    "impact_metrics_batch",
+    "impact_simulate",
+    "impact_status_words",
     "lyapunov",
+    "moving_average",
+    "pd_gains",
     "region_radii",
     "simulate",
     "simulate_batch",
+    "simulate_direct_drive",
+    "stopping_segments",
+    "tube_inertia",
+    "uniform_links",
 ]
 
 _Pair = tuple[float, float]
@@ -310,3 +343,362 @@ def simulate_batch(
     progress: Callable[[int, int], object] | None,
 ) -> _BatchFields:
     """Return summary columns of every gain set in every scenario."""
+
+# ---- impact ---------------------------------------------------------------------------------
+
+_Row = tuple[
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    float,
+    str,
+    bool,
+]
+_Triplet = Sequence[float | _Array]
+_Limits = Sequence[tuple[str, float, Head | ConstrainedHead]]
+_Flags = npt.NDArray[np.bool_]
+
+class _ResponseFields(TypedDict):
+    time: _Array
+    contact_force: _Array
+    head_acceleration: _Array
+    head_position: _Array
+    head_velocity: _Array
+    manipulator_position: _Array
+    manipulator_velocity: _Array
+    compression: _Array
+    release_times: _Array
+    touch_times: _Array
+
+class _BoundaryFields(TypedDict):
+    stiffness: _Array
+    status: list[str]
+    limited_by: list[str]
+    crossings: tuple[_Array, ...]
+    crossing_status: list[list[str]]
+    holds_below: _Flags
+    holds_above: _Flags
+
+class _FastestFields(TypedDict):
+    closing_speed: _Array
+    stiffness: _Array
+
+class _FoamFitFields(TypedDict):
+    stiffness: float
+    damping_ratio: float
+    friction: float
+    drop_heights: _Array
+    covariance: _Array
+    interval: _Array
+    bootstrap_interval: _Array | None
+    force_deviation: float
+    position_deviation: float
+    degrees_of_freedom: int
+    iterations: int
+
+class _OpenLoopFields(TypedDict):
+    acceleration: float
+    decay: float
+    covariance: _Array
+    interval: _Array
+    residual_deviation: float
+
+class _DirectDriveFields(TypedDict):
+    command_gain: float
+    friction_offset: float
+    decay: float
+    torque_constant: float
+    viscous_friction: float
+    static_friction: float
+    covariance: _Array
+    interval: _Array
+    decay_interval: _Array
+
+class _DriveRunFields(TypedDict):
+    time: _Array
+    manipulator_position: _Array
+    manipulator_velocity: _Array
+    head_position: _Array
+    head_velocity: _Array
+    head_acceleration: _Array
+    contact_force: _Array
+    compression: _Array
+    command: _Array
+    requested_command: _Array
+    peak_head_acceleration: float
+    peak_contact_force: float
+    max_compression: float
+    impact_duration: float
+    saturated_from: float
+    saturated_time: float
+
+@final
+class Joint:
+    """Elastic joint under control."""
+
+    def __new__(
+        cls,
+        *,
+        inertia: float,
+        mechanical_stiffness: float,
+        mechanical_damping: float,
+        control_stiffness: float,
+        control_damping: float,
+    ) -> Self: ...
+    @property
+    def stiffness(self) -> float:
+        """Reduced stiffness."""
+
+    @property
+    def damping(self) -> float:
+        """Reduced damping."""
+
+    def model_error(self, omega: _Array) -> _Array:
+        """Return the error of the reduced joint at frequencies."""
+
+@final
+class Manipulator:
+    """Manipulator at the impact point."""
+
+    def __new__(cls, *, mass: float, damping: float, stiffness: float) -> Self: ...
+
+@final
+class Head:
+    """Head on a neck."""
+
+    def __new__(cls, *, mass: float, damping: float, stiffness: float) -> Self: ...
+
+@final
+class ConstrainedHead:
+    """Head that cannot move."""
+
+    def __new__(cls) -> Self: ...
+
+@final
+class Foam:
+    """Foam covering."""
+
+    def __new__(cls, *, stiffness: float, damping: float, thickness: float, linear_range: float) -> Self: ...
+
+@final
+class SetPoint:
+    """Motion of the manipulator's set-point."""
+
+    def __new__(cls, *, segments: Sequence[_Pair], feed_forward: bool) -> Self: ...
+
+@final
+class DirectDrive:
+    """Direct-drive joint with its controller."""
+
+    def __new__(
+        cls,
+        *,
+        inertia: float,
+        lever_arm: float,
+        torque_constant: float,
+        amplifier_gain: float,
+        viscous_friction: float,
+        static_friction: float,
+        voltage_limit: float,
+        proportional: float,
+        derivative: float,
+    ) -> Self: ...
+    def linear(self) -> _Triple:
+        """Return mass, damping and stiffness without friction and limit."""
+
+def effective_one_joint(*, inertia: float, damping: float, stiffness: float, lever_arm: float) -> _Triple:
+    """Return effective mass, damping and stiffness of one joint."""
+
+def effective_two_joints(
+    *,
+    mass_matrix: Sequence[Sequence[float]],
+    damping: _Pair,
+    stiffness: _Pair,
+    second_link: float,
+    lever_arm: float,
+    elbow: float,
+) -> _Triple:
+    """Return effective mass, damping and stiffness of two joints."""
+
+def uniform_links(*, mass: _Pair, length: _Pair, elbow: float) -> list[list[float]]:
+    """Return the mass matrix of two uniform links."""
+
+def impact_metrics(
+    manipulator: Manipulator,
+    foam: Foam,
+    head: Head | ConstrainedHead,
+    closing_speed: float,
+    manipulator_speed: float | None,
+    horizon: float | None,
+) -> _Row:
+    """Return numbers, status and whether the foam leaves its linear range."""
+
+def impact_gradient_names() -> tuple[list[str], list[str]]:
+    """Return names of the rows and columns of the derivatives."""
+
+def impact_gradients(
+    manipulator: Manipulator,
+    foam: Foam,
+    head: Head | ConstrainedHead,
+    closing_speed: float,
+    manipulator_speed: float | None,
+    horizon: float | None,
+) -> tuple[_Row, _Array]:
+    """Return the row of metrics and the matrix of their derivatives."""
+
+def impact_status_words() -> list[str]:
+    """Return the words of the codes in a batch."""
+
+def impact_metrics_batch(
+    *,
+    manipulator: _Triplet,
+    foam: _Triplet,
+    head: _Triplet | None,
+    closing_speed: float | _Array,
+    manipulator_speed: float | _Array | None,
+    horizon: float | None,
+    peaks_only: bool,
+    threads: int | None,
+    lanes: int | None,
+) -> dict[str, npt.NDArray[Any]]:
+    """Return columns of metrics, those that were asked for."""
+
+def stopping_segments(*, manipulator_speed: float, detection: float, rest: float) -> list[_Pair]:
+    """Return the segments of a stop after detection."""
+
+def impact_simulate(
+    manipulator: Manipulator,
+    foam: Foam,
+    head: Head | ConstrainedHead,
+    *,
+    closing_speed: float,
+    manipulator_speed: float | None,
+    duration: float,
+    step: float,
+    runge_kutta: bool,
+    unilateral: bool,
+    set_point: SetPoint,
+) -> tuple[_ResponseFields, _Row]:
+    """Return columns of the response, and the row of its metrics."""
+
+def foam_boundary(
+    manipulator: Manipulator,
+    limits: _Limits,
+    damping: _Array,
+    *,
+    closing_speed: float,
+    horizon: float | None,
+    upper: bool,
+) -> _BoundaryFields:
+    """Return the upper or lower boundary at each damping."""
+
+def foam_ratios(
+    manipulator: Manipulator,
+    limits: _Limits,
+    foam: Foam,
+    *,
+    closing_speed: float,
+    horizon: float | None,
+) -> list[float]:
+    """Return the ratio of each quantity to its limit for a foam."""
+
+def foam_fastest(
+    manipulator: Manipulator,
+    limits: _Limits,
+    damping: _Array,
+    *,
+    closing_speed: float,
+    horizon: float | None,
+) -> _FastestFields:
+    """Return the largest closing speed at each damping, and the stiffness that allows it."""
+
+def hic(time: _Array, acceleration_g: _Array, window: float, interpolate: bool) -> _Triple:
+    """Return value, start and end of the head injury criterion of a signal."""
+
+def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
+    """Return value, start and end of the largest moving average of a signal."""
+
+def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
+    """Return value, start and end of the level that a signal exceeds without a break."""
+
+def hic_half_sine(peak_g: float, duration: float, window: float) -> float:
+    """Return the head injury criterion of a half sine."""
+
+def hic_square(peak_g: float, duration: float, window: float) -> float:
+    """Return the head injury criterion of a square pulse."""
+
+def hic_triangle(peak_g: float, duration: float, window: float) -> float:
+    """Return the head injury criterion of a triangle."""
+
+def identify_foam(
+    static_force: _Array,
+    static_compression: _Array,
+    drops: Sequence[tuple[_Array, _Array]],
+    *,
+    moving_mass: float,
+    gravity: float,
+    confidence: float,
+    attached: bool,
+    bootstrap: int,
+    seed: int,
+) -> _FoamFitFields:
+    """Return stiffness, damping ratio and friction from static and drop tests."""
+
+def drop_trajectory(
+    time: _Array,
+    *,
+    height: float,
+    mass: float,
+    stiffness: float,
+    damping_ratio: float,
+    friction: float,
+    gravity: float,
+    attached: bool,
+) -> _Array:
+    """Return the height of a mass that is dropped on foam."""
+
+def fit_open_loop(time: _Array, angle: _Array) -> _OpenLoopFields:
+    """Return acceleration and decay of an open-loop test."""
+
+def identify_direct_drive(
+    voltage: _Array,
+    acceleration: _Array,
+    decay: _Array,
+    inertia: float,
+    amplifier_gain: float,
+) -> _DirectDriveFields:
+    """Return constants of a direct-drive joint from open-loop tests."""
+
+def pd_gains(
+    *,
+    stiffness: float,
+    damping: float,
+    lever_arm: float,
+    torque_constant: float,
+    viscous_friction: float,
+    amplifier_gain: float,
+) -> _Pair:
+    """Return proportional and derivative gain for a wanted stiffness and damping."""
+
+def tube_inertia(*, density: float, length: float, width: float, height: float, wall: float) -> _Pair:
+    """Return mass and inertia of a rectangular tube."""
+
+def simulate_direct_drive(
+    drive: DirectDrive,
+    foam: Foam,
+    head: Head,
+    *,
+    closing_speed: float,
+    manipulator_speed: float,
+    duration: float,
+    step: float,
+) -> _DriveRunFields:
+    """Return histories of a direct-drive joint in an impact."""

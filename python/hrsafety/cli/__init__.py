@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce the published results, simulate scenarios and crowds."""
+"""Command line ``hrsafety``: reproduce the published results, simulate, design foam coverings."""
 
 from __future__ import annotations
 
@@ -24,6 +24,13 @@ _SIMULATE_EXAMPLE = """examples:
 
 A people file has the columns frame, t_s, ped_id, x_m, y_m. The robot crosses the main flow
 of people, who walk as recorded; start times are those with most traffic on its way.
+"""
+_FOAM_EXAMPLE = """example:
+  hrsafety foam examples/foam_design.toml --out puma
+
+The file names a manipulator, a closing speed, limits, a range of foam damping and foams. The
+folder receives summary.html with the picture of the boundaries, boundaries.csv and
+boundaries.png.
 """
 
 
@@ -98,6 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _add_reproduce(commands)
     _add_simulate(commands)
+    _add_foam(commands)
     return parser
 
 
@@ -161,6 +169,17 @@ def _add_simulate(commands: Any) -> None:
     people.add_argument("--json", metavar="FILE", help="all results as JSON")
 
 
+def _add_foam(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "foam",
+        summary="find the foam coverings that make a manipulator safe, and judge given ones",
+        example=_FOAM_EXAMPLE,
+    )
+    parser.add_argument("design", metavar="DESIGN.toml", help="foam design file")
+    parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
+
+
 def _reproduce(options: argparse.Namespace) -> None:
     from hrsafety import reproduce
 
@@ -188,4 +207,10 @@ def _simulate(options: argparse.Namespace) -> None:
     simulate_file(options)
 
 
-_COMMANDS = {"reproduce": _reproduce, "simulate": _simulate}
+def _foam(options: argparse.Namespace) -> None:
+    from hrsafety.cli.foam import design_file
+
+    design_file(options)
+
+
+_COMMANDS = {"reproduce": _reproduce, "simulate": _simulate, "foam": _foam}

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hrsafety import navigation as nav
+from hrsafety._atomic import write_file
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce.atomic import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import flag, number, numbers, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import flag, number, numbers, sequence
 from hrsafety.navigation.laws import VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator, check_weights
@@ -220,14 +220,14 @@ def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.A
         if unknown:
             raise InvalidParameterError("gains", f"have keys among {', '.join(law.GAIN_NAMES)}", unknown[0])
         given = {**dict(zip(law.GAIN_NAMES, law.gains, strict=True)), **gains}
-        columns = [numbers(f"gains[{name!r}]", "hold numbers", given[name]) for name in law.GAIN_NAMES]
+        columns = [numbers(f"gains[{name!r}]", given[name], "hold numbers") for name in law.GAIN_NAMES]
         try:
             columns = list(np.broadcast_arrays(*columns))
         except ValueError:
             shapes = tuple(len(column) if column.ndim else 1 for column in columns)
             raise ShapeError("gains", "arrays that broadcast", shapes) from None
         return np.ascontiguousarray(np.stack([column.ravel() for column in columns], axis=1))
-    array = numbers("gains", "be an array of numbers, a mapping or None", gains)
+    array = numbers("gains", gains, "be an array of numbers, a mapping or None")
     if array.ndim != 2 or array.shape[1] != 4:
         raise ShapeError("gains", "(n, 4)", array.shape)
     return array

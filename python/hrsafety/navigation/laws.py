@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import Parameters, flag, number
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Parameters, flag, number
 
 __all__ = ["StabilizingMode", "VirtualForceField"]
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, Parameters, number, numbers, pair, points, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import Pair, Parameters, number, numbers, pair, points, sequence
 
 __all__ = ["Disc", "Human", "MovingDisc", "Obstacle", "Rectangle"]
 
@@ -136,7 +136,7 @@ class Rectangle(Obstacle):
 
 def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
     """Check the shapes of a recording and freeze it."""
-    instants = numbers("time", "be an array of numbers", time)
+    instants = numbers("time", time, "be an array of numbers")
     places = points("position", position)
     if instants.ndim != 1:
         raise ShapeError("time", "(n,)", instants.shape)

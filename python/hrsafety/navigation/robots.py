@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import Parameters, number, sequence
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Parameters, number, sequence
 
 __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
 

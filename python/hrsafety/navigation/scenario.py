@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, Parameters, number, pair, sequence
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation._parameters import Pair, Parameters, number, pair, sequence
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
+from hrsafety._arguments import flag, number, numbers, pair, points
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation._parameters import flag, number, numbers, pair, points
 from hrsafety.navigation.laws import VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 
@@ -299,7 +299,7 @@ def force_field(
     """
     _check(scenario, law)
     places = points("position", position)
-    speeds = numbers("velocity", "be an array of numbers", velocity)
+    speeds = numbers("velocity", velocity, "be an array of numbers")
     if speeds.shape not in {(2,), places.shape}:
         raise ShapeError("velocity", f"(2,) or {places.shape}", speeds.shape)
     speeds = np.ascontiguousarray(np.broadcast_to(speeds, places.shape))

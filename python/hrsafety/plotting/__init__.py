@@ -1,6 +1,6 @@
 """Pictures of results: paths, forces, distances, energies, studies and animations.
 
-Every function takes results of `hrsafety.navigation`, computes no physics, and returns a
+Every function takes results of `hrsafety.navigation` or `hrsafety.impact`, computes no physics, and returns a
 ``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
 with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
 units. matplotlib is imported when a picture is asked for; without it the functions raise
@@ -8,9 +8,11 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 """
 
 from hrsafety.plotting.animation import animate
+from hrsafety.plotting.boundaries import foam_boundaries, foam_map
 from hrsafety.plotting.energies import energy
 from hrsafety.plotting.fields import force_field, potential_valley
 from hrsafety.plotting.histories import distances, lyapunov
+from hrsafety.plotting.impacts import impact_histories, impact_study, measured_impact
 from hrsafety.plotting.layouts import layout
 from hrsafety.plotting.scenes import paths
 from hrsafety.plotting.sequences import time_sequence
@@ -23,9 +25,14 @@ __all__ = [
     "clearances",
     "distances",
     "energy",
+    "foam_boundaries",
+    "foam_map",
     "force_field",
+    "impact_histories",
+    "impact_study",
     "layout",
     "lyapunov",
+    "measured_impact",
     "outcomes",
     "paths",
     "potential_valley",

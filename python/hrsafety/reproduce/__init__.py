@@ -10,14 +10,14 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import figures, page, study, tables, trends
+from hrsafety.reproduce import figures, impact_part, page, study, tables, trends
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.published import published_tables
 
 __all__ = ["PARTS", "Cell", "published_tables", "run"]
 
-PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "stabilizing")
-"""What `run` can make, in the order of the page."""
+PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "impact", "stabilizing")
+"""What `run` can make, in the order in which it is made."""
 
 
 def run(
@@ -67,7 +67,10 @@ def run(
     report = page.Report(command=_command(out, only), parts=parts)
     for part in parts:
         say(f"{part}: {_TITLES[part]}")
-        if part == "figures-6":
+        if part == "impact":
+            report.impact_cells.extend(impact_part.cells())
+            report.impact_pictures.extend(impact_part.pictures())
+        elif part == "figures-6":
             report.pictures.extend(figures.make())
         elif part == "stabilizing":
             report.study = study.compare(say)
@@ -88,6 +91,7 @@ _TABLES: dict[str, Callable[[], list[Cell]]] = {
     "tables-c": tables.appendix_c,
 }
 _TITLES = {
+    "impact": "chapters 3 and 4, appendix A: tables, claims and pictures of impacts",
     "tables-6": "Tables 6.1 to 6.5",
     "tables-7": "Tables 7.1 to 7.4",
     "table-5.1": "Table 5.1",
@@ -102,7 +106,7 @@ def _silent(_: str) -> None:
 
 
 def _parts(only: str | Iterable[str] | None) -> tuple[str, ...]:
-    """Return the parts to make, in the order of the page."""
+    """Return the parts to make, in the order of `PARTS`."""
     if only is None:
         return PARTS
     named = [only] if isinstance(only, str) else list(only)

@@ -11,7 +11,17 @@ from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.names import TABLE_TITLES, column_label, row_label
 
-__all__ = ["by_table", "counts", "figure", "head", "scroll", "table_of_cells"]
+__all__ = [
+    "anchor",
+    "by_table",
+    "column_label",
+    "count_table",
+    "counts",
+    "figure",
+    "head",
+    "scroll",
+    "table_of_cells",
+]
 
 # Columns of words, aligned left.
 _LEFT = frozenset(
@@ -66,21 +76,60 @@ def counts(cells: Sequence[Cell]) -> str:
     str
         HTML.
     """
-    rows = [_count_row(_link(table), group) for table, group in by_table(cells).items()]
-    header = head(["Table", "Printed", "Judged", "Within", "Listed only"])
-    judged = [cell for cell in cells if cell.within is not None]
-    within = sum(bool(cell.within) for cell in judged)
     return (
-        f"<p><strong>{within} of {len(judged)} judged values are within tolerance.</strong> Tolerances: arrival time "
+        f"<p><strong>{_agreement(cells)}</strong> Tolerances: arrival time "
         "5 %, distance 6 %, energy 25 %, score H 0.03; a sensitivity must agree within the rounding of the printed "
         "scores that it comes from; outcomes in words must agree. Gains, experiments and laws that are not simulated "
-        "are listed without a verdict.</p>"
-        + scroll(f'<table class="counts">{header}<tbody>{"".join(rows)}{_count_row("All", cells)}</tbody></table>')
+        "are listed without a verdict.</p>" + _count_lines(cells)
     )
 
 
+def count_table(cells: Sequence[Cell]) -> str:
+    """Return how many values agree, by published table, without the tolerances.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        The cells of a part.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    return f"<p><strong>{_agreement(cells)}</strong></p>" + _count_lines(cells)
+
+
+def _agreement(cells: Sequence[Cell]) -> str:
+    judged = [cell for cell in cells if cell.within is not None]
+    within = sum(bool(cell.within) for cell in judged)
+    return f"{within} of {len(judged)} judged values are within tolerance."
+
+
+def _count_lines(cells: Sequence[Cell]) -> str:
+    rows = [_count_row(_link(table), group) for table, group in by_table(cells).items()]
+    header = head(["Table", "Printed", "Judged", "Within", "Listed only"])
+    return scroll(f'<table class="counts">{header}<tbody>{"".join(rows)}{_count_row("All", cells)}</tbody></table>')
+
+
+def anchor(table: str) -> str:
+    """Return the name that a link to a table leads to.
+
+    Parameters
+    ----------
+    table : str
+        Number of a table, or ``"Section"`` and the number of a section.
+
+    Returns
+    -------
+    str
+        Without spaces.
+    """
+    return f"table-{table.replace(' ', '-')}"
+
+
 def _link(table: str) -> str:
-    return f'<a href="#table-{table}">{table}</a> {TABLE_TITLES[table]}'
+    return f'<a href="#{anchor(table)}">{table}</a> {TABLE_TITLES[table]}'
 
 
 def _count_row(name: str, cells: Sequence[Cell]) -> str:
@@ -107,7 +156,8 @@ def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
     judged = [cell for cell in cells if cell.within is not None]
     within = sum(bool(cell.within) for cell in judged)
     verdict = f"{within} of {len(judged)} within tolerance" if judged else "inputs"
-    heading = f'<h3 id="table-{table}">Table {table}: {TABLE_TITLES[table]} ({verdict})</h3>'
+    name = table if table.startswith("Section") else f"Table {table}"
+    heading = f'<h3 id="{anchor(table)}">{name}: {TABLE_TITLES[table]} ({verdict})</h3>'
     if not any(cell.row.endswith("%") for cell in cells):
         return heading + _list(cells)
     folded = f"<details><summary>All {len(cells)} values one by one</summary>{_list(cells)}</details>"
@@ -139,7 +189,15 @@ def _values(cell: Cell) -> str:
     """Return the entries of a line between its name and its reason."""
     look, verdict = _VERDICTS[cell.within]
     tolerance = "&ndash;" if cell.tolerance is None else f"&plusmn;{_signed(cell.tolerance, cell, sign=False)}"
-    entries = "".join(f"<td>{text}</td>" for text in (_printed(cell), _measured(cell), _deviation(cell), tolerance))
+    entries = "".join(
+        f"<td{' class=words' if isinstance(value, str) else ''}>{text}</td>"
+        for value, text in (
+            (cell.printed, _printed(cell)),
+            (cell.measured, _measured(cell)),
+            (None, _deviation(cell)),
+            (None, tolerance),
+        )
+    )
     return f'<td class="text">{column_label(cell.column, cell.unit)}</td>{entries}<td class="{look}">{verdict}</td>'
 
 
@@ -189,6 +247,11 @@ def _reasons(cells: Sequence[Cell]) -> str:
     return f'<ul class="reasons">{"".join(items)}</ul>' if items else ""
 
 
+def _of_impacts(cell: Cell) -> bool:
+    """Return whether a cell is of the impact part, whose quantities differ in size by decades."""
+    return cell.table[0] in "34AS"
+
+
 def _digits(cell: Cell) -> int:
     if cell.table.startswith("C.") and cell.unit == "1":
         return 4
@@ -205,7 +268,9 @@ def _printed(cell: Cell) -> str:
 def _measured(cell: Cell) -> str:
     if cell.measured is None:
         return "&ndash;"
-    return escape(cell.measured) if isinstance(cell.measured, str) else f"{cell.measured:.{_digits(cell)}f}"
+    if isinstance(cell.measured, str):
+        return escape(cell.measured)
+    return f"{cell.measured:.4g}" if _of_impacts(cell) else f"{cell.measured:.{_digits(cell)}f}"
 
 
 def _deviation(cell: Cell) -> str:
@@ -216,7 +281,7 @@ def _signed(value: float, cell: Cell, *, sign: bool = True) -> str:
     plus = "+" if sign else ""
     if cell.relative:
         return f"{100.0 * value:{plus}.1f} %" if sign else f"{100.0 * value:g} %"
-    return f"{value:{plus}.3f}"
+    return f"{value:{plus}.2g}" if _of_impacts(cell) else f"{value:{plus}.3f}"
 
 
 def head(names: Sequence[str], *, escaped: bool = False) -> str:

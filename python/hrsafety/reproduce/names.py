@@ -10,6 +10,18 @@ GAIN_LABELS = {"new_vff": "New VFF", "new_vff_optimised": "New VFF*"}
 """Gain sets; the star marks the optimized ones, as in the source."""
 
 TABLE_TITLES = {
+    "Section 3.6": "head and neck",
+    "Section 3.7": "manipulator, foam, impact point",
+    "Section 3.8": "acceleration and deceleration",
+    "Section 3.9": "which foams fit",
+    "4.1": "Direct-drive manipulator",
+    "4.2": "Puma 560",
+    "Section 4.3": "experiments with the direct drive",
+    "Section 4.4": "experiments with the Puma 560",
+    "Section 4.5": "conclusions of chapter 4",
+    "Section A.1": "foam tests",
+    "Section A.2": "direct-drive arm",
+    "A.1": "Open-loop tests of the direct drive",
     "5.1": "A person who stops and turns",
     "6.1": "Gains",
     "6.2": "Configuration 1, a disc",
@@ -86,5 +98,6 @@ def column_label(column: str, unit: str = "") -> str:
     """
     match = re.fullmatch(r"((?:T|L|d|outcome).*?)_([123])", column)
     stem, where = (match[1], f", c{match[2]}") if match else (column, "")
-    name = _COLUMNS.get(stem, re.sub(r"_(\d)", r"<sub>\1</sub>", stem)) + where
+    name = _COLUMNS.get(stem) or re.sub(r"_(\d|max|[a-z]{1,2}(?:,max)?)\b", r"<sub>\1</sub>", stem)
+    name = re.sub(r"\beps(?=<)", "&epsilon;", name) + where
     return f"{name} ({unit})" if unit not in {"", "1"} else name

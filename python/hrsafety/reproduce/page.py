@@ -11,8 +11,8 @@ from html import escape
 from importlib import resources
 from pathlib import Path
 
-from hrsafety.reproduce import evidence, markup, records
-from hrsafety.reproduce.atomic import write_file
+from hrsafety._atomic import write_file
+from hrsafety.reproduce import evidence, impact_page, markup, records
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.study import Study
@@ -38,6 +38,10 @@ class Report:
         Comparison of the stabilizing modes.
     study_pictures : list of Picture
         Pictures of that comparison.
+    impact_cells : list of Cell
+        Every printed value and claim of the impact part.
+    impact_pictures : list of Picture
+        Pictures of that part.
     seconds : float
         How long simulations and pictures took, in s.
     """
@@ -48,7 +52,19 @@ class Report:
     pictures: list[Picture] = field(default_factory=list)
     study: Study | None = None
     study_pictures: list[Picture] = field(default_factory=list)
+    impact_cells: list[Cell] = field(default_factory=list)
+    impact_pictures: list[Picture] = field(default_factory=list)
     seconds: float = 0.0
+
+    @property
+    def all_cells(self) -> list[Cell]:
+        """Cells of all parts."""
+        return [*self.impact_cells, *self.cells]
+
+    @property
+    def all_pictures(self) -> list[Picture]:
+        """Pictures of all parts."""
+        return [*self.impact_pictures, *self.pictures, *self.study_pictures]
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -66,14 +82,13 @@ def write(report: Report, folder: Path) -> Path:
     Path
         The page, written last.
     """
-    pictures = [*report.pictures, *report.study_pictures]
-    if pictures:
+    if report.all_pictures:
         (folder / "figures").mkdir(exist_ok=True)
-    for picture in pictures:
+    for picture in report.all_pictures:
         write_file(folder / "figures" / f"{picture.name}.png", picture.png)
-    if report.cells:
-        write_file(folder / "tables.csv", records.cells_csv(report.cells))
-        write_file(folder / "tables.json", records.cells_json(report.cells))
+    if report.all_cells:
+        write_file(folder / "tables.csv", records.cells_csv(report.all_cells))
+        write_file(folder / "tables.json", records.cells_json(report.all_cells))
     if report.study is not None:
         write_file(folder / "stabilizing.csv", records.study_csv(report.study))
         write_file(folder / "stabilizing.json", records.study_json(report.study))
@@ -110,6 +125,7 @@ def html(report: Report) -> str:
 
 
 _PARTS = {
+    "impact": "Impact",
     "tables-6": "Chapter 6",
     "tables-7": "Chapter 7",
     "table-5.1": "Section 5.7",
@@ -122,9 +138,10 @@ _PARTS = {
 def _head(report: Report) -> Iterator[str]:
     yield "<h1>Published tables and figures, measured again</h1>"
     yield (
-        "<p>Every printed value of the new virtual force field in L. Zeng, <cite>Design and control of human-friendly "
-        "robots</cite> (PhD thesis, McMaster University, 2011), beside the value measured here with the corrected "
-        "equations. Nothing is tuned to the printed values; where a value differs, the reason stands beside it.</p>"
+        "<p>Every printed value of the impact model and of the new virtual force field in L. Zeng, <cite>Design and "
+        "control of human-friendly robots</cite> (PhD thesis, McMaster University, 2011), beside the value measured "
+        "here with the corrected equations. Nothing is tuned to the printed values; where a value differs, the reason "
+        "stands beside it.</p>"
     )
     links = " ".join(f'<a href="#{part}">{escape(_PARTS[part])}</a>' for part in _PARTS if part in report.parts)
     yield f'<nav>{links} <a href="#made">How it was made</a></nav>'
@@ -146,6 +163,10 @@ def _with_other_sides(study: Study) -> str:
 
 
 def _sections(report: Report) -> Iterator[str]:
+    if "impact" in report.parts:
+        yield '<section id="impact"><h2>Impact: manipulator, foam, head</h2>'
+        yield from impact_page.section(report.impact_cells, report.impact_pictures)
+        yield "</section>"
     tables = markup.by_table(report.cells)
     for part, words, prefix in (
         ("tables-6", "Chapter 6: holonomic robot, configurations c1 to c4", "6."),
@@ -177,8 +198,8 @@ def _foot(report: Report) -> Iterator[str]:
     yield f"<p><code>{escape(report.command)}</code></p>"
     yield f"<p>{escape(', '.join(versions))}; {escape(platform.system())} {escape(platform.machine())}.</p>"
     yield f"<p>Made {made}; simulations and pictures took {report.seconds:.1f} s.</p>"
-    beside = ["<code>figures</code> (pictures)"] if report.pictures or report.study_pictures else []
-    beside += ["<code>tables.csv</code>, <code>tables.json</code> (every value)"] if report.cells else []
+    beside = ["<code>figures</code> (pictures)"] if report.all_pictures else []
+    beside += ["<code>tables.csv</code>, <code>tables.json</code> (every value)"] if report.all_cells else []
     beside += ["<code>stabilizing.csv</code>, <code>stabilizing.json</code>"] if report.study is not None else []
     yield f"<p>Beside this page: {', '.join(beside)}.</p></section>"
 

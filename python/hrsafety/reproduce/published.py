@@ -7,7 +7,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-__all__ = ["printed_rows", "published_tables"]
+__all__ = ["printed_figure", "printed_rows", "published_tables"]
 
 Row = dict[str, Any]
 
@@ -46,6 +46,25 @@ def printed_rows(number: str) -> list[Row]:
     """
     rows: list[Row] = published_tables()[f"zeng2011:{number}"]["rows"]
     return rows
+
+
+def printed_figure(section: str, figure: str) -> float:
+    """Return a figure that stands in the text of a section of Zeng (2011).
+
+    Parameters
+    ----------
+    section : str
+        Number of the section, for example ``"3.6"``.
+    figure : str
+        Its name in the shipped file.
+
+    Returns
+    -------
+    float
+        As printed, in the unit that the file names.
+    """
+    (row,) = (row for row in printed_rows(f"section {section}") if row["figure"] == figure)
+    return float(row["value"])
 
 
 @cache

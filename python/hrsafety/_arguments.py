@@ -1,0 +1,167 @@
+"""What all parameter classes and functions share: checks of arguments and pickling by value."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety.errors import InvalidParameterError, ShapeError
+
+Array = npt.NDArray[np.float64]
+Pair = tuple[float, float]
+Kind = TypeVar("Kind")
+
+
+class Parameters:
+    """Base of the frozen parameter classes.
+
+    A subclass builds ``_native`` in ``__post_init__``; the native constructor checks every
+    value, so an instance that exists is valid. Equality, hashing and printing use the public
+    fields only.
+    """
+
+    __slots__ = ()
+
+    def _set(self, **values: object) -> None:
+        """Write fields of a frozen instance during construction."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def _as_numbers(self, *names: str) -> dict[str, float]:
+        """Turn fields into floats, and return them by name."""
+        values = {name: number(name, getattr(self, name)) for name in names}
+        self._set(**values)
+        return values
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by public fields; the native counterpart is built again on load."""
+        fields = {
+            field.name: getattr(self, field.name)
+            for field in dataclasses.fields(self)  # type: ignore[arg-type]  # subclasses are dataclasses
+            if field.init
+        }
+        return _rebuild, (type(self), fields)
+
+
+def _rebuild(kind: type, fields: dict[str, object]) -> object:
+    return kind(**fields)
+
+
+def number(name: str, value: object) -> float:
+    """Return ``value`` as a float, or say what it should have been."""
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise InvalidParameterError(name, "be a number", value)
+    try:
+        return float(value)  # type: ignore[arg-type]  # the failure is the check
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidParameterError(name, "be a number", value) from None
+
+
+def positive(name: str, value: object) -> float:
+    """Return ``value`` as a finite float above zero, or say that it should have been."""
+    given = number(name, value)
+    if not 0.0 < given < np.inf:
+        raise InvalidParameterError(name, "be finite and positive", value)
+    return given
+
+
+def not_negative(name: str, value: object) -> float:
+    """Return ``value`` as a finite float that is not below zero, or say that it should have been."""
+    given = number(name, value)
+    if not 0.0 <= given < np.inf:
+        raise InvalidParameterError(name, "be finite and not negative", value)
+    return given
+
+
+def flag(name: str, value: object) -> bool:
+    """Return ``value`` if it is a truth value, or say that it should have been."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidParameterError(name, "be True or False", value)
+    return bool(value)
+
+
+def count(name: str, value: object, *, least: int = 1) -> int:
+    """Return ``value`` if it is an integer that is large enough, or say that it should have been."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < least:
+        raise InvalidParameterError(name, f"be an integer of at least {least}", value)
+    return int(value)
+
+
+def word(name: str, value: object, words: Sequence[str]) -> str:
+    """Return ``value`` if it is one of the words, or list them."""
+    if not isinstance(value, str) or value not in words:
+        shown = ", ".join(f'"{each}"' for each in words)
+        raise InvalidParameterError(name, f"be one of {shown}", value)
+    return value
+
+
+def instance(name: str, value: object, kind: type[Kind]) -> Kind:
+    """Return ``value`` if it is of the kind, or say that it should have been."""
+    if not isinstance(value, kind):
+        article = "an" if kind.__name__[0] in "AEIOU" else "a"
+        raise InvalidParameterError(name, f"be {article} {kind.__name__}", value)
+    return value
+
+
+def sequence(name: str, rule: str, value: object) -> list[Any]:
+    """Return the elements of ``value``, or say what it should have been."""
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        raise InvalidParameterError(name, rule, value)
+    return list(value)
+
+
+def numbers(name: str, value: object, rule: str = "be a number or an array of numbers") -> Array:
+    """Return ``value`` as a contiguous array; words, None and complex numbers are refused."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        raise InvalidParameterError(name, rule, value) from None
+    if array.dtype.kind not in "fiu":
+        raise InvalidParameterError(name, rule, value)
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
+def vector(name: str, value: object) -> Array:
+    """Return ``value`` as a contiguous (n,) array, or say what it should have been."""
+    array = numbers(name, value)
+    if array.ndim != 1:
+        raise ShapeError(name, "(n,)", array.shape)
+    return array
+
+
+def pair(name: str, value: object) -> Pair:
+    """Return ``value`` as two floats, or say what it should have been."""
+    array = numbers(name, value, "be a pair (x, y) of numbers")
+    if array.shape != (2,):
+        raise ShapeError(name, "(2,)", array.shape)
+    return (float(array[0]), float(array[1]))
+
+
+def points(name: str, value: object) -> Array:
+    """Return ``value`` as a contiguous (n, 2) array, or say what it should have been."""
+    array = numbers(name, value, "be an array of numbers")
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ShapeError(name, "(n, 2)", array.shape)
+    return array
+
+
+def columns(**values: object) -> tuple[Array, ...]:
+    """Return the values as contiguous arrays of one length, or name the one that is not."""
+    arrays = {name: vector(name, value) for name, value in values.items()}
+    first = next(iter(arrays.values()))
+    for name, array in arrays.items():
+        if array.shape != first.shape:
+            raise ShapeError(name, f"({len(first)},)", array.shape)
+    return tuple(arrays.values())
+
+
+def square(name: str, value: object, size: int) -> Array:
+    """Return ``value`` as a contiguous (size, size) array, or say what it should have been."""
+    array = numbers(name, value)
+    if array.shape != (size, size):
+        raise ShapeError(name, f"({size}, {size})", array.shape)
+    return array

@@ -1,0 +1,275 @@
+"""``hrsafety foam DESIGN.toml``: which foams keep the limits, with a page and a picture."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from hrsafety import impact
+from hrsafety.cli import foam_page, output
+from hrsafety.cli.foam_file import Array, FoamDesignFile, load
+from hrsafety.errors import InvalidParameterError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["FoamReport", "design_file"]
+
+KILO = 1000.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Check:
+    """One limit and what a foam makes of it.
+
+    Attributes
+    ----------
+    name, unit : str
+        Quantity and unit.
+    value, limit : float
+        In that unit.
+    margin : float
+        What is left of the limit, as a share of it; negative if it is exceeded.
+    """
+
+    name: str
+    unit: str
+    value: float
+    limit: float
+    margin: float
+
+    @property
+    def kept(self) -> bool:
+        """Whether the limit is kept."""
+        return self.margin >= 0.0
+
+
+class Range(NamedTuple):
+    """Range of stiffness at one damping.
+
+    Attributes
+    ----------
+    damping : float
+        In N s/m.
+    low, high : float
+        In N/m.
+    """
+
+    damping: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Judged:
+    """A foam with its checks.
+
+    Attributes
+    ----------
+    name : str
+        As in the file.
+    foam : Foam
+        Its parameters.
+    accepted : bool
+        Whether all limits are kept.
+    checks : tuple of Check
+        Each limit.
+    max_closing_speed : float
+        Largest closing speed in m/s at which this foam keeps all limits.
+    """
+
+    name: str
+    foam: impact.Foam
+    accepted: bool
+    checks: tuple[Check, ...]
+    max_closing_speed: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FoamReport:
+    """Everything that the page shows.
+
+    Attributes
+    ----------
+    file : FoamDesignFile
+        What was asked.
+    upper, lower : FoamBoundary or None
+        Boundaries over the range of damping; ``None`` without a limit for them.
+    foams : tuple of Judged
+        The foams.
+    widest : Range or None
+        Widest range of stiffness, if any foam fits and both boundaries are limited.
+    feasibility : FoamFeasibility
+        Whether some foam of the range of damping fits, and up to which closing speed.
+    """
+
+    file: FoamDesignFile
+    upper: impact.FoamBoundary | None
+    lower: impact.FoamBoundary | None
+    foams: tuple[Judged, ...]
+    widest: Range | None
+    feasibility: impact.FoamFeasibility
+
+
+def design_file(options: argparse.Namespace) -> None:
+    """Judge the foams of a file, print the result and write the page.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety foam``.
+    """
+    try:
+        described = load(options.design)
+    except InvalidParameterError as error:
+        if error.argument == "path":
+            raise
+        where = f"{options.design}: {error.argument}"
+        raise InvalidParameterError(where, error.requirement, error.value) from None
+    place = output.folder(options.out)
+    report = _report(described)
+    print(f"design         {options.design}")
+    print("\n".join(_summary(report)))
+    if report.foams:
+        print()
+        print(_foam_table(report))
+    print()
+    for path in _write(report, place):
+        print(f"wrote {path}")
+
+
+# ---- judging ----------------------------------------------------------------------------------------
+
+# Field of the limits: words, unit, how many of it an SI unit is, power of the closing speed.
+_LOADS = {
+    "peak_head_acceleration_g": ("head acceleration", "g", 1.0, 1.0),
+    "hic15": ("HIC15", "", 1.0, 2.5),
+    "hic36": ("HIC36", "", 1.0, 2.5),
+    "peak_contact_force": ("contact force", "N", 1.0, 1.0),
+    "max_compression": ("compression", "mm", KILO, 1.0),
+}
+
+
+def _report(file: FoamDesignFile) -> FoamReport:
+    design = impact.design_foam(file.manipulator, file.limits, closing_speed=file.closing_speed)
+    bounded = file.limits.given().keys()
+    upper = design.upper(file.damping) if bounded - {"max_compression"} else None
+    lower = design.lower(file.damping) if "max_compression" in bounded else None
+    return FoamReport(
+        file=file,
+        upper=upper,
+        lower=lower,
+        foams=tuple(_judged(design, name, foam) for name, foam in file.foams.items()),
+        widest=_widest(file.damping, upper, lower),
+        feasibility=design.feasibility(file.damping),
+    )
+
+
+def _widest(damping: Array, upper: impact.FoamBoundary | None, lower: impact.FoamBoundary | None) -> Range | None:
+    """Return the widest range of stiffness where both boundaries exist."""
+    if upper is None or lower is None:
+        return None
+    width = upper.stiffness - lower.stiffness
+    if not np.any(width > 0.0):
+        return None
+    index = int(np.nanargmax(width))
+    return Range(float(damping[index]), float(lower.stiffness[index]), float(upper.stiffness[index]))
+
+
+def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
+    left = design.margin(foam)
+    checks, speeds = [], []
+    for key, limit in design.limits.given().items():
+        words, unit, scale, power = _LOADS[key]
+        margin = getattr(left, key)
+        checks.append(
+            Check(name=words, unit=unit, value=scale * limit * (1.0 - margin), limit=scale * limit, margin=margin)
+        )
+        # Loads are proportional to this power of the closing speed.
+        speeds.append(design.closing_speed * (1.0 - margin) ** (-1.0 / power) if margin < 1.0 else math.inf)
+    return Judged(
+        name=name, foam=foam, accepted=design.accepts(foam), checks=tuple(checks), max_closing_speed=min(speeds)
+    )
+
+
+# ---- words ------------------------------------------------------------------------------------------
+
+
+def _summary(report: FoamReport) -> Iterator[str]:
+    file = report.file
+    arm = file.manipulator
+    yield f"manipulator    {arm.mass:g} kg, {arm.damping:g} N s/m, {arm.stiffness / KILO:g} kN/m"
+    yield f"closing speed  {file.closing_speed:g} m/s"
+    yield f"limits         {foam_page.limits_words(file.limits)}"
+    found = report.feasibility
+    span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
+    if not found.feasible:
+        yield f"foams          none fits with a damping of {span}"
+        yield f"slow down by   {found.slow_down:.3f} m/s"
+    elif report.widest is not None:
+        damping, low, high = report.widest
+        yield f"foams          fit; widest range at {damping:g} N s/m: {low / KILO:.2f} to {high / KILO:.2f} kN/m"
+    else:
+        yield f"foams          fit with a damping of {span}"
+    yield (
+        f"fastest        some foam fits up to {found.max_closing_speed:.3f} m/s: {found.stiffness / KILO:.2f} kN/m "
+        f"with {found.damping:g} N s/m"
+    )
+
+
+def _foam_table(report: FoamReport) -> str:
+    rows = []
+    for judged in report.foams:
+        values = [f"{check.value:.3f}{'' if check.kept else ' !'}" for check in judged.checks]
+        verdict = "fits" if judged.accepted else "does not fit"
+        stiffness, damping = f"{judged.foam.stiffness / KILO:.2f}", f"{judged.foam.damping:.1f}"
+        rows.append((judged.name, verdict, stiffness, damping, *values, f"{judged.max_closing_speed:.3f}"))
+    checks = report.foams[0].checks
+    names = ("foam", "verdict", "stiffness", "damping", *(check.name for check in checks), "fits up to")
+    units = ("", "", "kN/m", "N s/m", *(check.unit for check in checks), "m/s")
+    return output.aligned((names, units), rows, left=(0, 1))
+
+
+# ---- files ------------------------------------------------------------------------------------------
+
+
+def _write(report: FoamReport, place: Path) -> Iterator[Path]:
+    yield output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(report))
+    drawn = output.write_picture(place / "boundaries.png", _picture(report))
+    yield drawn
+    yield output.write_text(place / "summary.html", foam_page.html(report, drawn.read_bytes()))
+
+
+_COLUMNS = ("upper_stiffness_N_per_m", "upper_status", "lower_stiffness_N_per_m", "lower_status")
+
+
+def _rows(report: FoamReport) -> Iterator[list[object]]:
+    for index, damping in enumerate(report.file.damping):
+        row: list[object] = [float(damping)]
+        for boundary in (report.upper, report.lower):
+            if boundary is None:
+                row += ["", "no limit"]
+            else:
+                row += [float(boundary.stiffness[index]), str(boundary.status[index])]
+        yield row
+
+
+def _picture(report: FoamReport) -> Figure:
+    from hrsafety import plotting
+
+    return plotting.foam_boundaries(
+        report.file.damping,
+        report.upper,
+        report.lower,
+        foams=report.file.foams,
+        accepted={judged.name: judged.accepted for judged in report.foams},
+        upper_label="upper",
+        lower_label="lower",
+        title=report.file.title,
+    )

@@ -1,0 +1,262 @@
+"""Loads of many impacts in one call, over all cores and vector lanes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, count, instance, numbers, positive, word
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.impact.criteria import ImpactMetrics
+from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+
+__all__ = ["ImpactMetricsBatch", "metrics_batch"]
+
+# More would only exhaust the system before it says no.
+MOST_THREADS = 1024
+
+_MANIPULATOR = ("manipulator_mass", "manipulator_damping", "manipulator_stiffness")
+_FOAM = ("foam_stiffness", "foam_damping", "linear_range")
+_HEAD = ("head_mass", "head_damping", "head_stiffness")
+_LINEAR_RANGE = Foam(stiffness=0.0, damping=0.0).linear_range
+_FLAGS = ("status", "beyond_linear_range")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ImpactMetricsBatch:
+    """Loads of many impacts: the fields of `ImpactMetrics` as arrays of the broadcast shape.
+
+    Attributes
+    ----------
+    peak_head_acceleration, peak_head_acceleration_g, mean_head_acceleration_g : ndarray
+        In m/s^2, g, g.
+    peak_contact_force : ndarray
+        In N.
+    max_compression : ndarray
+        In m.
+    impact_duration : ndarray
+        In s; infinite without release within the horizon.
+    hic15, hic36 : ndarray
+        Head injury criterion.
+    average_3ms_g, clip_3ms_g : ndarray
+        In g; NaN if the impact period is shorter than 3 ms.
+    peak_power_manipulator, peak_power_foam : ndarray
+        In W.
+    beyond_linear_range : ndarray of bool
+        Whether the compression leaves the linear range of the foam.
+    """
+
+    peak_head_acceleration: Array
+    peak_head_acceleration_g: Array
+    mean_head_acceleration_g: Array
+    peak_contact_force: Array
+    max_compression: Array
+    impact_duration: Array
+    hic15: Array
+    hic36: Array
+    average_3ms_g: Array
+    clip_3ms_g: Array
+    peak_power_manipulator: Array
+    peak_power_foam: Array
+    beyond_linear_range: npt.NDArray[np.bool_]
+    _status_code: npt.NDArray[np.uint8] = field(repr=False)
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """Words of `ImpactMetrics.status`; ``"invalid_parameter"`` for a row that cannot be, all NaN."""
+        return np.asarray(np.asarray(_hrsafety.impact_status_words())[self._status_code])
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of every field."""
+        return self._status_code.shape
+
+    def __len__(self) -> int:
+        """Return the length of the first axis."""
+        return len(self._status_code)
+
+    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+        """Return one-dimensional columns by name, ready for a data frame.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Every field flattened, and ``status``.
+
+        Examples
+        --------
+        >>> from hrsafety import impact
+        >>> table = impact.metrics_batch(
+        ...     manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum(),
+        ...     closing_speed=[0.4, 1.25],
+        ... ).columns()
+        >>> table["status"].tolist()
+        ['released', 'released']
+        """
+        names = [each.name for each in fields(self) if not each.name.startswith("_")]
+        return {**{name: getattr(self, name).ravel() for name in names}, "status": self.status.ravel()}
+
+
+def metrics_batch(
+    *,
+    manipulator: Manipulator | None = None,
+    foam: Foam | None = None,
+    head: Head | ConstrainedHead | None = None,
+    closing_speed: npt.ArrayLike,
+    manipulator_speed: npt.ArrayLike | None = None,
+    manipulator_mass: npt.ArrayLike | None = None,
+    manipulator_damping: npt.ArrayLike | None = None,
+    manipulator_stiffness: npt.ArrayLike | None = None,
+    foam_stiffness: npt.ArrayLike | None = None,
+    foam_damping: npt.ArrayLike | None = None,
+    linear_range: npt.ArrayLike | None = None,
+    head_mass: npt.ArrayLike | None = None,
+    head_damping: npt.ArrayLike | None = None,
+    head_stiffness: npt.ArrayLike | None = None,
+    horizon: float | None = None,
+    fields: Literal["all", "peaks"] = "all",
+    threads: int | None = None,
+    lanes: int | None = None,
+) -> ImpactMetricsBatch:
+    """Return the loads of many impacts: every number may be an array, and all broadcast.
+
+    A row with a bad number gives NaN and a status that names it; it never fails the batch.
+
+    Parameters
+    ----------
+    manipulator : Manipulator or None
+        Gives the manipulator's numbers that are not given separately.
+    foam : Foam or None
+        Likewise for the foam.
+    head : Head, ConstrainedHead or None
+        Likewise for the head.
+    closing_speed : array_like
+        v_c in m/s.
+    manipulator_speed : array_like or None
+        v_r in m/s; the closing speed when ``None``.
+    manipulator_mass, manipulator_damping, manipulator_stiffness : array_like or None
+        M_r in kg, C_r in N s/m, K_r in N/m.
+    foam_stiffness, foam_damping : array_like or None
+        K_c in N/m, C_c in N s/m.
+    linear_range : array_like or None
+        Compression lambda up to which the foam is linear, in m; that of `Foam` by itself, 0.02,
+        when neither it nor a foam is given.
+    head_mass, head_damping, head_stiffness : array_like or None
+        M_h in kg, C_h in N s/m, K_h in N/m.
+    horizon : float or None
+        As for `metrics`.
+    fields : str
+        ``"all"``, or ``"peaks"`` for acceleration, force, compression and impact period only;
+        the other fields are NaN then, and the call is faster.
+    threads : int or None
+        Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
+    lanes : int or None
+        Impacts that are solved side by side: 1 or 8; chosen when ``None``.
+
+    Returns
+    -------
+    ImpactMetricsBatch
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is missing or is no number, or an option is out of range.
+    ShapeError
+        If the arrays do not broadcast.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C.
+
+    Examples
+    --------
+    A map over stiffness and damping of the foam:
+
+    >>> import numpy as np
+    >>> from hrsafety import impact
+    >>> found = impact.metrics_batch(
+    ...     manipulator=impact.MANIPULATOR_1, head=impact.Head.minimum(), closing_speed=1.25,
+    ...     foam_stiffness=np.linspace(5e3, 60e3, 12)[:, None], foam_damping=np.linspace(0.0, 150.0, 4),
+    ... )
+    >>> found.shape, found.peak_head_acceleration_g[0].round(3).tolist()
+    ((12, 4), [2.598, 2.372, 2.922, 4.345])
+    """
+    constrained = isinstance(head, ConstrainedHead)
+    given = _given_numbers(locals(), constrained)
+    shape = _broadcast_shape(given)
+    flat = {name: _column(array, shape) for name, array in given.items()}
+    result = _hrsafety.impact_metrics_batch(
+        manipulator=[flat[name] for name in _MANIPULATOR],
+        foam=[flat[name] for name in _FOAM],
+        head=None if constrained else [flat[name] for name in _HEAD],
+        closing_speed=flat["closing_speed"],
+        manipulator_speed=flat.get("manipulator_speed"),
+        horizon=None if horizon is None else positive("horizon", horizon),
+        peaks_only=word("fields", fields, ("all", "peaks")) == "peaks",
+        threads=_threads(threads),
+        lanes=None if lanes is None else count("lanes", lanes),
+    )
+    columns = {name: values.reshape(shape) for name, values in result.items()}
+    code = columns.pop("status_code")
+    missing = np.broadcast_to(np.nan, shape)
+    return ImpactMetricsBatch(
+        **{name: columns.get(name, missing) for name in ImpactMetrics._fields if name not in _FLAGS},
+        beyond_linear_range=np.asarray(columns["max_compression"] > given["linear_range"]),
+        _status_code=code,
+    )
+
+
+def _given_numbers(arguments: dict[str, Any], constrained: bool) -> dict[str, Array]:
+    """Return the arrays by name, filled up from the parameter objects."""
+    kinds: dict[str, tuple[type, ...]] = {
+        "manipulator": (Manipulator,),
+        "foam": (Foam,),
+        "head": (Head, ConstrainedHead),
+    }
+    for name, allowed in kinds.items():
+        if arguments[name] is not None and not isinstance(arguments[name], allowed):
+            instance(name, arguments[name], allowed[0])
+    given = {"closing_speed": numbers("closing_speed", arguments["closing_speed"])}
+    if arguments["manipulator_speed"] is not None:
+        given["manipulator_speed"] = numbers("manipulator_speed", arguments["manipulator_speed"])
+    for owner, names in (("manipulator", _MANIPULATOR), ("foam", _FOAM), ("head", _HEAD)):
+        fixed = constrained and owner == "head"
+        for name in names:
+            value, attribute = arguments[name], name.removeprefix(f"{owner}_")
+            if value is not None and fixed:
+                raise InvalidParameterError(name, "be None for a constrained head", value)
+            if value is not None:
+                given[name] = numbers(name, value)
+            elif arguments[owner] is not None and not fixed:
+                given[name] = np.asarray(getattr(arguments[owner], attribute), dtype=np.float64)
+            elif name == "linear_range":
+                given[name] = np.asarray(_LINEAR_RANGE)
+            elif not fixed:
+                raise InvalidParameterError(name, f"be given, by itself or through {owner}", None)
+    return given
+
+
+def _broadcast_shape(given: dict[str, Array]) -> tuple[int, ...]:
+    shape: tuple[int, ...] = ()
+    for name, array in given.items():
+        try:
+            shape = np.broadcast_shapes(shape, array.shape)
+        except ValueError:
+            raise ShapeError(name, f"that broadcasts with {shape}", array.shape) from None
+    return shape
+
+
+def _column(array: Array, shape: tuple[int, ...]) -> Array | float:
+    """Return one number for all impacts, or one for each."""
+    if array.size == 1 and shape != (1,) * len(shape):
+        return float(array.reshape(()))
+    return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+
+
+def _threads(threads: int | None) -> int | None:
+    if threads is not None and count("threads", threads) > MOST_THREADS:
+        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
+    return threads

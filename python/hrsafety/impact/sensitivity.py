@@ -1,0 +1,121 @@
+"""Exact derivatives of the loads of an impact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, number, word
+from hrsafety.impact.criteria import ImpactMetrics, check_parts
+from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+
+__all__ = ["ImpactGradients", "gradients"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ImpactGradients:
+    """Loads of an impact and their derivatives.
+
+    Attributes
+    ----------
+    metrics : ImpactMetrics
+        The loads.
+    metric_names, parameter_names : tuple of str
+        Rows and columns of the derivatives.
+    values : ndarray of shape (metrics, parameters)
+        Derivative of each load with respect to each parameter, in SI units, loads in g in g;
+        NaN where a load has no derivative.
+    """
+
+    metrics: ImpactMetrics
+    metric_names: tuple[str, ...]
+    parameter_names: tuple[str, ...]
+    values: Array
+
+    def of(self, metric: str) -> dict[str, float]:
+        """Return the derivatives of one load.
+
+        Parameters
+        ----------
+        metric : str
+            Field of `ImpactMetrics`.
+
+        Returns
+        -------
+        dict of str to float
+            By parameter.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such load.
+        """
+        row = self.metric_names.index(word("metric", metric, self.metric_names))
+        return dict(zip(self.parameter_names, self.values[row].tolist(), strict=True))
+
+
+def gradients(
+    manipulator: Manipulator,
+    foam: Foam,
+    head: Head | ConstrainedHead,
+    *,
+    closing_speed: float,
+    manipulator_speed: float | None = None,
+    horizon: float | None = None,
+) -> ImpactGradients:
+    """Return the loads of an impact with exact derivatives with respect to every parameter.
+
+    Derivatives follow the response itself, not differences of loads; of a load at a moving end,
+    such as the impact period, too.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+        What hits.
+    foam : Foam
+        What is between.
+    head : Head or ConstrainedHead
+        What is hit.
+    closing_speed : float
+        v_c in m/s.
+    manipulator_speed : float or None
+        v_r in m/s. When ``None`` it is the closing speed, whose derivative then includes it.
+    horizon : float or None
+        As for `metrics`.
+
+    Returns
+    -------
+    ImpactGradients
+        Loads and derivatives.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a speed is not finite or the horizon is not positive.
+
+    Examples
+    --------
+    How much a stiffer foam raises the peak, in g per kN/m:
+
+    >>> from hrsafety import impact
+    >>> found = impact.gradients(
+    ...     impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=1.25)
+    >>> round(1e3 * found.of("peak_head_acceleration_g")["foam_stiffness"], 3)
+    0.151
+    """
+    check_parts(manipulator, foam, head)
+    values, matrix = _hrsafety.impact_gradients(
+        manipulator._native,
+        foam._native,
+        head._native,
+        number("closing_speed", closing_speed),
+        None if manipulator_speed is None else number("manipulator_speed", manipulator_speed),
+        None if horizon is None else number("horizon", horizon),
+    )
+    metrics, parameters = _hrsafety.impact_gradient_names()
+    return ImpactGradients(
+        metrics=ImpactMetrics._make(values),
+        metric_names=tuple(metrics),
+        parameter_names=tuple(parameters),
+        values=matrix,
+    )
