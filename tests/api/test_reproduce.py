@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hrsafety import _atomic as atomic
 from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import atomic, cells, figures, page, ranking, reasons, statistics, study, tables
+from hrsafety.reproduce import cells, figures, page, ranking, reasons, statistics, study, tables
 from hrsafety.reproduce.cells import Cell
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))

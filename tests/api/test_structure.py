@@ -20,6 +20,7 @@ from typing import Any
 import pytest
 
 import hrsafety
+from hrsafety import impact
 from hrsafety import navigation as nav
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -29,6 +30,7 @@ PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
 NATIVE_USERS = ("navigation", "impact", "reactive")
 COMPUTING = {"simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"}
+COMPUTING_IMPACT = {"simulate", "simulate_direct_drive", "metrics", "metrics_batch", "gradients", "hic", "design_foam"}
 VAGUE_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "types", "manager"}
 
 SOURCES = sorted(PACKAGE.rglob("*.py"))
@@ -140,9 +142,23 @@ def test_plotting_computes_nothing(path: Path) -> None:
     assert not [name for name in imported(path) if inside(name, NATIVE)]
 
 
+@pytest.mark.parametrize("path", [path for path in SOURCES if "plotting" in path.parts], ids=module_name)
+def test_plotting_computes_no_impact(path: Path) -> None:
+    called = {
+        ast.unparse(node.func).split(".")[-1]
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).startswith(("impact.", "hrsafety.impact."))
+    }
+    assert not called & COMPUTING_IMPACT
+    assert not [
+        name for name in imported(path) if inside(name, "hrsafety.impact") and name.split(".")[-1] in COMPUTING_IMPACT
+    ]
+
+
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "numba", "pandas"}
-    modules = "hrsafety, hrsafety.navigation, hrsafety.scenarios, hrsafety.datasets, hrsafety.plotting, hrsafety.cli"
+    parts = ("navigation", "impact", "scenarios", "datasets", "plotting", "cli")
+    modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
@@ -197,8 +213,8 @@ def fields_of(kind: Any) -> list[str]:
 
 
 def public_fields() -> list[tuple[str, str]]:
-    """Return (class, field) for every public record of the navigation package."""
-    kinds = {name: getattr(nav, name) for name in nav.__all__}
+    """Return (class, field) for every public record of the packages that compute."""
+    kinds = {name: getattr(module, name) for module in (nav, impact) for name in module.__all__}
     return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
 
 
@@ -217,7 +233,7 @@ def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
 # ---- docstrings -----------------------------------------------------------------------------
 
 # Modules whose public names users call. Examples stand where a call makes sense on its own.
-DOCUMENTED = ("navigation", "scenarios", "datasets", "plotting", "reproduce", "errors")
+DOCUMENTED = ("navigation", "impact", "scenarios", "datasets", "plotting", "reproduce", "errors")
 NEEDS_NO_EXAMPLE = {
     "reproduce",  # runs for minutes
 }

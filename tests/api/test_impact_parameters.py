@@ -1,0 +1,211 @@
+"""Parameter classes of an impact behave like values, and hold the published numbers."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import math
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import impact
+
+JOINT = impact.Joint(
+    inertia=0.059,
+    mechanical_stiffness=1216.8,
+    mechanical_damping=0.3,
+    control_stiffness=121.68,
+    control_damping=1.521,
+)
+
+VALUES: list[tuple[Any, dict[str, Any]]] = [
+    (JOINT, {"inertia": 0.06}),
+    (impact.MANIPULATOR_1, {"mass": 10.0}),
+    (impact.Head.minimum(), {"damping": 0.0}),
+    (impact.FOAM_1, {"linear_range": 0.015}),
+    (impact.DirectDrive(proportional=448.7, derivative=5.579), {"voltage_limit": math.inf}),
+    (impact.SetPoint.accelerating(5.0, duration=0.05), {"feed_forward": True}),
+    (impact.FoamLimits(), {"peak_head_acceleration_g": 8.0}),
+]
+
+each_value = pytest.mark.parametrize(("value", "change"), VALUES, ids=[type(value).__name__ for value, _ in VALUES])
+
+# Formulas of a few operations: a few units in the last place.
+ROUNDING = 1e-14
+
+
+@each_value
+def test_pickle_gives_an_equal_value(value: Any, change: dict[str, Any]) -> None:
+    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        again = pickle.loads(pickle.dumps(value, protocol))
+        assert again == value
+        assert again is not value
+        assert type(again) is type(value)
+    assert pickle.loads(pickle.dumps(dataclasses.replace(value, **change))) != value
+
+
+@each_value
+def test_copy_gives_an_equal_value(value: Any, change: dict[str, Any]) -> None:
+    assert copy.deepcopy(value) == value
+    assert copy.copy(value) == value
+    assert dataclasses.replace(value, **change) != value
+
+
+@each_value
+def test_equal_values_have_equal_hashes(value: Any, change: dict[str, Any]) -> None:
+    other = dataclasses.replace(value, **change)
+    assert hash(dataclasses.replace(value)) == hash(value)
+    assert len({value, dataclasses.replace(value), other}) == 2
+
+
+@each_value
+def test_printed_form_builds_the_value_again(value: Any, change: dict[str, Any]) -> None:
+    assert "_native" not in repr(value)
+    changed = dataclasses.replace(value, **change)
+    for each in (value, changed):
+        assert eval(repr(each), {**vars(impact), "inf": math.inf}) == each
+    assert repr(changed) != repr(value)
+
+
+@each_value
+def test_value_cannot_be_changed(value: Any, change: dict[str, Any]) -> None:
+    name, new = next(iter(change.items()))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(value, name, new)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        delattr(value, name)
+    with pytest.raises((AttributeError, TypeError)):
+        value.something_new = 1
+
+
+def test_constrained_heads_are_equal() -> None:
+    head = impact.ConstrainedHead()
+    assert pickle.loads(pickle.dumps(head)) == head == impact.ConstrainedHead()
+    assert repr(head) == "ConstrainedHead()"
+    assert head != impact.Head.minimum()
+
+
+def test_values_of_another_class_are_not_equal() -> None:
+    assert impact.Head(mass=9.6, damping=250.0, stiffness=20e3) != impact.MANIPULATOR_1
+
+
+def test_numbers_of_any_kind_are_accepted() -> None:
+    made = impact.Manipulator(mass=np.float32(4.0), damping=np.int64(250), stiffness=np.float64(2e4))
+    assert made == impact.Manipulator(mass=4, damping=250, stiffness=20_000)
+    assert type(made.mass) is float
+
+
+def test_same_parameters_give_the_same_bits_after_a_pickle() -> None:
+    parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())
+    first = impact.metrics(*parts, closing_speed=1.25)
+    assert impact.metrics(*pickle.loads(pickle.dumps(parts)), closing_speed=1.25) == first
+    assert pickle.loads(pickle.dumps(first)) == first
+
+
+# ---- published sets ---------------------------------------------------------------------------
+
+
+def numbers(value: Any) -> tuple[float, ...]:
+    return tuple(getattr(value, name) for name in ("mass", "damping", "stiffness") if hasattr(value, name))
+
+
+def test_sets_are_those_of_the_tables() -> None:
+    assert numbers(impact.MANIPULATOR_1) == (9.6, 250.0, 20e3)
+    assert numbers(impact.MANIPULATOR_2) == (49.4, 111.0, 14.4e3)
+    assert [numbers(impact.Head.simulation(row)) for row in (1, 2, 3, 4)] == [
+        (4.4, 130.0, 5e3),
+        (4.4, 130.0, 5e3),
+        (4.4, 46.0, 3e3),
+        (5.3, 130.0, 5e3),
+    ]
+    assert numbers(impact.Head.apparatus()) == (4.4, 0.0, 4e3)
+    assert [(foam.stiffness, foam.damping) for foam in (impact.FOAM_1, impact.FOAM_2, impact.FOAM_3)] == [
+        (24.3e3, 71.9),
+        (13.8e3, 43.8),
+        (60.6e3, 113.6),
+    ]
+
+
+def test_extreme_heads_are_rows_of_the_table() -> None:
+    assert impact.Head.minimum() == impact.Head.simulation(3)
+    assert impact.Head.maximum() == impact.Head.simulation(4)
+
+
+# ---- joints -----------------------------------------------------------------------------------
+
+
+def test_reduced_joint_is_the_series_of_springs() -> None:
+    mechanical, control = JOINT.mechanical_stiffness, JOINT.control_stiffness
+    assert JOINT.stiffness == pytest.approx(mechanical * control / (mechanical + control), rel=ROUNDING)
+    total = (mechanical + control) ** 2
+    damping = (control**2 * JOINT.mechanical_damping + mechanical**2 * JOINT.control_damping) / total
+    assert JOINT.damping == pytest.approx(damping, rel=ROUNDING)
+
+
+@pytest.mark.parametrize(("factor", "printed"), [(10.0, 0.075), (1.0, 0.23)])
+def test_model_error_is_the_published_share_of_the_exact_joint(factor: float, printed: float) -> None:
+    joint = impact.Joint(
+        inertia=0.059,
+        mechanical_stiffness=factor * 121.68,
+        mechanical_damping=0.0,
+        control_stiffness=121.68,
+        control_damping=1.521,
+    )
+    digits = 3 if printed < 0.1 else 2
+    assert round(float(joint.model_error(95.0)), digits) == printed
+
+
+def test_model_error_is_the_one_of_the_series_in_complex_numbers() -> None:
+    omega = np.array([[0.0, 1.0, 10.0], [95.0, 1e3, 1e5]])
+    s = 1j * omega
+    mechanical = JOINT.mechanical_stiffness + JOINT.mechanical_damping * s
+    control = JOINT.control_stiffness + JOINT.control_damping * s
+    exact = mechanical * control / (mechanical + control)
+    share = np.abs(exact - (JOINT.stiffness + JOINT.damping * s)) / np.abs(exact)
+    found = JOINT.model_error(omega)
+    assert found.shape == omega.shape
+    assert found == pytest.approx(share, rel=1e-9, abs=1e-12)
+
+
+def test_joint_without_a_proportional_mismatch_has_no_model_error() -> None:
+    joint = impact.Joint(
+        inertia=1.0,
+        mechanical_stiffness=200.0,
+        mechanical_damping=2.0,
+        control_stiffness=100.0,
+        control_damping=1.0,
+    )
+    assert joint.model_error([0.0, 10.0, 1e4]) == pytest.approx(np.zeros(3), abs=ROUNDING)
+
+
+def test_one_joint_scales_with_the_square_of_the_lever() -> None:
+    near, far = JOINT.at(0.1), JOINT.at(0.2)
+    assert numbers(near) == pytest.approx([4.0 * value for value in numbers(far)], rel=ROUNDING)
+    assert near.mass == pytest.approx(0.059 / 0.01, rel=ROUNDING)
+
+
+MATRIX = np.array([[3.0, 1.0], [1.0, 0.6]])
+DAMPING, STIFFNESS = (40.0, 10.0), (8000.0, 2000.0)
+
+
+@pytest.mark.parametrize("elbow", [0.0, 0.4, -1.2, 2.5, math.pi])
+def test_two_joints_are_reduced_along_the_normal_of_the_last_link(elbow: float) -> None:
+    arm = impact.Manipulator.from_two_joints(
+        mass_matrix=MATRIX, damping=DAMPING, stiffness=STIFFNESS, second_link=0.43, lever_arm=0.4, elbow=elbow
+    )
+    row = np.array([0.43 * np.cos(elbow) + 0.4, 0.4])
+    compliance = np.diag(1.0 / np.array(STIFFNESS))
+    stiffness = 1.0 / (row @ compliance @ row)
+    assert arm.mass == pytest.approx(1.0 / (row @ np.linalg.solve(MATRIX, row)), rel=1e-12)
+    assert arm.stiffness == pytest.approx(stiffness, rel=1e-12)
+    damping = stiffness**2 * (row @ compliance @ np.diag(DAMPING) @ compliance @ row)
+    assert arm.damping == pytest.approx(damping, rel=1e-12)
+
+
+def test_damping_ratio_is_rescaled_to_the_moving_mass() -> None:
+    foam = impact.Foam.from_damping_ratio(stiffness=24.25e3, damping_ratio=0.112, moving_mass=4.4)
+    assert foam.damping == pytest.approx(2 * 0.112 * math.sqrt(4.4 * 24.25e3), rel=ROUNDING)
+    assert foam.stiffness == 24.25e3
