@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use crate::criteria::{FREE_HORIZON, Impact, MetricOptions, Metrics, Status};
 use crate::error::{Given, ImpactError, Result};
 use crate::fast::{Group, Workspace};
-use crate::lanes::{Lanes, Mask, Real};
 use crate::parameters::{Foam, GRAVITY, Head, Manipulator, System, Target};
 use crate::series::Plant;
+use lanes::{Lanes, Mask, Real};
 
 /// Rows of a task; the bits of a row do not depend on it.
 const BLOCK: usize = 1024;

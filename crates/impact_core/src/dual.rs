@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use crate::lanes::Real;
+use lanes::Real;
 
 /// A value and its partial derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,8 +7,8 @@
 //! its own numbers only, so its bits are the same at any width.
 
 use crate::criteria::HELD_WINDOW;
-use crate::lanes::{Mask, Real};
 use crate::series::{Cell, Drive, Plant, State, derivatives, integrated};
+use lanes::{Mask, Real};
 
 /// Coefficients of a rate.
 const SHORT: usize = 16;

@@ -7,12 +7,12 @@
 use crate::criteria::{Findings, HELD_WINDOW, Impact, MetricOptions, Metrics, Status};
 use crate::dual::Dual;
 use crate::error::{Result, finite, positive};
-use crate::lanes::Real;
 use crate::motion::Motion;
 use crate::parameters::{System, Target};
 use crate::roots::Peak;
 use crate::series::Plant;
 use crate::windows::Window;
+use lanes::Real;
 
 /// Number of parameters.
 pub const PARAMETERS: usize = 10;

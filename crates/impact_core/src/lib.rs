@@ -19,7 +19,6 @@ pub mod foam_design;
 pub mod gradients;
 pub mod identify;
 pub mod joint;
-pub mod lanes;
 pub mod motion;
 pub mod parameters;
 pub mod response;

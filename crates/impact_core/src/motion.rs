@@ -1,8 +1,8 @@
 //! The linear motion of an impact, evaluated at any time.
 
 use crate::error::{Given, ImpactError, Result};
-use crate::lanes::Real;
 use crate::series::{CELL_ANGLE, Cell, Drive, Plant, Recurrence, State, derivatives, integrated};
+use lanes::Real;
 
 /// Cells that a motion may have; more means that its fastest root is far too fast for its length.
 pub const MAX_CELLS: usize = 200_000;

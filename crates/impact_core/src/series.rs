@@ -16,8 +16,8 @@
 //! The three displacements are carried side by side although one of them would do, so that none
 //! of them is a difference of the others.
 
-use crate::lanes::Real;
 use crate::parameters::{System, Target};
+use lanes::Real;
 
 /// Coefficients of a rate in a cell.
 pub const ORDER: usize = 24;

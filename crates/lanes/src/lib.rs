@@ -1,8 +1,10 @@
-//! Numbers of one kernel, two widths: `f64` for a single impact and [`Lanes`] for impacts side by side.
+//! Numbers of one kernel, two widths: `f64` for a single run and [`Lanes`] for runs side by side.
 //!
 //! Every operation acts on each lane by the same IEEE operation as `f64`, without contraction,
-//! so an impact gives the same bits at any width. Plain arrays: the compiler turns the loops into
+//! so a run gives the same bits at any width. Plain arrays: the compiler turns the loops into
 //! vector instructions.
+
+#![forbid(unsafe_code)]
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
