@@ -118,7 +118,7 @@ def test_single_call_and_batch_agree(parameters: np.ndarray, batch: impact.Impac
 def test_lanes_and_threads_never_change_a_bit(parameters: np.ndarray, fields: str) -> None:
     names = METRICS if fields == "all" else ("peak_head_acceleration", "peak_contact_force", "impact_duration")
     first = of_batch(parameters, fields=fields, lanes=1, threads=1)
-    for lanes in (1, 8, None):
+    for lanes in (1, 4, 8, 16, None):
         for threads in (1, 2, 3):
             other = of_batch(parameters, fields=fields, lanes=lanes, threads=threads)
             for name in names:

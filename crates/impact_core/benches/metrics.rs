@@ -61,7 +61,7 @@ fn many_impacts(criterion: &mut Criterion) {
                 ..BatchOptions::default()
             };
             group.bench_function(format!("{name}/{width:?}"), |bencher| {
-                bencher.iter(|| metrics_batch(&columns, &options, &|| false));
+                bencher.iter(|| metrics_batch(&columns, &options, &|| false, &|_| ()));
             });
         }
     }

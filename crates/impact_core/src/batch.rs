@@ -1,13 +1,14 @@
 //! Metrics of many impacts: lanes side by side, blocks of rows over all cores.
 
+mod kernel;
+
+pub(crate) use kernel::usual;
+
 use rayon::prelude::*;
 
-use crate::criteria::{FREE_HORIZON, Impact, MetricOptions, Metrics, Status};
+use crate::criteria::{MetricOptions, Metrics, Status};
 use crate::error::{Given, ImpactError, Result};
-use crate::fast::{Group, Workspace};
 use crate::parameters::{Foam, GRAVITY, Head, Manipulator, System, Target};
-use crate::series::Plant;
-use lanes::{Lanes, Mask, Real};
 
 /// Rows of a task; the bits of a row do not depend on it.
 const BLOCK: usize = 1024;
@@ -169,8 +170,12 @@ pub enum FieldSet {
 pub enum Width {
     /// One.
     One,
+    /// Four.
+    Four,
     /// Eight.
     Eight,
+    /// Sixteen.
+    Sixteen,
 }
 
 impl Width {
@@ -181,10 +186,12 @@ impl Width {
     pub fn of(lanes: usize) -> Result<Self> {
         match lanes {
             1 => Ok(Self::One),
+            4 => Ok(Self::Four),
             8 => Ok(Self::Eight),
+            16 => Ok(Self::Sixteen),
             other => {
                 let given = Given::Count(other as u64);
-                Err(ImpactError::invalid("lanes", "be 1 or 8", given))
+                Err(ImpactError::invalid("lanes", "be 1, 4, 8 or 16", given))
             }
         }
     }
@@ -288,6 +295,7 @@ fn code(status: Status) -> u8 {
         Status::Constrained => 3,
         Status::NoImpact => 4,
         Status::InvalidParameter => 5,
+        Status::TooStiff => 6,
     }
 }
 
@@ -318,7 +326,7 @@ impl MetricColumns {
 }
 
 /// Metrics of every row. A row whose parameters are out of range, or that never closes in, is
-/// NaN with its status.
+/// NaN with its status. `progress` hears of rows as they are done.
 ///
 /// # Errors
 /// Arrays differ in length, an option is out of range, or the caller asked to stop.
@@ -326,6 +334,7 @@ pub fn metrics_batch(
     columns: &Columns<'_>,
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
+    progress: &(dyn Fn(usize) + Sync),
 ) -> Result<MetricColumns> {
     let rows = columns.rows()?;
     MetricOptions {
@@ -341,17 +350,8 @@ pub fn metrics_batch(
             if interrupted() {
                 return Err(ImpactError::Interrupted);
             }
-            if options.width == Some(Width::One) || matches!(columns.head, HeadColumns::Constrained)
-            {
-                one_by_one(columns, options, &mut block);
-            } else {
-                let block = &mut block;
-                pulp::Arch::new().dispatch(SideBySide {
-                    columns,
-                    options,
-                    block,
-                });
-            }
+            kernel::fill(columns, options, &mut block);
+            progress(block.status.len());
             Ok(())
         })
     };
@@ -367,234 +367,4 @@ pub fn metrics_batch(
             .install(work)?,
     }
     Ok(result)
-}
-
-/// Rows of a task side by side, compiled once for each instruction set; the widest one that the
-/// processor has is chosen at run time. The arithmetic is the same, bit for bit.
-struct SideBySide<'a, 'b> {
-    columns: &'a Columns<'a>,
-    options: &'a BatchOptions,
-    block: &'a mut Block<'b>,
-}
-
-impl pulp::NullaryFnOnce for SideBySide<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            columns,
-            options,
-            block,
-        } = self;
-        let rows = block.status.len();
-        let mut space = Workspace::<Lanes<WIDEST>>::new();
-        for place in (0..rows).step_by(WIDEST) {
-            let count = WIDEST.min(rows - place);
-            let first = block.first + place;
-            // Lanes that are left over repeat the last row.
-            let row = |lane: usize| first + lane.min(count - 1);
-            let found = match options.fields {
-                FieldSet::All => side_by_side::<_, true>(columns, options, &mut space, row),
-                FieldSet::Peaks => side_by_side::<_, false>(columns, options, &mut space, row),
-            };
-            for (lane, found) in found.into_iter().enumerate().take(count) {
-                let metrics = found.unwrap_or_else(|| alone(columns, options, first + lane));
-                block.put(place + lane, &metrics);
-            }
-        }
-    }
-}
-
-/// Rows of a task one by one.
-fn one_by_one(columns: &Columns<'_>, options: &BatchOptions, block: &mut Block<'_>) {
-    let mut space = Workspace::new();
-    for place in 0..block.status.len() {
-        let row = block.first + place;
-        let metrics =
-            one(columns, options, &mut space, row).unwrap_or_else(|| alone(columns, options, row));
-        block.put(place, &metrics);
-    }
-}
-
-/// Metrics of one row of the usual shape.
-#[inline(never)]
-fn one(
-    columns: &Columns<'_>,
-    options: &BatchOptions,
-    space: &mut Workspace<f64>,
-    row: usize,
-) -> Option<Metrics> {
-    let [found, ..] = match options.fields {
-        FieldSet::All => side_by_side::<f64, true>(columns, options, space, |_| row),
-        FieldSet::Peaks => side_by_side::<f64, false>(columns, options, space, |_| row),
-    };
-    found
-}
-
-/// Metrics of one impact if its response has the usual shape; numbers are in range.
-pub(crate) fn usual(
-    system: &System,
-    closing_speed: f64,
-    options: &MetricOptions,
-) -> Option<Metrics> {
-    let head = match system.head {
-        Target::Free(head) => HeadColumns::Free {
-            mass: Column::Value(head.mass),
-            damping: Column::Value(head.damping),
-            stiffness: Column::Value(head.stiffness),
-        },
-        Target::Constrained => return None,
-    };
-    let columns = Columns {
-        manipulator_mass: Column::Value(system.manipulator.mass),
-        manipulator_damping: Column::Value(system.manipulator.damping),
-        manipulator_stiffness: Column::Value(system.manipulator.stiffness),
-        foam_stiffness: Column::Value(system.foam.stiffness),
-        foam_damping: Column::Value(system.foam.damping),
-        linear_range: Column::Value(system.foam.linear_range),
-        head,
-        closing_speed: Column::Value(closing_speed),
-        manipulator_speed: options.manipulator_speed.map(Column::Value),
-    };
-    let options = BatchOptions {
-        horizon: options.horizon,
-        gravity: options.gravity,
-        ..BatchOptions::default()
-    };
-    one(&columns, &options, &mut Workspace::new(), 0)
-}
-
-/// Most lanes of any width.
-const WIDEST: usize = 8;
-
-/// Metrics of rows side by side; `None` for those that need the general search.
-#[inline(always)]
-fn side_by_side<R: Real, const ALL: bool>(
-    columns: &Columns<'_>,
-    options: &BatchOptions,
-    space: &mut Workspace<R>,
-    row: impl Fn(usize) -> usize,
-) -> [Option<Metrics>; WIDEST] {
-    let HeadColumns::Free {
-        mass,
-        damping,
-        stiffness,
-    } = columns.head
-    else {
-        return [None; WIDEST];
-    };
-    let gather = |column: &Column<'_>| match column {
-        Column::Value(value) => R::splat(*value),
-        Column::Array(values) => R::from_fn(|lane| values[row(lane)]),
-    };
-    let zero = R::zero();
-    let largest = R::splat(f64::MAX);
-    let arm = [
-        gather(&columns.manipulator_mass),
-        gather(&columns.manipulator_damping),
-        gather(&columns.manipulator_stiffness),
-    ];
-    let head = [gather(&mass), gather(&damping), gather(&stiffness)];
-    let foam = [
-        gather(&columns.foam_stiffness),
-        gather(&columns.foam_damping),
-    ];
-    let range = gather(&columns.linear_range);
-    let closing_speed = gather(&columns.closing_speed);
-    let manipulator_speed = columns
-        .manipulator_speed
-        .as_ref()
-        .map_or(closing_speed, gather);
-    let mut valid = manipulator_speed.abs().le(largest);
-    for value in [arm[0], head[0], range, closing_speed] {
-        valid = valid & value.gt(zero) & value.le(largest);
-    }
-    for value in [arm[1], arm[2], head[1], head[2], foam[0], foam[1]] {
-        valid = valid & value.ge(zero) & value.le(largest);
-    }
-    let over = |[mass, damping, stiffness]: [R; 3]| {
-        let inverse = R::splat(1.0) / mass;
-        [inverse, damping / mass, stiffness / mass]
-    };
-    let group = Group {
-        plant: Plant {
-            manipulator: over(arm),
-            head: over(head),
-            foam,
-        },
-        closing_speed,
-        manipulator_speed,
-        horizon: options.horizon.unwrap_or(FREE_HORIZON),
-    };
-    let solved = group.solve::<ALL>(space);
-    let peaks = solved.peaks();
-    let rest = ALL.then(|| solved.rest());
-    let mut shaped = valid & peaks.shaped;
-    if let Some(rest) = &rest {
-        shaped = shaped & rest.accepted;
-    }
-    let within = peaks.compression.le(range);
-    let gravity = options.gravity;
-    let scale = gravity * gravity * gravity.sqrt();
-    std::array::from_fn(|lane| {
-        if lane >= R::WIDTH || !shaped.lane(lane) {
-            return None;
-        }
-        let mut metrics = if peaks.accepted.lane(lane) {
-            let status = if within.lane(lane) {
-                Status::Released
-            } else {
-                Status::BeyondLinearRange
-            };
-            let acceleration = peaks.head_acceleration.lane(lane);
-            Metrics {
-                peak_head_acceleration: acceleration,
-                peak_head_acceleration_g: acceleration / gravity,
-                peak_contact_force: peaks.contact_force.lane(lane),
-                max_compression: peaks.compression.lane(lane),
-                impact_duration: peaks.duration.lane(lane),
-                ..Metrics::none(status)
-            }
-        } else {
-            // Only the peaks need the general search.
-            let system = columns.system(row(lane));
-            let closing_speed = closing_speed.lane(lane);
-            let impact = Impact::new(&system, closing_speed, options.horizon).ok()?;
-            impact.peaks().metrics(&system, gravity)
-        };
-        if let Some(rest) = &rest {
-            metrics.mean_head_acceleration_g = rest.mean.lane(lane) / gravity;
-            metrics.hic15 = rest.injury[0].lane(lane) / scale;
-            metrics.hic36 = rest.injury[1].lane(lane) / scale;
-            metrics.average_3ms_g = rest.average.lane(lane) / gravity;
-            metrics.clip_3ms_g = rest.clip.lane(lane) / gravity;
-            metrics.peak_power_manipulator = rest.manipulator_power.lane(lane);
-            metrics.peak_power_foam = rest.foam_power.lane(lane);
-        }
-        Some(metrics)
-    })
-}
-
-/// One row by itself.
-fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
-    let system = columns.system(row);
-    let [closing_speed, manipulator_speed] = columns.speeds(row);
-    let valid =
-        system.checked().is_ok() && closing_speed.is_finite() && manipulator_speed.is_finite();
-    if !valid {
-        return Metrics::none(Status::InvalidParameter);
-    }
-    if closing_speed <= 0.0 {
-        return Metrics::none(Status::NoImpact);
-    }
-    let Ok(impact) = Impact::new(&system, closing_speed, options.horizon) else {
-        return Metrics::none(Status::InvalidParameter);
-    };
-    match options.fields {
-        FieldSet::All => impact
-            .findings(manipulator_speed)
-            .metrics(&system, options.gravity),
-        FieldSet::Peaks => impact.peaks().metrics(&system, options.gravity),
-    }
 }

@@ -104,18 +104,24 @@ impl Stretch {
         };
         let mut cell = Cell::empty();
         cell.fill(&plant.recurrence(length), &drive, &state.rescaled(length));
-        let mut stretch = Self {
-            start,
-            length,
-            used: length,
-            phase: bodies.phase,
-            event: None,
-            cell,
-        };
+        let mut stretch = Self::of_cell(start, length, bodies.phase, cell);
         if bodies.unilateral {
             stretch.look(&bodies.law());
         }
         stretch
+    }
+
+    /// A filled cell that is used to its end.
+    #[must_use]
+    pub fn of_cell(start: f64, length: f64, phase: Phase, cell: Cell<f64>) -> Self {
+        Self {
+            start,
+            length,
+            used: length,
+            phase,
+            event: None,
+            cell,
+        }
     }
 
     fn look(&mut self, law: &FoamLaw) {

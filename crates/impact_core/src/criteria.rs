@@ -36,17 +36,20 @@ pub enum Status {
     NoImpact,
     /// A parameter is out of range.
     InvalidParameter,
+    /// The fastest root is too fast for the horizon.
+    TooStiff,
 }
 
 impl Status {
     /// All of them; the place of one is its code in a batch.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Released,
         Self::NoRelease,
         Self::BeyondLinearRange,
         Self::Constrained,
         Self::NoImpact,
         Self::InvalidParameter,
+        Self::TooStiff,
     ];
 
     /// The word for it.
@@ -59,6 +62,7 @@ impl Status {
             Self::Constrained => "constrained",
             Self::NoImpact => "no_impact",
             Self::InvalidParameter => "invalid_parameter",
+            Self::TooStiff => "too_stiff",
         }
     }
 }

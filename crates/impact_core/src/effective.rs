@@ -87,7 +87,18 @@ impl UniformLinks {
     }
 }
 
-impl TwoJoints {
+/// Where two joints hit: what the speed of the impact point depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Length of the second link `a_2`, in m.
+    pub second_link: f64,
+    /// Distance of the impact point from joint 3 `l_3`, in m.
+    pub lever_arm: f64,
+    /// Elbow angle `theta_3`, in rad; 0 is stretched.
+    pub elbow: f64,
+}
+
+impl Reach {
     /// Lever arms of the joints, `J = [a_2 cos(theta_3) + l_3, l_3]`, in m.
     #[must_use]
     pub fn jacobian(&self) -> [f64; 2] {
@@ -97,11 +108,29 @@ impl TwoJoints {
         ]
     }
 
-    /// Speed of the impact point for rates of the joints, in rad/s.
-    #[must_use]
-    pub fn speed(&self, rates: [f64; 2]) -> f64 {
+    /// Speed `v_r = J theta'` of the impact point for rates of the joints, in rad/s.
+    ///
+    /// # Errors
+    /// Names the number that is out of range.
+    pub fn speed(&self, rates: [f64; 2]) -> Result<f64> {
+        not_negative("second_link", self.second_link)?;
+        positive("lever_arm", self.lever_arm)?;
+        finite("elbow", self.elbow)?;
         let [first, second] = self.jacobian();
-        first * rates[0] + second * rates[1]
+        Ok(first * finite("rates", rates[0])? + second * finite("rates", rates[1])?)
+    }
+}
+
+impl TwoJoints {
+    /// Lever arms of the joints, in m.
+    #[must_use]
+    pub fn jacobian(&self) -> [f64; 2] {
+        let reach = Reach {
+            second_link: self.second_link,
+            lever_arm: self.lever_arm,
+            elbow: self.elbow,
+        };
+        reach.jacobian()
     }
 
     /// `M_r = 1 / (J M^-1 J^T)`, `K_r = 1 / (J K^-1 J^T)` and

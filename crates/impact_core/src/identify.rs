@@ -1,18 +1,21 @@
 //! Parameters from measurements: foams from static and drop tests, a direct-drive joint from
-//! open-loop tests, controller gains for a wanted stiffness (zeng2011, appendix A).
+//! open-loop tests, controller gains for a wanted stiffness, control of the cylinder (zeng2011,
+//! appendix A).
 
+mod cylinder;
 mod drive;
 mod drop_test;
 mod foam;
 mod least_squares;
 mod line;
 
+pub use cylinder::{CylinderController, DesiredMotion};
 pub use drive::{
     DirectDriveFit, DriveConstants, OpenLoop, PdGains, Tube, TubeInertia, fit_open_loop,
     identify_direct_drive, pd_gains, tube_inertia,
 };
 pub use drop_test::{DropContact, DropModel, drop_trajectory};
-pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam};
+pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam, identify_foam_until};
 pub use line::{Line, fit_static, student_quantile};
 
 use crate::error::{Given, ImpactError, Result};

@@ -1,18 +1,25 @@
 //! Trajectories of an impact, exact or by Runge-Kutta steps, with foam that may release.
 
+mod peaks;
+mod printed;
+mod runge_kutta;
+
+use crate::batch::Interrupted;
 use crate::contact::{Bodies, Event, Phase, Stretch};
 use crate::drive::SetPoint;
 use crate::error::{Given, ImpactError, Result, finite, positive};
 use crate::motion::cell_length;
 use crate::parameters::{System, Target};
-use crate::roots::{Peak, maximum, root};
 use crate::series::{Drive, Plant, State};
-use crate::windows::first_fall;
+use peaks::Watch;
+use printed::Misprint;
 
 /// Samples that a response may have.
 pub const MAX_SAMPLES: usize = 100_000_000;
 /// Pieces of a cell between nodes of a search.
 const PIECES: usize = 8;
+/// Samples between two looks whether to stop.
+const CHECK: usize = 4096;
 
 /// How the motion is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +37,16 @@ pub enum Contact {
     Linear,
     /// Push only.
     Unilateral,
+}
+
+/// Which coefficients the motion has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Equations {
+    /// Those of the bodies.
+    Corrected,
+    /// `q_2` of (3.5.14) as the source prints it, without `C_r C_h / (M_r M_h)`: only to explain
+    /// its numbers.
+    AsPrinted,
 }
 
 /// Speeds at first contact.
@@ -54,6 +71,9 @@ pub struct SimulationOptions {
     pub contact: Contact,
     /// Motion of the set-point.
     pub set_point: SetPoint,
+    /// Which coefficients the motion has; the printed ones need the exact method, linear contact
+    /// and a set-point at constant speed.
+    pub equations: Equations,
 }
 
 /// A trajectory. Positions are measured from the manipulator's place at first contact, the head
@@ -107,6 +127,19 @@ pub fn simulate(
     approach: &Approach,
     options: &SimulationOptions,
 ) -> Result<Response> {
+    simulate_until(system, approach, options, &|| false)
+}
+
+/// Simulates an impact unless the caller asks to stop.
+///
+/// # Errors
+/// An argument is out of range, the samples do not fit into memory, or the caller asked to stop.
+pub fn simulate_until(
+    system: &System,
+    approach: &Approach,
+    options: &SimulationOptions,
+    interrupted: Interrupted<'_>,
+) -> Result<Response> {
     system.checked()?;
     positive("closing_speed", approach.closing_speed)?;
     if let Some(speed) = approach.manipulator_speed {
@@ -115,6 +148,7 @@ pub fn simulate(
     positive("duration", options.duration)?;
     positive("step", options.step)?;
     options.set_point.check()?;
+    options.check_equations()?;
     let samples = (options.duration / options.step + 1e-9).floor();
     if samples > MAX_SAMPLES as f64 {
         let given = Given::Number(options.step);
@@ -146,11 +180,51 @@ pub fn simulate(
     // Checked above; the cast does not lose anything.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let samples = samples as usize;
+    run.response.reserve(samples + 1).ok_or_else(|| {
+        let given = Given::Number(options.step);
+        ImpactError::invalid("step", "give samples that fit into memory", given)
+    })?;
     match options.method {
-        Method::Exact => run.exact(samples),
-        Method::RungeKutta => run.runge_kutta(samples),
+        Method::Exact => run.exact(samples, interrupted)?,
+        Method::RungeKutta => run.runge_kutta(samples, interrupted)?,
     }
     Ok(run.response)
+}
+
+impl SimulationOptions {
+    fn check_equations(&self) -> Result<()> {
+        let plain = self.method == Method::Exact
+            && self.contact == Contact::Linear
+            && self.set_point.segments.is_empty();
+        if plain || self.equations == Equations::Corrected {
+            return Ok(());
+        }
+        Err(ImpactError::invalid(
+            "equations",
+            "be \"corrected\" unless method, contact and set-point are the usual ones",
+            Given::Word("as_printed".to_owned()),
+        ))
+    }
+}
+
+impl Response {
+    /// Makes room for samples if there is.
+    fn reserve(&mut self, samples: usize) -> Option<()> {
+        let columns = [
+            &mut self.time,
+            &mut self.contact_force,
+            &mut self.head_acceleration,
+            &mut self.head_position,
+            &mut self.head_velocity,
+            &mut self.manipulator_position,
+            &mut self.manipulator_velocity,
+            &mut self.compression,
+        ];
+        for column in columns {
+            column.try_reserve_exact(samples).ok()?;
+        }
+        Some(())
+    }
 }
 
 struct Run<'a> {
@@ -179,15 +253,28 @@ impl Run<'_> {
         (drive, change)
     }
 
-    fn exact(&mut self, samples: usize) {
+    fn exact(&mut self, samples: usize, interrupted: Interrupted<'_>) -> Result<()> {
+        let mut misprint = match self.options.equations {
+            Equations::Corrected => None,
+            Equations::AsPrinted => Some(Misprint::default()),
+        };
         let mut watch = Watch::new(self.constrained);
-        let longest = self.bodies.cell_length(self.options.duration);
+        let mut longest = self.bodies.cell_length(self.options.duration);
+        if misprint.is_some() {
+            longest /= Misprint::FASTER;
+        }
         let last = self.options.step * samples as f64;
         let mut next = 0;
         while next <= samples {
+            if interrupted() {
+                return Err(ImpactError::Interrupted);
+            }
             let (drive, change) = self.drive();
             let length = longest.min(change - self.time);
-            let stretch = Stretch::new(&self.bodies, self.time, length, &self.state, drive);
+            let stretch = match &mut misprint {
+                None => Stretch::new(&self.bodies, self.time, length, &self.state, drive),
+                Some(misprint) => misprint.stretch(&self.bodies, self.time, length, &self.state),
+            };
             watch.look(&stretch, &self.bodies, self.options.duration);
             let end = self.time + stretch.used;
             while next <= samples {
@@ -197,6 +284,9 @@ impl Run<'_> {
                 }
                 self.record(time, &stretch.state(time - self.time), stretch.phase);
                 next += 1;
+                if next.is_multiple_of(CHECK) && interrupted() {
+                    return Err(ImpactError::Interrupted);
+                }
             }
             self.state = stretch.state(stretch.used);
             self.time = if length == change - self.time && stretch.event.is_none() {
@@ -209,6 +299,7 @@ impl Run<'_> {
             }
         }
         self.response.peaks = Some(watch.peaks);
+        Ok(())
     }
 
     fn turn(&mut self, event: Event) {
@@ -253,177 +344,5 @@ impl Run<'_> {
         out.manipulator_velocity
             .push(manipulator + rate - state.lag[1]);
         out.compression.push(state.compression[0]);
-    }
-
-    fn runge_kutta(&mut self, samples: usize) {
-        self.record(0.0, &self.state.clone(), self.bodies.phase);
-        for sample in 1..=samples {
-            let target = self.options.step * sample as f64;
-            while self.time < target {
-                let (drive, change) = self.drive();
-                let stop = target.min(change);
-                self.advance(stop, &drive);
-            }
-            self.record(target, &self.state.clone(), self.bodies.phase);
-        }
-    }
-
-    /// One step, cut where an event happens.
-    fn advance(&mut self, stop: f64, drive: &Drive<f64>) {
-        let span = stop - self.time;
-        let after = |step: f64| runge_kutta_step(&self.bodies, &self.state, drive, step);
-        let law = self.bodies.law();
-        let pull = |step: f64| {
-            let state = after(step);
-            match self.bodies.phase {
-                Phase::Touching => {
-                    let closing = rates(&self.bodies, &state, drive).compression[1];
-                    let [position, rate] = state.compression;
-                    [-law.force([position, rate]), -law.force([rate, closing])]
-                }
-                Phase::Apart { left, since } => {
-                    let [relaxed, relaxing] = law.relaxed(left, self.time + step - since);
-                    [
-                        state.compression[0] - relaxed,
-                        state.compression[1] - relaxing,
-                    ]
-                }
-            }
-        };
-        let happens = self.bodies.unilateral && pull(span)[0] > 0.0;
-        let starts_on = match self.bodies.phase {
-            Phase::Touching => true,
-            Phase::Apart { since, .. } => since < self.time || pull(0.5 * span)[0] < 0.0,
-        };
-        if happens && starts_on {
-            let step = root(pull, 0.0, span);
-            self.state = after(step);
-            self.time += step;
-            let event = match self.bodies.phase {
-                Phase::Touching => Event::Release,
-                Phase::Apart { .. } => Event::Touch,
-            };
-            self.turn(event);
-        } else {
-            self.state = after(span);
-            self.time = stop;
-        }
-    }
-}
-
-/// Rates of a state, those of positions in the first places.
-fn rates(bodies: &Bodies, state: &State<f64>, drive: &Drive<f64>) -> State<f64> {
-    let force = match bodies.phase {
-        Phase::Touching => bodies.law().force(state.compression),
-        Phase::Apart { .. } => 0.0,
-    };
-    let of = |[inverse_mass, damping, stiffness]: [f64; 3], [position, rate]: [f64; 2]| {
-        inverse_mass * force - damping * rate - stiffness * position
-    };
-    let lag = of(bodies.plant.manipulator, state.lag) + drive.lag;
-    let head = of(bodies.plant.head, state.head);
-    State {
-        compression: [state.compression[1], drive.set_point - lag - head],
-        lag: [state.lag[1], lag],
-        head: [state.head[1], head],
-    }
-}
-
-fn runge_kutta_step(
-    bodies: &Bodies,
-    state: &State<f64>,
-    drive: &Drive<f64>,
-    step: f64,
-) -> State<f64> {
-    let k1 = rates(bodies, state, drive);
-    let k2 = rates(bodies, &moved(state, &k1, 0.5 * step), drive);
-    let k3 = rates(bodies, &moved(state, &k2, 0.5 * step), drive);
-    let k4 = rates(bodies, &moved(state, &k3, step), drive);
-    let ends = moved(&moved(state, &k1, step / 6.0), &k4, step / 6.0);
-    moved(&moved(&ends, &k2, step / 3.0), &k3, step / 3.0)
-}
-
-fn moved(state: &State<f64>, rates: &State<f64>, step: f64) -> State<f64> {
-    let pair = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c * step, b + d * step];
-    State {
-        compression: pair(state.compression, rates.compression),
-        lag: pair(state.lag, rates.lag),
-        head: pair(state.head, rates.head),
-    }
-}
-
-/// Collects peaks until the head's acceleration comes back to zero.
-struct Watch {
-    peaks: ResponsePeaks,
-    over: bool,
-}
-
-impl Watch {
-    fn new(constrained: bool) -> Self {
-        let head = if constrained { f64::NAN } else { 0.0 };
-        Self {
-            peaks: ResponsePeaks {
-                head_acceleration: head,
-                contact_force: 0.0,
-                compression: 0.0,
-                impact_duration: if constrained { f64::NAN } else { f64::INFINITY },
-            },
-            over: false,
-        }
-    }
-
-    fn look(&mut self, stretch: &Stretch, bodies: &Bodies, duration: f64) {
-        if self.over || stretch.start >= duration {
-            return;
-        }
-        let free = !self.peaks.impact_duration.is_nan();
-        let mut end = stretch.used.min(duration - stretch.start);
-        if free {
-            let piece = end / PIECES as f64;
-            let noise = |time: f64| {
-                let state = stretch.state(time);
-                let [inverse_mass, damping, stiffness] = bodies.plant.head;
-                let [compression, rate] = state.compression.map(f64::abs);
-                let force = bodies.law().force([compression, rate]);
-                let [position, velocity] = state.head.map(f64::abs);
-                16.0 * f64::EPSILON
-                    * (inverse_mass * force + damping * velocity + stiffness * position)
-            };
-            let fall = (0..PIECES).find_map(|index| {
-                let from = piece * index as f64;
-                first_fall(|time| stretch.head(time), from, from + piece, noise)
-            });
-            if let Some(time) = fall {
-                end = time;
-                self.over = true;
-                self.peaks.impact_duration = stretch.start + time;
-            }
-        }
-        let peak =
-            |function: &dyn Fn(f64) -> [f64; 3]| -> Peak { maximum(function, 0.0, end, PIECES) };
-        let law = bodies.law();
-        if free {
-            let acceleration = peak(&|time| {
-                let [_, value, first, second] = stretch.head(time);
-                [value, first, second]
-            });
-            self.peaks.head_acceleration = self.peaks.head_acceleration.max(acceleration.value);
-        }
-        if stretch.phase == Phase::Touching {
-            let force = peak(&|time| {
-                let [value, first, second, third] = stretch.compression_jet(time);
-                [
-                    law.force([value, first]),
-                    law.force([first, second]),
-                    law.force([second, third]),
-                ]
-            });
-            let compression = peak(&|time| {
-                let [value, first, second, _] = stretch.compression_jet(time);
-                [value, first, second]
-            });
-            self.peaks.contact_force = self.peaks.contact_force.max(force.value);
-            self.peaks.compression = self.peaks.compression.max(compression.value);
-        }
     }
 }

@@ -7,11 +7,13 @@
 mod cells;
 mod closed_form;
 mod injury;
+mod recorded;
 pub(crate) mod search;
 mod windows;
 
 pub use closed_form::{hic_half_sine, hic_square, hic_triangle};
 pub use injury::{HeadInjury, hic};
+pub use recorded::Recording;
 pub use windows::{Level, contiguous_level, moving_average};
 
 use crate::error::{Given, ImpactError, Result};

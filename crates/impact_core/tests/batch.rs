@@ -65,12 +65,23 @@ impl Inputs {
 }
 
 fn run(inputs: &Inputs, options: &BatchOptions) -> MetricColumns {
-    metrics_batch(&inputs.columns(), options, &|| false).unwrap()
+    metrics_batch(&inputs.columns(), options, &|| false, &|_| ()).unwrap()
 }
 
 #[test]
 fn rows_equal_single_impacts() {
-    let inputs = Inputs::random(4000);
+    compare(4000);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn a_million_rows_equal_single_impacts() {
+    compare(1_000_000);
+}
+
+/// Compares every field of a batch with the general search.
+fn compare(rows: usize) {
+    let inputs = Inputs::random(rows);
     let batch = run(&inputs, &BatchOptions::default());
     let mut worst = 0.0_f64;
     for row in 0..batch.rows {
@@ -126,8 +137,10 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
     for (threads, width) in [
         (1, Width::One),
         (2, Width::One),
+        (2, Width::Four),
         (1, Width::Eight),
         (2, Width::Eight),
+        (1, Width::Sixteen),
     ] {
         let options = BatchOptions {
             threads: Some(threads),

@@ -2,11 +2,14 @@
 
 use impact_core::criteria::{MetricOptions, Status, metrics};
 use impact_core::drive::SetPoint;
+use impact_core::error::ImpactError;
 use impact_core::parameters::{
     FOAM_1, FOAM_3, Foam, HEAD_APPARATUS, HEAD_MINIMUM, MANIPULATOR_1, MANIPULATOR_2, System,
     Target,
 };
-use impact_core::response::{Approach, Contact, Method, SimulationOptions, simulate};
+use impact_core::response::{
+    Approach, Contact, Equations, Method, SimulationOptions, simulate, simulate_until,
+};
 
 /// Direct-drive manipulator, Foam 1 as measured, head of the apparatus.
 fn nominal() -> System {
@@ -60,6 +63,7 @@ fn exact(contact: Contact, set_point: SetPoint) -> SimulationOptions {
         method: Method::Exact,
         contact,
         set_point,
+        equations: Equations::Corrected,
     }
 }
 
@@ -155,5 +159,68 @@ fn driven_manipulator_gives_the_percentages_of_the_specification() {
             head,
             unit,
         );
+    }
+}
+
+#[test]
+fn printed_coefficient_changes_nothing_without_damping_of_the_neck() {
+    let options = exact(Contact::Linear, SetPoint::default());
+    let printed = SimulationOptions {
+        equations: Equations::AsPrinted,
+        ..options.clone()
+    };
+    let [right, other] =
+        [options, printed].map(|options| simulate(&nominal(), &approach(1.25), &options).unwrap());
+    for (one, other) in [
+        (&right.contact_force, &other.contact_force),
+        (&right.head_position, &other.head_position),
+        (&right.manipulator_velocity, &other.manipulator_velocity),
+        (&right.compression, &other.compression),
+    ] {
+        let scale = one
+            .iter()
+            .fold(0.0_f64, |scale, value| scale.max(value.abs()));
+        for (one, other) in one.iter().zip(other) {
+            assert!((one - other).abs() < 1e-13 * scale, "{one} {other}");
+        }
+    }
+}
+
+#[test]
+fn printed_coefficient_is_for_the_plain_response_only() {
+    let plain = SimulationOptions {
+        equations: Equations::AsPrinted,
+        ..exact(Contact::Linear, SetPoint::default())
+    };
+    let moving = SetPoint::accelerating(1.0, 0.05, false).unwrap();
+    for options in [
+        SimulationOptions {
+            method: Method::RungeKutta,
+            ..plain.clone()
+        },
+        SimulationOptions {
+            contact: Contact::Unilateral,
+            ..plain.clone()
+        },
+        SimulationOptions {
+            set_point: moving,
+            ..plain.clone()
+        },
+    ] {
+        let error = simulate(&nominal(), &approach(1.25), &options).unwrap_err();
+        assert!(error.to_string().starts_with("equations must"), "{error}");
+    }
+}
+
+#[test]
+fn simulation_stops_when_asked() {
+    for method in [Method::Exact, Method::RungeKutta] {
+        let options = SimulationOptions {
+            method,
+            step: 1e-6,
+            ..exact(Contact::Linear, SetPoint::default())
+        };
+        let error = simulate_until(&nominal(), &approach(1.25), &options, &|| true).unwrap_err();
+        assert_eq!(error, ImpactError::Interrupted);
     }
 }

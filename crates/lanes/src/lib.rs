@@ -68,6 +68,13 @@ pub trait Real:
     /// Magnitude of `self` with the sign of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
+    /// `2^k` of an integer `k` between -1022 and 1023 that is given as `1.5 * 2^52 + k`.
+    #[inline(always)]
+    #[must_use]
+    fn power_of_two(self) -> Self {
+        // The last bits hold `k`; with the bias of exponents they are moved to their place.
+        Self::from_fn(|lane| f64::from_bits((self.lane(lane).to_bits().wrapping_add(1023)) << 52))
+    }
     /// Whether `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// Whether `self <= other`.

@@ -1,0 +1,103 @@
+//! Exponential, sine and cosine of numbers side by side, from basic operations only, so that their
+//! bits do not depend on the width.
+
+use lanes::Real;
+
+/// `1.5 * 2^52`: a number of moderate size added to it is rounded to an integer.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+/// `ln 2` in two parts; products of the first one with small integers are exact.
+const LN_2: [f64; 2] = [0.693_147_175_014_019, 5.545_926_296_966_060_5e-9];
+/// `2 pi` in two parts, likewise.
+const TURN: [f64; 2] = [6.283_185_303_211_212, 3.968_374_318_722_162e-9];
+/// Exponents below this give numbers of no weight.
+const LOWEST: f64 = -700.0;
+
+/// `1 / (start + step * 0)!`, `1 / (start + step * 1)!` and so on, signs by turns for two steps.
+const fn reciprocal_factorials<const N: usize>(start: usize, step: usize) -> [f64; N] {
+    let mut found = [0.0; N];
+    let mut index = 0;
+    while index < N {
+        let (mut factorial, mut factor) = (1.0, 1);
+        while factor <= start + step * index {
+            factorial *= factor as f64;
+            factor += 1;
+        }
+        let sign = if step == 2 && index % 2 == 1 {
+            -1.0
+        } else {
+            1.0
+        };
+        found[index] = sign / factorial;
+        index += 1;
+    }
+    found
+}
+
+/// To `0.3466^13 / 13!`, below 2e-16.
+const EXPONENTIAL: [f64; 13] = reciprocal_factorials(0, 1);
+/// To `0.7854^17 / 17!`, below 5e-17.
+const SINE: [f64; 8] = reciprocal_factorials(1, 2);
+/// To `0.7854^18 / 18!`, below 3e-18.
+const COSINE: [f64; 9] = reciprocal_factorials(0, 2);
+
+/// Even and odd powers apart: half as many steps wait for each other.
+#[inline(always)]
+fn polynomial<R: Real, const N: usize>(coefficients: &[f64; N], x: R) -> R {
+    let square = x * x;
+    let mut parts = [R::zero(); 2];
+    for (power, &coefficient) in coefficients.iter().enumerate().rev() {
+        let part = &mut parts[power % 2];
+        *part = *part * square + R::splat(coefficient);
+    }
+    parts[0] + x * parts[1]
+}
+
+/// `exp(x)` of a number that is not far above zero.
+#[inline(always)]
+pub fn exponential<R: Real>(x: R) -> R {
+    let x = x.max(R::splat(LOWEST));
+    let rounder = R::splat(ROUNDER);
+    let shifted = x * R::splat(std::f64::consts::LOG2_E) + rounder;
+    let whole = shifted - rounder;
+    let rest = x - whole * R::splat(LN_2[0]) - whole * R::splat(LN_2[1]);
+    polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
+}
+
+/// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
+/// full turns, doubled twice.
+#[inline(always)]
+pub fn cosine_and_sine<R: Real>(x: R) -> [R; 2] {
+    let one = R::splat(1.0);
+    let rounder = R::splat(ROUNDER);
+    let whole = x * R::splat(0.5 * std::f64::consts::FRAC_1_PI) + rounder - rounder;
+    let rest = x - whole * R::splat(TURN[0]) - whole * R::splat(TURN[1]);
+    let quarter = rest * R::splat(0.25);
+    let square = quarter * quarter;
+    let mut cosine = polynomial(&COSINE, square);
+    let mut sine = polynomial(&SINE, square) * quarter;
+    for _ in 0..2 {
+        let double = sine + sine;
+        (cosine, sine) = (one - double * sine, double * cosine);
+    }
+    [cosine, sine]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn they_agree_with_the_library() {
+        for index in -4000..=200 {
+            let x = f64::from(index) * 0.01;
+            let error = exponential(x) / x.exp() - 1.0;
+            assert!(error.abs() < 1e-15, "{x}: {error:e}");
+        }
+        for index in 0..100_000 {
+            let x = f64::from(index) * 0.003;
+            let [cosine, sine] = cosine_and_sine(x);
+            let error = (cosine - x.cos()).abs().max((sine - x.sin()).abs());
+            assert!(error < 3e-15, "{x}: {error:e}");
+        }
+    }
+}

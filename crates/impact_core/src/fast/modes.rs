@@ -1,0 +1,423 @@
+//! The response as two pairs of roots: everything on it is a sum of four functions of time.
+//!
+//! A pair of roots is a factor `s^2 + 2 alpha s + beta` of the characteristic polynomial. With
+//! `delta = beta - alpha^2`, positive for complex roots and negative for real ones, it gives
+//!
+//! ```text
+//! C(t) = exp(-alpha t) cos(sqrt(delta) t)        C' = -alpha C - delta S
+//! S(t) = exp(-alpha t) sin(sqrt(delta) t) / sqrt(delta)    S' = C - alpha S
+//! ```
+//!
+//! so equal roots within a pair need nothing special. Two pairs that come close do: such impacts
+//! are refused.
+
+use super::Each;
+use super::apart::apart;
+use super::elementary::{cosine_and_sine, exponential};
+use crate::series::Plant;
+use lanes::{Mask, Real};
+use pulp::Simd;
+
+/// Length of a cell times the fastest root.
+const CELL_ANGLE: f64 = 0.75;
+/// Newton steps for the sum of the squared moduli of both pairs.
+const RESOLVENT_STEPS: usize = 8;
+/// Newton steps for the factors.
+const FACTOR_STEPS: usize = 3;
+/// Last of these steps, relative; its square is the error.
+const SETTLED_FACTOR: f64 = 1e-7;
+/// Least resultant of the pairs over the fourth power of the fastest root's modulus; rounding
+/// errors grow by the square root of its inverse.
+const LEAST_RESULTANT: f64 = 3e-5;
+/// Nearly equal real roots in a pair, over its squared modulus: their difference is rounding.
+const NEARLY_EQUAL: f64 = 1e-5;
+
+/// `s^2 + first s + last`, as `[first, last]`.
+type Factor<R> = [R; 2];
+
+/// `(p3 s^3 + p2 s^2 + p1 s + p0) / (f g)` as the sum of `(A s + B) / f` and of the same over `g`.
+struct Split<R> {
+    factors: [Factor<R>; 2],
+    resultant: R,
+    over: R,
+}
+
+impl<R: Real> Split<R> {
+    #[inline(always)]
+    fn new(factors: [Factor<R>; 2]) -> Self {
+        let [[a, b], [c, d]] = factors;
+        let (p, q) = (c - a, d - b);
+        let resultant = q * (q - p * a) + p * p * b;
+        Self {
+            factors,
+            resultant,
+            over: R::splat(1.0) / resultant,
+        }
+    }
+
+    /// `[A, B]` of both fractions, from `[p3, p2, p1, p0]`.
+    #[inline(always)]
+    fn of(&self, [p3, p2, p1, p0]: [R; 4]) -> [[R; 2]; 2] {
+        let [[a, b], [c, d]] = self.factors;
+        let (p, q) = (c - a, d - b);
+        let slope = q - p * a;
+        // What is left by the division by the first factor.
+        let lead = p2 - p3 * a;
+        let r1 = p1 - p3 * b - lead * a;
+        let r0 = p0 - lead * b;
+        let first = [
+            (q * r1 - p * r0) * self.over,
+            (slope * r0 + p * b * r1) * self.over,
+        ];
+        // And by the second one.
+        let lead = p2 - p3 * c;
+        let r1 = p1 - p3 * d - lead * c;
+        let r0 = p0 - lead * d;
+        let second = [
+            (p * r0 - q * r1) * self.over,
+            ((p * c - q) * r0 - p * d * r1) * self.over,
+        ];
+        [first, second]
+    }
+}
+
+/// Factors of `s^4 + q1 s^3 + q2 s^2 + q3 s + q4` with positive coefficients, no root of it to the
+/// right of the imaginary axis; the first one has the larger last coefficient. Lanes without
+/// `settled` are wrong.
+#[inline(always)]
+fn factors<R: Real>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) {
+    let four = R::splat(4.0);
+    // The sum of the last coefficients is the largest root of a cubic, from above which Newton
+    // steps fall without fail; at q2 the cubic is the determinant of Routh and Hurwitz.
+    let linear = q1 * q3 - four * q4;
+    let constant = four * q2 * q4 - q3 * q3 - q1 * q1 * q4;
+    let mut sum = q2;
+    for _ in 0..RESOLVENT_STEPS {
+        let value = ((sum - q2) * sum + linear) * sum + constant;
+        let slope = (R::splat(3.0) * sum - q2 - q2) * sum + linear;
+        sum = sum - value / slope;
+    }
+    let difference = (sum * sum - four * q4).max(R::zero()).sqrt();
+    let b = R::splat(0.5) * (sum + difference);
+    let d = q4 / b;
+    let c = (q3 - q1 * d) / (b - d);
+    let mut split = Split::new([[q1 - c, b], [c, d]]);
+    let mut settled = R::Mask::none();
+    for _ in 0..FACTOR_STEPS {
+        let [[a, b], [c, d]] = split.factors;
+        let missing = [
+            q1 - (a + c),
+            q2 - (b + a * c + d),
+            q3 - (a * d + b * c),
+            q4 - b * d,
+        ];
+        let [[da, db], [dc, dd]] = split.of(missing);
+        let limit = R::splat(SETTLED_FACTOR);
+        let first = (da * da).le(limit * limit * b) & db.abs().le(limit * b);
+        let second = (dc * dc).le(limit * limit * d) & dd.abs().le(limit * d);
+        settled = first & second;
+        split = Split::new([[a + da, b + db], [c + dc, d + dd]]);
+    }
+    (split, settled)
+}
+
+/// Two pairs of roots, times in cells.
+#[derive(Clone, Copy)]
+pub struct Modes<S, R: Real> {
+    /// Instructions that may be used.
+    simd: S,
+    /// Length of a cell, in s.
+    pub length: R,
+    /// `alpha` of both pairs.
+    decay: [R; 2],
+    /// `beta`.
+    modulus: [R; 2],
+    /// `delta`.
+    square: [R; 2],
+    /// Root of its absolute value.
+    frequency: [R; 2],
+    /// Pairs of real roots.
+    real: [R::Mask; 2],
+}
+
+/// `C` and `S` of both pairs at a time.
+pub type Basis<R> = [R; 4];
+
+/// A sum of the four functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Wave<R>(pub [R; 4]);
+
+impl<R: Real> Wave<R> {
+    /// Its value.
+    #[inline(always)]
+    pub fn at(&self, basis: &Basis<R>) -> R {
+        (self.0[0] * basis[0] + self.0[1] * basis[1])
+            + (self.0[2] * basis[2] + self.0[3] * basis[3])
+    }
+
+    /// Its value at first contact.
+    #[inline(always)]
+    pub fn at_contact(&self) -> R {
+        self.0[0] + self.0[2]
+    }
+
+    #[inline(always)]
+    fn by_pairs(self, pair: impl Fn(usize, R, R) -> [R; 2]) -> Self {
+        let [p, q, r, s] = self.0;
+        let ([p, q], [r, s]) = (pair(0, p, q), pair(1, r, s));
+        Self([p, q, r, s])
+    }
+}
+
+impl<S: Simd, R: Real> Modes<S, R> {
+    /// Squared modulus of the slower pair.
+    #[inline(always)]
+    pub fn slow(&self) -> R {
+        self.modulus[1]
+    }
+
+    /// Derivative of a wave.
+    #[inline(always)]
+    pub fn slope(&self, wave: Wave<R>) -> Wave<R> {
+        wave.by_pairs(|pair, p, q| {
+            let (decay, square) = (self.decay[pair], self.square[pair]);
+            [q - decay * p, -(square * p + decay * q)]
+        })
+    }
+
+    /// Integral of a wave that has no constant part.
+    #[inline(always)]
+    pub fn integral(&self, wave: Wave<R>) -> Wave<R> {
+        wave.by_pairs(|pair, p, q| {
+            let decay = self.decay[pair];
+            let integrated = -(q + decay * p) / self.modulus[pair];
+            [integrated, p + decay * integrated]
+        })
+    }
+
+    /// The four functions at a time.
+    #[inline(always)]
+    pub fn basis(&self, time: R) -> Basis<R> {
+        apart(
+            self.simd,
+            #[inline(always)]
+            || self.basis_here(time),
+        )
+    }
+
+    #[inline(always)]
+    fn basis_here(&self, time: R) -> Basis<R> {
+        let mut basis = [R::zero(); 4];
+        for pair in 0..2 {
+            let decay = exponential(-(self.decay[pair] * time));
+            let [cosine, sine] = cosine_and_sine(self.frequency[pair] * time);
+            basis[2 * pair] = decay * cosine;
+            basis[2 * pair + 1] = decay * sine / self.frequency[pair];
+        }
+        for pair in 0..2 {
+            if self.real[pair].any() {
+                let [cosine, sine] = self.of_real_roots(pair, time);
+                basis[2 * pair] = R::select(self.real[pair], cosine, basis[2 * pair]);
+                basis[2 * pair + 1] = R::select(self.real[pair], sine, basis[2 * pair + 1]);
+            }
+        }
+        basis
+    }
+
+    #[inline(always)]
+    fn of_real_roots(&self, pair: usize, time: R) -> [R; 2] {
+        let half = R::splat(0.5);
+        let (decay, frequency) = (self.decay[pair], self.frequency[pair]);
+        // The slower root is the product over the faster one.
+        let faster = decay + frequency;
+        let slow = exponential(-(self.modulus[pair] / faster * time));
+        let fast = exponential(-(faster * time));
+        [half * (slow + fast), half * (slow - fast) / frequency]
+    }
+
+    /// The functions at a time, turned on by as much as they turn from first contact to another.
+    #[inline(always)]
+    pub fn turned(&self, basis: &Basis<R>, by: &Basis<R>) -> Basis<R> {
+        let turn = |pair: usize| {
+            let (c, s) = (basis[2 * pair], basis[2 * pair + 1]);
+            let (by_c, by_s) = (by[2 * pair], by[2 * pair + 1]);
+            [
+                c * by_c - s * (self.square[pair] * by_s),
+                s * by_c + c * by_s,
+            ]
+        };
+        let ([a, b], [c, d]) = (turn(0), turn(1));
+        [a, b, c, d]
+    }
+}
+
+/// The motion of an impact, times in cells.
+#[derive(Clone, Copy)]
+pub struct Motion<S, R: Real> {
+    /// Its roots.
+    pub modes: Modes<S, R>,
+    /// Velocity of the head against the torso up to a constant, and four derivatives.
+    pub head: [Wave<R>; 5],
+    /// Compression up to a constant and a ramp, and four derivatives.
+    pub compression: [Wave<R>; 5],
+    /// The constant and the ramp.
+    pub ramp: [R; 2],
+    /// Rate of the lag up to a constant, and two derivatives.
+    pub lag_rate: [Wave<R>; 3],
+    /// The constant.
+    pub lag_ramp: R,
+    /// `K_c` and `C_c` for rates per cell.
+    pub foam: [R; 2],
+    /// Lanes whose roots hold.
+    pub accepted: R::Mask,
+}
+
+impl<S: Simd, R: Real> Motion<S, R> {
+    /// The motion of a plant with a closing speed, in m/s.
+    #[inline(always)]
+    pub fn new(simd: S, plant: &Plant<R>, closing_speed: R) -> Self {
+        apart(
+            simd,
+            #[inline(always)]
+            || Self::new_here(simd, plant, closing_speed),
+        )
+    }
+
+    #[inline(always)]
+    fn new_here(simd: S, plant: &Plant<R>, closing_speed: R) -> Self {
+        let [arm_inverse, arm_damping, arm_stiffness] = plant.manipulator;
+        let [head_inverse, head_damping, head_stiffness] = plant.head;
+        let [foam_stiffness, foam_damping] = plant.foam;
+        let both = arm_inverse + head_inverse;
+        let quartic = [
+            arm_damping + head_damping + foam_damping * both,
+            arm_stiffness
+                + head_stiffness
+                + foam_stiffness * both
+                + arm_damping * head_damping
+                + foam_damping * (arm_inverse * head_damping + head_inverse * arm_damping),
+            arm_stiffness * head_damping
+                + head_stiffness * arm_damping
+                + foam_damping * (arm_inverse * head_stiffness + head_inverse * arm_stiffness)
+                + foam_stiffness * (arm_inverse * head_damping + head_inverse * arm_damping),
+            arm_stiffness * head_stiffness
+                + foam_stiffness * (arm_inverse * head_stiffness + head_inverse * arm_stiffness),
+        ];
+        let (split, settled) = apart(
+            simd,
+            #[inline(always)]
+            || factors(quartic),
+        );
+        let (modes, split, accepted) = modes(simd, &split);
+        let length = modes.length;
+        let speed = closing_speed * length;
+        let foam = [foam_stiffness, foam_damping / length];
+        // (K_c + C_c s) v_c (s^2 + b1 s + b2) / M over the quartic, b of the other body.
+        let pushed = |inverse: R, damping: R, stiffness: R| {
+            let scale = inverse * length * length * speed;
+            let (b1, b2) = (damping * length, stiffness * length * length);
+            let (k, c) = (foam[0] * scale, foam[1] * scale);
+            let parts = split.of([c, k + c * b1, k * b1 + c * b2, k * b2]);
+            let wave = |[a, b]: [R; 2], decay: R| [a, b - a * decay];
+            let [p, q] = wave(parts[0], modes.decay[0]);
+            let [r, s] = wave(parts[1], modes.decay[1]);
+            Wave([p, q, r, s])
+        };
+        let head = pushed(head_inverse, arm_damping, arm_stiffness);
+        let lag = pushed(arm_inverse, head_damping, head_stiffness);
+        let closing = Wave([0, 1, 2, 3].each(|index: usize| -(head.0[index] + lag.0[index])));
+        let head_slope = modes.slope(head);
+        let head_curve = modes.slope(head_slope);
+        let closing_slope = modes.slope(closing);
+        let rate = modes.integral(closing);
+        let compression = modes.integral(rate);
+        let lag_rate = modes.integral(lag);
+        Self {
+            modes,
+            head: [
+                modes.integral(head),
+                head,
+                head_slope,
+                head_curve,
+                modes.slope(head_curve),
+            ],
+            compression: [
+                compression,
+                rate,
+                closing,
+                closing_slope,
+                modes.slope(closing_slope),
+            ],
+            ramp: [-compression.at_contact(), speed - rate.at_contact()],
+            lag_rate: [lag_rate, lag, modes.slope(lag)],
+            lag_ramp: -lag_rate.at_contact(),
+            foam,
+            accepted: accepted & settled,
+        }
+    }
+
+    /// Compression and four derivatives at a time.
+    #[inline(always)]
+    pub fn compression(&self, basis: &Basis<R>, time: R) -> [R; 5] {
+        let waves = self.compression.each(|wave| wave.at(basis));
+        [
+            waves[0] + (self.ramp[0] + self.ramp[1] * time),
+            waves[1] + self.ramp[1],
+            waves[2],
+            waves[3],
+            waves[4],
+        ]
+    }
+
+    /// Contact force and three derivatives from those of the compression.
+    #[inline(always)]
+    pub fn force(&self, compression: [R; 5]) -> [R; 4] {
+        [0, 1, 2, 3].each(|order: usize| {
+            self.foam[0] * compression[order] + self.foam[1] * compression[order + 1]
+        })
+    }
+}
+
+/// Roots of both factors in units of cells, the factors in these units, and lanes that hold.
+#[inline(always)]
+fn modes<S: Simd, R: Real>(simd: S, split: &Split<R>) -> (Modes<S, R>, Split<R>, R::Mask) {
+    let zero = R::zero();
+    let half = R::splat(0.5);
+    let mut fastest = zero;
+    for [first, last] in split.factors {
+        let alpha = half * first;
+        let spread = (alpha * alpha - last).max(zero).sqrt();
+        let real = alpha.ge(last.sqrt());
+        fastest = fastest.max(R::select(real, alpha + spread, last.sqrt()));
+    }
+    let length = R::splat(CELL_ANGLE) / fastest;
+    let square_length = length * length;
+    let scaled = split
+        .factors
+        .each(|[first, last]| [first * length, last * square_length]);
+    let decay = scaled.each(|[first, _]| half * first);
+    let modulus = scaled.each(|[_, last]| last);
+    let square = [0, 1].each(|pair: usize| modulus[pair] - decay[pair] * decay[pair]);
+    let limit = R::splat(NEARLY_EQUAL);
+    let clear = |pair: usize| {
+        square[pair].gt(modulus[pair] * R::splat(1e-20)) | (-square[pair]).gt(limit * modulus[pair])
+    };
+    let scaled = Split::new(scaled);
+    let fourth = R::splat(LEAST_RESULTANT) * modulus[0] * modulus[0];
+    let accepted = clear(0)
+        & clear(1)
+        & scaled.resultant.gt(fourth)
+        & decay[0].ge(zero)
+        & decay[1].ge(zero)
+        & modulus[1].gt(zero);
+    let modes = Modes {
+        simd,
+        length,
+        decay,
+        modulus,
+        square,
+        frequency: square.each(|value| value.abs().sqrt()),
+        real: square.each(|value| value.lt(zero)),
+    };
+    (modes, scaled, accepted)
+}

@@ -1,0 +1,179 @@
+//! A walk along the response that notes where signs change.
+
+use super::Each;
+use lanes::{Mask, Real};
+
+/// A piece of time with the values and slopes of a function at both of its ends.
+#[derive(Clone, Copy)]
+pub struct Piece<R> {
+    /// Start, in cells.
+    pub from: R,
+    /// Duration, in cells.
+    pub width: R,
+    /// Values at both ends.
+    pub values: [R; 2],
+    /// Slopes at both ends, per cell.
+    pub slopes: [R; 2],
+}
+
+impl<R: Real> Piece<R> {
+    #[inline(always)]
+    fn select(mask: R::Mask, new: Self, old: Self) -> Self {
+        let pair = |new: [R; 2], old: [R; 2]| {
+            [0, 1].each(|end: usize| R::select(mask, new[end], old[end]))
+        };
+        Self {
+            from: R::select(mask, new.from, old.from),
+            width: R::select(mask, new.width, old.width),
+            values: pair(new.values, old.values),
+            slopes: pair(new.slopes, old.slopes),
+        }
+    }
+
+    /// Coefficients of the cubic over the piece, from 0 to 1.
+    #[inline(always)]
+    fn cubic(&self) -> [R; 4] {
+        let [left, right] = self.values;
+        let [first, last] = self.slopes.each(|slope| slope * self.width);
+        let rise = right - left;
+        let bend = R::splat(3.0) * rise - first - first - last;
+        [left, first, bend, first + last - rise - rise]
+    }
+
+    /// Where the cubic is zero if its ends differ in sign, in cells.
+    #[inline(always)]
+    pub fn zero(&self) -> R {
+        let [c0, c1, c2, c3] = self.cubic();
+        let (none, whole) = (R::zero(), R::splat(1.0));
+        let mut x = self.values[0] / (self.values[0] - self.values[1]);
+        for _ in 0..2 {
+            let value = ((c3 * x + c2) * x + c1) * x + c0;
+            let slope = (R::splat(3.0) * c3 * x + c2 + c2) * x + c1;
+            x = (x - value / slope).max(none).min(whole);
+        }
+        self.from + x * self.width
+    }
+
+    /// Value of the cubic near its extremum if its slopes differ in sign, and the size of the
+    /// difference of slopes.
+    #[inline(always)]
+    fn turn(&self) -> [R; 2] {
+        let [c0, c1, c2, c3] = self.cubic();
+        let difference = (self.slopes[0] - self.slopes[1]) * self.width;
+        let mut x = c1 / difference;
+        for _ in 0..2 {
+            let slope = (R::splat(3.0) * c3 * x + c2 + c2) * x + c1;
+            let bend = R::splat(6.0) * c3 * x + c2 + c2;
+            x = (x - slope / bend).max(R::zero()).min(R::splat(1.0));
+        }
+        [((c3 * x + c2) * x + c1) * x + c0, difference.abs()]
+    }
+}
+
+/// A place where a function changes sign.
+#[derive(Clone, Copy)]
+pub struct Place<R: Real> {
+    /// Lanes that have one.
+    pub found: R::Mask,
+    /// The piece that it is in.
+    pub piece: Piece<R>,
+}
+
+impl<R: Real> Place<R> {
+    /// No place yet.
+    #[inline(always)]
+    pub fn none() -> Self {
+        let zero = R::zero();
+        Self {
+            found: R::Mask::none(),
+            piece: Piece {
+                from: zero,
+                width: zero,
+                values: [zero; 2],
+                slopes: [zero; 2],
+            },
+        }
+    }
+
+    /// Notes a piece.
+    #[inline(always)]
+    pub fn note(&mut self, mask: R::Mask, piece: Piece<R>) {
+        self.found = self.found | mask;
+        self.piece = Piece::select(mask, piece, self.piece);
+    }
+}
+
+/// How near to zero, over the difference of slopes, the cubic may turn back: it is nearer than
+/// that to the function.
+const CLEAR: f64 = 0.01;
+
+/// Lanes in which a function of one sign at both ends of a piece turns towards zero and back
+/// between them, so near to it that it may reach it, from above and from below, and how far it
+/// reaches beyond zero at most.
+#[inline(always)]
+pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>) -> ([R::Mask; 2], R) {
+    let zero = R::zero();
+    let [up, still_up] = piece.values.each(|value| value.gt(zero));
+    let [bent_up, still_bent_up] = piece.slopes.each(|slope| slope.gt(zero));
+    let from_above = inside & up & still_up & !bent_up & still_bent_up;
+    let from_below = inside & !(up | still_up) & bent_up & !still_bent_up;
+    if !(from_above | from_below).any() {
+        return ([R::Mask::none(); 2], zero);
+    }
+    let [turn, difference] = piece.turn();
+    let clear = R::splat(CLEAR) * difference;
+    let beyond = R::select(from_above, clear - turn, clear + turn);
+    let may = beyond.ge(zero);
+    ([from_above & may, from_below & may], beyond)
+}
+
+/// Tops of a function, from the signs of its slope along the way.
+#[derive(Clone, Copy)]
+pub struct Tops<R: Real> {
+    /// Up to two tops.
+    pub places: [Place<R>; 2],
+    /// A piece that may hide a top: the function is not above its value at this time by more than
+    /// what follows.
+    pub hidden: (R::Mask, R, R),
+    /// Lanes with more of them.
+    pub odd: R::Mask,
+}
+
+impl<R: Real> Tops<R> {
+    /// No top yet.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self {
+            places: [Place::none(); 2],
+            hidden: (R::Mask::none(), R::zero(), R::zero()),
+            odd: R::Mask::none(),
+        }
+    }
+
+    /// Looks at a piece of the slope.
+    #[inline(always)]
+    pub fn look(&mut self, inside: R::Mask, piece: &Piece<R>) {
+        let zero = R::zero();
+        let [up, still_up] = piece.values.each(|value| value.gt(zero));
+        let top = inside & up & !still_up;
+        let ([from_above, from_below], beyond) = touching(inside, piece);
+        let touches = from_above | from_below;
+        if touches.any() {
+            let (found, time, excess) = self.hidden;
+            self.odd = self.odd | (found & touches);
+            // The higher end of the piece.
+            let end = R::select(from_above, piece.from + piece.width, piece.from);
+            self.hidden = (
+                found | touches,
+                R::select(touches, end, time),
+                R::select(touches, beyond * piece.width, excess),
+            );
+        }
+        let again = top & self.places[0].found;
+        if again.any() {
+            self.odd = self.odd | (again & self.places[1].found);
+            self.places[1].note(again, *piece);
+        }
+        self.places[0].note(top & !again, *piece);
+    }
+}

@@ -1,0 +1,270 @@
+//! Criteria of moving windows, impacts side by side.
+
+use super::apart::apart;
+use super::modes::Basis;
+use super::{Each, MAX_STEPS, MapWith, Solved, third_order};
+use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS};
+use lanes::{Mask, Real};
+use pulp::Simd;
+
+/// Last step of a window, in cells; the third power of it is what values may be wrong by.
+pub(super) const SETTLED: f64 = 1e-4;
+
+/// What a window gives, for `V` and accelerations per cell.
+#[derive(Clone, Copy)]
+pub(super) struct Window<R> {
+    pub(super) start: R,
+    pub(super) rise: R,
+    /// Smaller acceleration at its ends.
+    pub(super) edge: R,
+    /// Smallest acceleration in it.
+    pub(super) level: R,
+}
+
+impl<R: Real> Window<R> {
+    /// Level held through a window that a valley may lie in, of which time and value are given.
+    #[inline(always)]
+    pub(super) fn level_with(&self, width: R, [time, value]: [R; 2]) -> R {
+        let inside = time.gt(self.start) & time.lt(self.start + width);
+        R::select(inside, self.edge.min(value), self.edge)
+    }
+}
+
+impl<S: Simd, R: Real> Solved<'_, S, R> {
+    /// Velocity, acceleration and two derivatives of the head.
+    #[inline(always)]
+    pub(super) fn head(&self, time: R) -> [R; 4] {
+        self.head_at(&self.motion.modes.basis(time))
+    }
+
+    #[inline(always)]
+    fn head_at(&self, basis: &Basis<R>) -> [R; 4] {
+        [0, 1, 2, 3].each(|order: usize| self.motion.head[order].at(basis))
+    }
+
+    /// The best window of a width for lanes of a mask: equal accelerations at both ends, or it
+    /// starts with the impact.
+    #[inline(always)]
+    pub(super) fn full(&mut self, mask: R::Mask, width: R, guess: R) -> Window<R> {
+        apart(
+            self.simd,
+            #[inline(always)]
+            || self.full_here(mask, width, guess),
+        )
+    }
+
+    #[inline(always)]
+    fn full_here(&mut self, mask: R::Mask, width: R, guess: R) -> Window<R> {
+        let zero = R::zero();
+        let half = R::splat(0.5);
+        let room = self.end - width;
+        let mut start = guess.min(room).max(zero);
+        let mut open = mask & self.accepted;
+        let mut found = Window {
+            start: zero,
+            rise: zero,
+            edge: zero,
+            level: zero,
+        };
+        let over_the_width = self.motion.modes.basis(width);
+        for _ in 0..MAX_STEPS {
+            let at_start = self.motion.modes.basis(start);
+            let at_end = self.motion.modes.turned(&at_start, &over_the_width);
+            let [left, right] = [self.head_at(&at_start), self.head_at(&at_end)];
+            let [rise, gain, bend, third] = right.map_with(left, |right, left| right - left);
+            // Towards the better side where the mean is not concave.
+            let uphill = R::select(gain.lt(zero), -start, half * width);
+            let concave = bend.lt(zero);
+            let wanted = R::select(concave, third_order(gain, bend, third), uphill);
+            let next = (start + wanted).min(room).max(zero);
+            let step = next - start;
+            let rise = rise + step * (gain + half * step * bend);
+            let [low, high] = [left, right]
+                .each(|[_, value, slope, curve]| value + step * (slope + half * step * curve));
+            found.rise = R::select(open, rise, found.rise);
+            found.level = R::select(open, low.min(high), found.level);
+            // At the end of the room the mean would have to grow still.
+            let stuck = next.ge(room) & gain.lt(zero) & !start.le(zero);
+            start = R::select(open, next, start);
+            open = open & (stuck | !step.abs().lt(R::splat(SETTLED)));
+            if !open.any() {
+                break;
+            }
+        }
+        self.accepted = self.accepted & !(mask & open);
+        found.start = start;
+        found.edge = found.level;
+        found
+    }
+
+    /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2.
+    #[inline(always)]
+    pub(super) fn held(&mut self, [time, curve, third]: &[R; 3]) -> [R; 2] {
+        let length = self.motion.modes.length;
+        let width = R::splat(HELD_WINDOW) / length;
+        let exists = width.le(self.end);
+        // The first terms of the acceleration around its top.
+        let half = R::splat(0.5) * width;
+        let skew = half * half * *third / (*curve * R::splat(6.0));
+        let skew = R::select(skew.abs().lt(half), skew, R::zero());
+        let humps = self.valley.found;
+        let mut window = self.full(exists & !humps, width, *time - half - skew);
+        let humps = humps & exists & self.accepted;
+        if humps.any() {
+            let other = self.full_of_humps(humps, width);
+            window.rise = R::select(humps, other.rise, window.rise);
+            window.level = R::select(humps, other.level, window.level);
+        }
+        let nan = R::splat(f64::NAN);
+        [
+            window.rise / (length * R::splat(HELD_WINDOW)),
+            window.level / (length * length),
+        ]
+        .each(|value| R::select(exists, value, nan))
+    }
+
+    /// Injury criteria: the window with free ends where it is not too wide, else the full one.
+    #[inline(always)]
+    pub(super) fn injuries(&mut self) -> [R; 2] {
+        self.accepted = self.accepted & !self.ragged & !self.acceleration.hidden.0;
+        let length = self.motion.modes.length;
+        let humps = self.valley.found | self.shelf;
+        let free = self.free_window(self.accepted & !humps, self.half_level(), R::Mask::none());
+        let [start, end] = free.ends;
+        let free_width = end - start;
+        let mut values = INJURY_WINDOWS.each(|width| {
+            let width = R::splat(width) / length;
+            let wide = free_width.gt(width) & self.accepted & !humps;
+            if !wide.any() {
+                return free.value;
+            }
+            // Both ends towards each other, each as its slope tells.
+            let [first, last] = free.slopes;
+            let share = last / (last - first);
+            let possible = share.gt(R::zero()) & share.lt(R::splat(1.0));
+            let share = R::select(possible, share, R::splat(0.5));
+            let window = self.full(wide, width, start + share * (free_width - width));
+            R::select(wide, criterion(window.rise, width, length), free.value)
+        });
+        let humps = humps & self.accepted;
+        if humps.any() {
+            self.injuries_of_humps(humps, &mut values);
+        }
+        values
+    }
+
+    /// Newton steps to the best window without a limit of its width, for lanes of a mask; some may
+    /// be held to start with the impact.
+    #[inline(always)]
+    pub(super) fn free_window(
+        &mut self,
+        mask: R::Mask,
+        guess: [R; 2],
+        held: R::Mask,
+    ) -> FreeWindow<R> {
+        apart(
+            self.simd,
+            #[inline(always)]
+            || self.free_window_here(mask, guess, held),
+        )
+    }
+
+    #[inline(always)]
+    fn free_window_here(&mut self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
+        let zero = R::zero();
+        let half = R::splat(0.5);
+        let length = self.motion.modes.length;
+        let [mut start, mut end] = guess;
+        let mut open = mask & self.accepted;
+        let mut found = FreeWindow {
+            ends: [zero; 2],
+            slopes: [zero; 2],
+            value: zero,
+        };
+        let mut best = R::Mask::none();
+        for _ in 0..MAX_STEPS {
+            let [v1, a1, d1, _] = self.head(start);
+            let [v2, a2, d2, _] = self.head(end);
+            let (rise, width) = (v2 - v1, end - start);
+            let per_rise = R::splat(1.0) / rise;
+            let (u1, u2) = (a1 * per_rise, a2 * per_rise);
+            let over = R::splat(1.5) / width;
+            let factor = R::splat(2.5);
+            let (g1, g2) = (over - factor * u1, factor * u2 - over);
+            let curve = over / width;
+            let h11 = curve - factor * (d1 * per_rise + u1 * u1);
+            let h22 = curve + factor * (d2 * per_rise - u2 * u2);
+            let h12 = factor * u1 * u2 - curve;
+            let determinant = h11 * h22 - h12 * h12;
+            let pinned = held | (start.le(zero) & g1.le(zero));
+            let s1 = R::select(pinned, zero, (h12 * g2 - h22 * g1) / determinant);
+            let s2 = R::select(pinned, -g2 / h22, (h12 * g1 - h11 * g2) / determinant);
+            let next = [(start + s1).max(zero), (end + s2).min(self.end)];
+            let (s1, s2) = (next[0] - start, next[1] - end);
+            // The logarithm of the criterion grows by this much along the step.
+            let growth = s1 * (g1 + half * (h11 * s1 + h12 * s2) + half * h12 * s2)
+                + s2 * (g2 + half * h22 * s2);
+            let value = criterion(rise, width, length) * (R::splat(1.0) + growth);
+            found.value = R::select(open, value, found.value);
+            found.slopes = [d1, d2].map_with(found.slopes, |new, old| R::select(open, new, old));
+            start = R::select(open, next[0], start);
+            end = R::select(open, next[1], end);
+            let moved = s1.abs() + s2.abs();
+            let concave = h22.lt(zero) & (pinned | (h11.lt(zero) & determinant.gt(zero)));
+            best = (best & !open) | (concave & open);
+            open = open & !moved.lt(R::splat(SETTLED));
+            if !open.any() {
+                break;
+            }
+        }
+        self.accepted = self.accepted & !(mask & (open | !best | !start.lt(end)));
+        found.ends = [start, end];
+        found
+    }
+
+    /// Where the acceleration crosses half its peak at the nodes, in cells.
+    #[inline(always)]
+    fn half_level(&self) -> [R; 2] {
+        let (mut start, mut end) = (R::zero(), self.end);
+        let mut peak = self.space.head[0][1];
+        for index in 1..=self.nodes {
+            let value = self.space.head[index][1];
+            // Nodes behind the end depend on what is beside.
+            let inside = R::splat(index as f64).lt(self.end);
+            peak = R::select(inside & value.gt(peak), value, peak);
+        }
+        let half = R::splat(0.5) * peak;
+        for index in 0..self.nodes {
+            let [left, right] = [index, index + 1].each(|node: usize| self.space.head[node][1]);
+            let place = R::splat(index as f64) + (half - left) / (right - left);
+            let inside = place.lt(self.end);
+            let rises = inside & left.lt(half) & right.ge(half);
+            let falls = inside & left.ge(half) & right.lt(half);
+            start = R::select(rises, place, start);
+            end = R::select(falls, place, end);
+        }
+        [start, end]
+    }
+}
+
+/// A window with free ends.
+#[derive(Clone, Copy)]
+pub(super) struct FreeWindow<R> {
+    pub(super) ends: [R; 2],
+    /// Slopes of the acceleration there.
+    slopes: [R; 2],
+    /// Its criterion.
+    pub(super) value: R,
+}
+
+/// `T^-1.5 rise^2.5` from a rise in m per cell and a width in cells.
+#[inline(always)]
+pub(super) fn criterion<R: Real>(rise: R, width: R, length: R) -> R {
+    let duration = width * length;
+    let mean = rise / (length * duration);
+    R::select(
+        rise.gt(R::zero()),
+        duration * mean * mean * mean.sqrt(),
+        R::zero(),
+    )
+}

@@ -1,0 +1,78 @@
+//! Intervals from refits to resampled residuals.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::super::drop_test::trajectory;
+use super::super::least_squares::Minimum;
+use super::measured::Tests;
+use crate::batch::Interrupted;
+use crate::error::{ImpactError, Result};
+
+/// Residuals that the bootstrap keeps together: rounding repeats itself while the slide is slow.
+const RUN: usize = 8;
+
+impl Tests<'_> {
+    /// Percentile intervals of refits to the fitted curves with resampled residuals.
+    pub(super) fn bootstrap(
+        &self,
+        found: &Minimum,
+        interrupted: Interrupted<'_>,
+    ) -> Result<[[f64; 2]; 3]> {
+        let repeats = self.settings.bootstrap;
+        let mut values = [0, 1, 2].map(|_| Vec::with_capacity(repeats));
+        let mut generator = ChaCha8Rng::seed_from_u64(self.settings.seed);
+        for repeat in 0..repeats {
+            if interrupted() {
+                return Err(ImpactError::Interrupted);
+            }
+            generator.set_stream(repeat as u64);
+            let refit = self
+                .resampled(&found.parameters, &mut generator)
+                .minimize(found.parameters.clone())?;
+            for (values, value) in values.iter_mut().zip(&refit.parameters) {
+                values.push(*value);
+            }
+        }
+        let outside = 0.5 * (1.0 - self.settings.confidence);
+        Ok(values.map(|mut values| {
+            values.sort_by(f64::total_cmp);
+            [outside, 1.0 - outside].map(|share| percentile(&values, share))
+        }))
+    }
+
+    fn resampled(&self, parameters: &[f64], generator: &mut ChaCha8Rng) -> Self {
+        let mut index = |count: usize| {
+            let wide = u128::from(generator.next_u64()) * count as u128;
+            usize::try_from(wide >> 64).unwrap_or(0)
+        };
+        let mut result = self.clone();
+        let left: Vec<f64> = self.forces_left(parameters).collect();
+        let grown = (left.len() as f64 / (left.len() - 1) as f64).sqrt();
+        for (force, compression) in result.force.iter_mut().zip(self.compression) {
+            *force = parameters[0] * compression + grown * left[index(left.len())];
+        }
+        let (measured, fitted) = (self.positions() as f64, (2 + self.position.len()) as f64);
+        let grown = (measured / (measured - fitted).max(1.0)).sqrt();
+        for (drop, position) in result.position.iter_mut().enumerate() {
+            let left = self.positions_left(parameters, drop);
+            let path = trajectory(self.time[drop], &self.model(parameters, drop));
+            for (run, positions) in position.chunks_mut(RUN).enumerate() {
+                let from = index(left.len());
+                for (k, position) in positions.iter_mut().enumerate() {
+                    *position = path[RUN * run + k] + grown * left[(from + k) % left.len()];
+                }
+            }
+        }
+        result
+    }
+}
+
+/// Value below which a share of the sorted values lies, linear between them.
+fn percentile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let below = place.floor() as usize;
+    let above = sorted[(below + 1).min(sorted.len() - 1)];
+    sorted[below] + (place - below as f64) * (above - sorted[below])
+}

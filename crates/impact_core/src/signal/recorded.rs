@@ -1,0 +1,211 @@
+//! Loads of a recorded impact, from signals that are linear between their samples.
+
+use super::{Signal, check_finite, contiguous_level, hic, moving_average};
+use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS, Metrics, Status};
+use crate::error::{Given, ImpactError, Result, finite, positive};
+
+/// A recorded impact; signals that were not recorded are `None`.
+#[derive(Clone, Copy, Debug)]
+pub struct Recording<'a> {
+    /// Times of the samples, in s.
+    pub time: &'a [f64],
+    /// Acceleration of the head, in g.
+    pub acceleration_g: &'a [f64],
+    /// Contact force, in N.
+    pub contact_force: Option<&'a [f64]>,
+    /// Compression of the foam, in m.
+    pub compression: Option<&'a [f64]>,
+    /// Velocity of the manipulator, in m/s.
+    pub manipulator_velocity: Option<&'a [f64]>,
+    /// First contact, in s.
+    pub start: f64,
+    /// Compression up to which the foam is linear, in m.
+    pub linear_range: f64,
+    /// Acceleration of gravity, in m/s^2.
+    pub gravity: f64,
+}
+
+/// The part of the record that is looked at: whole cells between two interpolated ends.
+struct Part<'a> {
+    time: &'a [f64],
+    start: f64,
+    end: f64,
+}
+
+impl Recording<'_> {
+    /// Loads over the impact period, from first contact to the first zero at which the acceleration
+    /// falls after it was positive; to the end of the record with `no_release` if there is none.
+    ///
+    /// The power of the manipulator is the maximum of the product of two piecewise linear signals,
+    /// that of the foam the largest mean over a sampling interval. What was not recorded is NaN.
+    ///
+    /// # Errors
+    /// Bad signals; a start outside the record or at its end.
+    pub fn metrics(&self) -> Result<Metrics> {
+        let signal = Signal::new(self.time, self.acceleration_g)?;
+        self.check()?;
+        let found = falls_to_zero(&signal, self.start);
+        let end = found.unwrap_or(self.time[self.time.len() - 1]);
+        let part = Part {
+            time: self.time,
+            start: self.start,
+            end,
+        };
+        let time = part.times();
+        let cut = |values: Option<&[f64]>| values.map(|values| part.cut(values));
+        let (force, compression) = (cut(self.contact_force), cut(self.compression));
+        let velocity = cut(self.manipulator_velocity);
+        let mut row = acceleration(&time, &part.cut(self.acceleration_g), self.gravity)?;
+        row.peak_contact_force = force.as_deref().map_or(f64::NAN, largest);
+        row.max_compression = compression.as_deref().map_or(f64::NAN, largest);
+        if let Some(force) = &force {
+            let power = compression.map(|way| largest_mean_power(&time, force, &way));
+            row.peak_power_foam = power.unwrap_or(f64::NAN);
+            let power = velocity.map(|velocity| largest_product(force, &velocity));
+            row.peak_power_manipulator = power.unwrap_or(f64::NAN);
+        }
+        row.impact_duration = found.map_or(f64::INFINITY, |end| end - self.start);
+        row.status = match found {
+            None => Status::NoRelease,
+            Some(_) if row.max_compression > self.linear_range => Status::BeyondLinearRange,
+            Some(_) => Status::Released,
+        };
+        Ok(row)
+    }
+
+    fn check(&self) -> Result<()> {
+        for (name, values) in [
+            ("contact_force", self.contact_force),
+            ("compression", self.compression),
+            ("manipulator_velocity", self.manipulator_velocity),
+        ] {
+            let Some(values) = values else { continue };
+            if values.len() != self.time.len() {
+                let given = Given::Count(values.len() as u64);
+                let rule = "have as many samples as time";
+                return Err(ImpactError::invalid(name, rule, given));
+            }
+            check_finite(name, values)?;
+        }
+        positive("gravity", self.gravity)?;
+        finite("start", self.start)?;
+        if self.start < self.time[0] || self.start >= self.time[self.time.len() - 1] {
+            let given = Given::Number(self.start);
+            let rule = "lie in the record, before its last sample";
+            return Err(ImpactError::invalid("start", rule, given));
+        }
+        Ok(())
+    }
+}
+
+/// The criteria that need nothing but the acceleration.
+fn acceleration(time: &[f64], value: &[f64], gravity: f64) -> Result<Metrics> {
+    let signal = Signal::new(time, value)?;
+    let integral = signal.integral();
+    let peak = largest(value);
+    let [short, long] = INJURY_WINDOWS;
+    let lasts = signal.span() >= HELD_WINDOW;
+    let level = |level: Result<super::Level>| level.map(|level| level.value);
+    Ok(Metrics {
+        peak_head_acceleration: peak * gravity,
+        peak_head_acceleration_g: peak,
+        mean_head_acceleration_g: integral[integral.len() - 1] / signal.span(),
+        hic15: hic(time, value, short, true)?.value,
+        hic36: hic(time, value, long, true)?.value,
+        average_3ms_g: if lasts {
+            level(moving_average(time, value, HELD_WINDOW))?
+        } else {
+            f64::NAN
+        },
+        clip_3ms_g: if lasts {
+            level(contiguous_level(time, value, HELD_WINDOW))?
+        } else {
+            f64::NAN
+        },
+        ..Metrics::none(Status::Released)
+    })
+}
+
+/// First zero after the start at which the signal falls, once it has been positive.
+fn falls_to_zero(signal: &Signal<'_>, start: f64) -> Option<f64> {
+    let cells = signal.time.windows(2).zip(signal.value.windows(2));
+    let mut positive = false;
+    for (times, values) in cells {
+        if times[1] <= start {
+            continue;
+        }
+        let from = times[0].max(start);
+        positive |= interpolated(times, values, from) > 0.0;
+        if positive && values[1] <= 0.0 {
+            let share = values[0] / (values[0] - values[1]);
+            let zero = (times[0] + share * (times[1] - times[0])).clamp(times[0], times[1]);
+            return (zero > start).then_some(zero);
+        }
+        positive |= values[1] > 0.0;
+    }
+    None
+}
+
+fn interpolated(times: &[f64], values: &[f64], at: f64) -> f64 {
+    let share = (at - times[0]) / (times[1] - times[0]);
+    values[0] + share * (values[1] - values[0])
+}
+
+impl Part<'_> {
+    /// Places of the samples strictly inside.
+    fn inside(&self) -> std::ops::Range<usize> {
+        let first = self.time.partition_point(|time| *time <= self.start);
+        let last = self.time.partition_point(|time| *time < self.end);
+        first..last
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let inside = self.time[self.inside()].iter().copied();
+        std::iter::once(self.start)
+            .chain(inside)
+            .chain([self.end])
+            .collect()
+    }
+
+    fn cut(&self, values: &[f64]) -> Vec<f64> {
+        let range = self.inside();
+        let at = |time: f64, cell: usize| {
+            interpolated(&self.time[cell..cell + 2], &values[cell..cell + 2], time)
+        };
+        let first = at(self.start, range.start - 1);
+        let last = at(self.end, range.end - 1);
+        let inside = values[range].iter().copied();
+        std::iter::once(first).chain(inside).chain([last]).collect()
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Largest power over a cell, work of the force over the cell's time.
+fn largest_mean_power(time: &[f64], force: &[f64], way: &[f64]) -> f64 {
+    let forces = force.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let ways = way.windows(2).map(|pair| pair[1] - pair[0]);
+    let times = time.windows(2).map(|pair| pair[1] - pair[0]);
+    let powers = forces
+        .zip(ways)
+        .zip(times)
+        .map(|((force, way), time)| force * way / time);
+    powers.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Largest product of two signals.
+fn largest_product(one: &[f64], other: &[f64]) -> f64 {
+    let mut best = f64::NEG_INFINITY;
+    for (one, other) in one.windows(2).zip(other.windows(2)) {
+        let rises = [one[1] - one[0], other[1] - other[0]];
+        let bend = rises[0] * rises[1];
+        let turn = -(one[0] * rises[1] + other[0] * rises[0]) / (2.0 * bend);
+        best = best.max(one[0] * other[0]).max(one[1] * other[1]);
+        if bend < 0.0 && turn > 0.0 && turn < 1.0 {
+            best = best.max((one[0] + turn * rises[0]) * (other[0] + turn * rises[1]));
+        }
+    }
+    best
+}
