@@ -10,7 +10,7 @@ use vff_core::laws::VirtualForceField;
 use vff_core::metrics::Weights;
 use vff_core::scenario::Scenario;
 use vff_core::simulate::{
-    BatchOptions, Instructions, Options, ScoredRun, Width, run_batch, simulate,
+    BatchOptions, BatchTable, Instructions, Options, Width, run_batch, simulate,
 };
 
 fn batch(
@@ -18,7 +18,7 @@ fn batch(
     law: &VirtualForceField,
     width: Width,
     instructions: Instructions,
-) -> Vec<ScoredRun> {
+) -> BatchTable {
     let third = 1.0 / 3.0;
     let options = BatchOptions {
         run: Options::default(),
@@ -65,9 +65,9 @@ fn rollouts(criterion: &mut Criterion) {
                 let name = format!("batch/{scene}/{mode}/{level}");
                 let mut group = criterion.benchmark_group(name);
                 for (name, width) in widths {
-                    let rows = batch(&scenario, &law, width, instructions);
-                    let evaluations = rows.iter().map(|row| row.run.force_evaluations).sum();
-                    group.throughput(Throughput::Elements(evaluations));
+                    let table = batch(&scenario, &law, width, instructions);
+                    let evaluations: i64 = table.force_evaluations.iter().sum();
+                    group.throughput(Throughput::Elements(evaluations.unsigned_abs()));
                     group.bench_function(name, |bencher| {
                         bencher.iter(|| batch(black_box(&scenario), &law, width, instructions));
                     });

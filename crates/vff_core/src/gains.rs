@@ -17,6 +17,26 @@ pub struct Gains {
 }
 
 impl Gains {
+    /// Number of gains of a set.
+    pub const COUNT: usize = 4;
+
+    /// `K_1, K_3, K_5, b`.
+    #[must_use]
+    pub fn in_order(&self) -> [f64; Self::COUNT] {
+        [self.attractive, self.repulsive, self.detour, self.ratio]
+    }
+
+    /// A set from `K_1, K_3, K_5, b`.
+    #[must_use]
+    pub fn of([attractive, repulsive, detour, ratio]: [f64; Self::COUNT]) -> Self {
+        Self {
+            attractive,
+            repulsive,
+            detour,
+            ratio,
+        }
+    }
+
     /// Passes a set whose gains are finite and not negative.
     ///
     /// # Errors

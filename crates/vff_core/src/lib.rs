@@ -16,6 +16,7 @@ pub mod measurement;
 pub mod metrics;
 pub mod motion;
 pub mod obstacle;
+pub mod optimize;
 pub mod region;
 pub mod robots;
 pub mod scenario;

@@ -1,7 +1,7 @@
 //! The performance criterion of Zeng (2011), section 5.6.
 
-use crate::scenario::Scenario;
-use crate::simulate::{Outcome, RunSummary};
+use crate::scenario::{PlacedObstacle, Scenario};
+use crate::simulate::{Outcome, RunSummary, RunTotals};
 
 /// Weights of time, distance and energy; they sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,15 @@ pub fn clearances(scenario: &Scenario, run: &RunSummary) -> Vec<f64> {
         .collect()
 }
 
+/// What the criterion takes from a run without obstacles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nominal {
+    /// `T*` in s; NaN without arrival.
+    pub arrival_time: f64,
+    /// `L*` in J.
+    pub energy: f64,
+}
+
 /// Score of a run against the run of the same law without obstacles, (5.6.1)-(5.6.6):
 /// `H = k (w_T T*/T + w_D mean min(d_s/d_s*, 1) + w_E L*/L)`, `d_s = d - rho_r - rho_obs`,
 /// `d_s* = r2 - rho_r - rho_obs`, `k = 0` after a contact or without arrival.
@@ -46,21 +55,62 @@ pub fn performance(
     nominal: &RunSummary,
     weights: Weights,
 ) -> Performance {
-    let contact = run.outcome == Outcome::Collided;
-    let avoidance = if contact {
+    let run_measures = Measures {
+        contact: run.outcome == Outcome::Collided,
+        arrival_time: run.arrival_time.unwrap_or(f64::NAN),
+        energy: run.energy,
+    };
+    let nominal = Nominal {
+        arrival_time: nominal.arrival_time.unwrap_or(f64::NAN),
+        energy: nominal.energy,
+    };
+    let distances = run.min_distance.iter().copied();
+    score(scenario, run_measures, distances, nominal, weights)
+}
+
+/// What the criterion takes from a run besides its distances.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measures {
+    pub contact: bool,
+    /// NaN without arrival.
+    pub arrival_time: f64,
+    pub energy: f64,
+}
+
+impl From<&RunTotals> for Measures {
+    #[inline(always)]
+    fn from(run: &RunTotals) -> Self {
+        Self {
+            contact: run.outcome == Outcome::Collided,
+            arrival_time: run.arrival_time,
+            energy: run.energy,
+        }
+    }
+}
+
+/// As [`performance`], from least distances to the obstacles in their order.
+#[inline(always)]
+pub(crate) fn score(
+    scenario: &Scenario,
+    run: Measures,
+    distances: impl Iterator<Item = f64>,
+    nominal: Nominal,
+    weights: Weights,
+) -> Performance {
+    let avoidance = if run.contact {
         0.0
     } else {
-        avoidance(scenario, run)
+        avoidance(scenario, distances)
     };
-    let (Some(time), Some(nominal_time)) = (run.arrival_time, nominal.arrival_time) else {
+    if run.arrival_time.is_nan() || nominal.arrival_time.is_nan() {
         return Performance {
             total: 0.0,
             arrival_time: 0.0,
             avoidance,
             energy_saving: 0.0,
         };
-    };
-    let arrival_time = nominal_time / time;
+    }
+    let arrival_time = nominal.arrival_time / run.arrival_time;
     // A robot without motor losses saves all there is to save.
     let energy_saving = if run.energy == 0.0 {
         1.0
@@ -71,7 +121,7 @@ pub fn performance(
         + weights.avoidance * avoidance
         + weights.energy_saving * energy_saving;
     Performance {
-        total: if contact { 0.0 } else { total },
+        total: if run.contact { 0.0 } else { total },
         arrival_time,
         avoidance,
         energy_saving,
@@ -79,17 +129,15 @@ pub fn performance(
 }
 
 /// Mean over the obstacles of `min(d_s/d_s*, 1)`; 1 without obstacles.
-fn avoidance(scenario: &Scenario, run: &RunSummary) -> f64 {
+#[inline(always)]
+fn avoidance(scenario: &Scenario, distances: impl Iterator<Item = f64>) -> f64 {
     if scenario.obstacles.is_empty() {
         return 1.0;
     }
-    let share = |(clearance, placed): (f64, &crate::scenario::PlacedObstacle)| {
+    let share = |(distance, placed): (f64, &PlacedObstacle)| {
+        let clearance = distance - placed.contact_distance;
         (clearance / (placed.regions.active_radius - placed.contact_distance)).min(1.0)
     };
-    let sum: f64 = clearances(scenario, run)
-        .into_iter()
-        .zip(&scenario.obstacles)
-        .map(share)
-        .sum();
+    let sum: f64 = distances.zip(&scenario.obstacles).map(share).sum();
     sum / scenario.obstacles.len() as f64
 }

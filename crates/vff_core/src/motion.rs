@@ -246,6 +246,22 @@ impl Motion {
         self.presence == (f64::NEG_INFINITY, f64::INFINITY) && self.pieces.iter().all(stands)
     }
 
+    /// Instant from which the body stands where it is for all time, in s; infinite if there is
+    /// none.
+    #[must_use]
+    pub fn stands_from(&self) -> f64 {
+        match self.pieces.last() {
+            Some(last)
+                if last.velocity == [0.0; 2]
+                    && last.acceleration == [0.0; 2]
+                    && self.presence == (f64::NEG_INFINITY, f64::INFINITY) =>
+            {
+                last.start
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Largest speed at any time in m/s, or `None` for a motion that accelerates.
     #[must_use]
     pub fn speed_bound(&self) -> Option<f64> {
@@ -299,6 +315,10 @@ mod tests {
         let late = walk.at(10.0, &mut cursor);
         assert_eq!((late.position, late.velocity), ([4.0, 0.6], [0.0, 0.0]));
         assert_eq!(walk.at(1.0, &mut cursor).velocity, [1.0, 0.0]);
+        assert!((walk.stands_from() - 3.4).abs() < 1e-12);
+        assert!(Motion::at_rest([0.0; 2]).stands_from() <= 0.0);
+        let passing = Motion::moving([0.0; 2], [1.0, 0.0], [0.0; 2], None).unwrap();
+        assert_eq!(passing.stands_from(), f64::INFINITY);
         assert!(Motion::moving([0.0; 2], [1.0, 0.0], [0.0; 2], Some([-1.0, 0.0])).is_err());
         assert!(Motion::moving([0.0; 2], [0.0, 0.0], [0.0; 2], Some([1.0, 0.0])).is_err());
     }

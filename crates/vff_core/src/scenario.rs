@@ -116,6 +116,13 @@ impl Scenario {
         self
     }
 
+    /// The same scenario with other noise.
+    #[must_use]
+    pub fn reseeded(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
     /// The same way without obstacles and without noise: what the nominal run uses.
     #[must_use]
     pub fn nominal(&self) -> Self {
@@ -137,6 +144,14 @@ impl Scenario {
     #[must_use]
     pub fn obstacles(&self) -> &[PlacedObstacle] {
         &self.obstacles
+    }
+
+    /// Instant from which no obstacle moves any more, in s; infinite if there is none.
+    #[must_use]
+    pub fn stands_from(&self) -> f64 {
+        let last =
+            |time: f64, placed: &PlacedObstacle| time.max(placed.obstacle.motion.stands_from());
+        self.obstacles.iter().fold(0.0, last)
     }
 
     /// Control period in s.

@@ -19,7 +19,8 @@ use vff_core::motion::Motion;
 use vff_core::obstacle::Obstacle;
 use vff_core::scenario::{Rules, Scenario};
 use vff_core::simulate::{
-    BatchOptions, Instructions, Integrator, Options, ScoredRun, Width, run_batch,
+    BatchOptions, BatchTable, Instructions, Integrator, Options, Outcome, Width, run_batch,
+    simulate,
 };
 
 const NEW: [f64; 4] = [3.0, 20.0, 17.0, 0.25];
@@ -280,28 +281,36 @@ fn scenarios() -> Vec<Scenario> {
 }
 
 /// Every number of every row as bits, every word as text.
-fn bits(rows: &[ScoredRun]) -> Vec<(String, Vec<u64>)> {
-    let row = |scored: &ScoredRun| {
-        let (run, score) = (&scored.run, &scored.performance);
-        let words = format!("{:?} {}", run.outcome, run.force_evaluations);
-        let mut numbers = vec![
-            run.end_time,
-            run.arrival_time.unwrap_or(f64::NAN),
-            run.energy,
-            run.path_length,
-            run.descent_share,
-            score.total,
-            score.arrival_time,
-            score.avoidance,
-            score.energy_saving,
+fn bits(table: &BatchTable) -> Vec<(String, Vec<u64>)> {
+    let row = |row: usize| {
+        let words = format!(
+            "{:?} {} {:?}",
+            table.outcome[row],
+            table.force_evaluations[row],
+            [
+                table.entered_active[row],
+                table.contacts_moving[row],
+                table.contacts_standing[row]
+            ]
+        );
+        let columns = [
+            &table.end_time,
+            &table.arrival_time,
+            &table.energy,
+            &table.path_length,
+            &table.descent_share,
+            &table.min_clearance,
+            &table.performance_total,
+            &table.performance_arrival_time,
+            &table.performance_avoidance,
+            &table.performance_energy_saving,
         ];
-        numbers.extend(&run.min_distance);
-        for contact in &run.contact {
-            numbers.extend(contact.map_or([f64::NAN; 2], |touch| [touch.time, touch.speed]));
-        }
+        let mut numbers = columns.map(|column| column[row]).to_vec();
+        let own = row * table.obstacles..(row + 1) * table.obstacles;
+        numbers.extend(&table.min_distance[own]);
         (words, numbers.into_iter().map(computed).collect())
     };
-    rows.iter().map(row).collect()
+    (0..table.len()).map(row).collect()
 }
 
 fn assert_same_in_every_width(
@@ -371,7 +380,7 @@ fn coarse() -> Options {
 
 #[test]
 fn neither_width_nor_threads_change_a_bit_of_many_groups() {
-    use vff_core::simulate::Outcome::{Arrived, Collided, Stopped, TimedOut};
+    use Outcome::{Arrived, Collided, Stopped, TimedOut};
     let law = law(NEW, Stabilizing::Off);
     let (scenarios, sets) = (scenarios(), gain_sets());
     let some = [&scenarios[2..4], &scenarios[5..6]].concat();
@@ -434,5 +443,46 @@ fn neither_width_nor_threads_change_a_bit_of_any_integrator() {
             stop_on_contact,
         };
         assert_same_in_every_width(&law, exact, &gain_sets()[..5], options, false);
+    }
+}
+
+#[test]
+fn a_large_batch_has_the_rows_of_single_runs() {
+    let run = coarse();
+    let scenarios = &scenarios()[..2];
+    let sets: Vec<Gains> = (0..2100)
+        .map(|k| gains([3.0, 20.0 + 0.02 * f64::from(k % 150), 17.0, 0.25]))
+        .collect();
+    let options = BatchOptions {
+        run,
+        weights: Weights {
+            arrival_time: 0.5,
+            avoidance: 0.3,
+            energy_saving: 0.2,
+        },
+        descent: false,
+        threads: Some(2),
+        width: None,
+        instructions: Instructions::Widest,
+    };
+    let law = law(NEW, Stabilizing::Off);
+    let table = run_batch(scenarios, &law, &sets, &options, &|| false, &|_| ()).unwrap();
+    assert_eq!((table.len(), table.is_empty()), (4200, false));
+    for set in [0, 63, 64, 149, 150, 2099] {
+        for (index, scenario) in scenarios.iter().enumerate() {
+            let row = set * scenarios.len() + index;
+            let one = VirtualForceField {
+                gains: sets[set],
+                ..law
+            };
+            let (summary, _) = simulate(scenario, &one, &run, &|| false).unwrap();
+            assert_eq!(table.outcome[row], summary.outcome);
+            assert_eq!(
+                table.arrival_time[row],
+                summary.arrival_time.unwrap_or(f64::NAN)
+            );
+            assert_eq!(table.energy[row], summary.energy);
+            assert_eq!(table.min_distance[row], summary.min_distance[0]);
+        }
     }
 }

@@ -1,4 +1,6 @@
-//! Scenes that the benches share.
+//! Scenes that the benches share; no bench uses all of them.
+
+#![allow(dead_code)]
 
 use vff_core::forces::side::SideRules;
 use vff_core::forces::stabilizing::{Cap, Stabilizing};
@@ -32,14 +34,23 @@ fn scenario(obstacles: Vec<Obstacle>) -> Scenario {
     .unwrap()
 }
 
-/// A walking person, a rectangle and a disc: configuration 4.
-pub fn configuration_4() -> Scenario {
+/// Configurations 1 to 4: a disc, a walking person, a rectangle and a disc, all three.
+pub fn configuration(number: usize) -> Scenario {
     let walk = Motion::moving([0.6, 0.6], [1.0, 0.0], [0.0; 2], Some([4.0, 0.6])).unwrap();
-    scenario(vec![
-        Obstacle::disc(0.4, walk, limits(2.1, 0.8)).unwrap(),
-        Obstacle::rectangle([2.3, 0.0], [1.4, 0.6], 0.0, limits(0.8, 0.4)).unwrap(),
-        Obstacle::disc_at_rest([2.45, 1.4], 0.1, limits(0.8, 0.4)).unwrap(),
-    ])
+    let person = Obstacle::disc(0.4, walk, limits(2.1, 0.8)).unwrap();
+    let table = Obstacle::rectangle([2.3, 0.0], [1.4, 0.6], 0.0, limits(0.8, 0.4)).unwrap();
+    let disc = |center| Obstacle::disc_at_rest(center, 0.1, limits(0.8, 0.4)).unwrap();
+    scenario(match number {
+        1 => vec![disc([2.45, 0.595])],
+        2 => vec![person],
+        3 => vec![table, disc([2.45, 1.4])],
+        _ => vec![person, table, disc([2.45, 1.4])],
+    })
+}
+
+/// Configuration 4.
+pub fn configuration_4() -> Scenario {
+    configuration(4)
 }
 
 /// Three slowly moving discs whose active regions cover the whole way: nothing can be skipped.

@@ -4,8 +4,10 @@ mod virtual_force_field;
 
 pub use virtual_force_field::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};
 
+use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Real, Vec2};
+use crate::scenario::Scenario;
 
 /// What a law knows when it is asked for a force.
 #[derive(Clone, Copy, Debug)]
@@ -33,4 +35,30 @@ pub struct Command<R> {
 pub trait Law<R: Real> {
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R>;
+}
+
+/// A law up to its gains: what a search over gains needs to know of it.
+pub trait LawFamily: Sync {
+    /// The law for gain sets side by side. `RECORD`: the Lyapunov function is wanted too.
+    type Law<R: Real, const RECORD: bool>: Law<R>;
+    /// Words for the gains, in their order.
+    fn gain_names(&self) -> &'static [&'static str];
+    /// Gains that act on a robot without obstacles, ascending.
+    fn free_gains(&self) -> &'static [usize];
+    /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
+    /// their critical regions; a search then need not follow runs whose end is known.
+    fn keeps_to_regions(&self) -> bool {
+        false
+    }
+    /// Passes a set of gains that the law allows.
+    ///
+    /// # Errors
+    /// Names the gain that is not allowed.
+    fn check_gains(&self, gains: &[f64]) -> Result<()>;
+    /// The law with gains in one scenario.
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Self::Law<R, RECORD>;
 }

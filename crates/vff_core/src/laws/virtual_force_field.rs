@@ -1,6 +1,6 @@
 //! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Given, NavigationError, Result, not_negative};
 use crate::forces::attractive::attractive_force;
 use crate::forces::detour::Turning;
 use crate::forces::geometry::{Approach, Body, Offset, RobotState};
@@ -10,7 +10,7 @@ use crate::forces::side::{self, Detour, SideRules};
 use crate::forces::stabilizing::{Dissipation, Dissipative, Stabilizing};
 use crate::gains::{GainLanes, Gains};
 use crate::lanes::{Mask, Real, Vec2};
-use crate::laws::{Command, Law, Situation};
+use crate::laws::{Command, Law, LawFamily, Situation};
 use crate::scenario::Scenario;
 
 /// The law of Zeng (2011), chapter 5: gains and options.
@@ -45,6 +45,50 @@ impl VirtualForceField {
             stabilizing,
             rules,
         })
+    }
+}
+
+impl LawFamily for VirtualForceField {
+    type Law<R: Real, const RECORD: bool> = ForceFieldLaw<R, RECORD>;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        &[
+            "attractive_gain",
+            "repulsive_gain",
+            "detour_gain",
+            "gain_ratio",
+        ]
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        &[0, 3]
+    }
+
+    fn keeps_to_regions(&self) -> bool {
+        // The stabilizing force acts on the sum of the obstacles, so on none outside.
+        true
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        for (name, gain) in self.gain_names().iter().zip(gains) {
+            not_negative(name, *gain)?;
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> ForceFieldLaw<R, RECORD> {
+        let gains = GainLanes {
+            attractive: gains[0],
+            repulsive: gains[1],
+            detour: gains[2],
+            ratio: gains[3],
+        };
+        ForceFieldLaw::new(self, gains, scenario)
     }
 }
 

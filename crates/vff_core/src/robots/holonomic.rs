@@ -1,7 +1,7 @@
 //! Three-wheel holonomic robot: point mass with limits, wheel kinematics, feed-forward currents.
 
 use crate::error::{Result, not_negative, positive};
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Real, Vec2};
 use crate::region::RobotLimits;
 
 /// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
@@ -114,14 +114,9 @@ impl HolonomicRobot {
 fn limited<R: Real>(vector: Vec2<R>, limit: f64) -> (Vec2<R>, R) {
     let limit = R::splat(limit);
     let magnitude = vector.dot(vector).sqrt();
-    let over = magnitude.gt(limit);
-    if over.any() {
-        // A factor of one leaves every bit as it is.
-        let factor = R::select(over, limit / magnitude, R::splat(1.0));
-        (vector.scale(factor), magnitude.min(limit))
-    } else {
-        (vector, magnitude)
-    }
+    // A factor of one leaves every bit as it is. No branch: at full speed it would be taken.
+    let factor = R::select(magnitude.gt(limit), limit / magnitude, R::splat(1.0));
+    (vector.scale(factor), magnitude.min(limit))
 }
 
 /// Wheel speeds and currents at one heading.
@@ -130,6 +125,8 @@ pub struct WheelModel {
     /// Wheel speed for a unit velocity along x and y: rows of (D.1.4) divided by `r_w`, in 1/m.
     rows: [[f64; 2]; 3],
     wheels: Wheels,
+    /// `J/K` of each wheel over one motion step, in A s.
+    inertia_per_step: [f64; 3],
     /// Motion step in s.
     step: f64,
 }
@@ -152,6 +149,7 @@ impl WheelModel {
         Self {
             rows,
             wheels: robot.wheels,
+            inertia_per_step: robot.wheels.inertia.map(|inertia| inertia / step),
             step,
         }
     }
@@ -169,7 +167,7 @@ impl WheelModel {
         let mut currents = *after;
         for (wheel, current) in currents.iter_mut().enumerate() {
             let speed = after[wheel];
-            let per_step = R::splat(self.wheels.inertia[wheel] / self.step);
+            let per_step = R::splat(self.inertia_per_step[wheel]);
             let friction = R::splat(self.wheels.static_friction[wheel]).copysign(speed);
             let moving = R::splat(WHEEL_STANDSTILL).le(speed.abs());
             let friction = R::select(moving, friction, R::zero());

@@ -1,21 +1,17 @@
 //! Many runs: gain sets side by side in lanes, lane groups and scenarios over all cores.
 
-use std::collections::HashMap;
-use std::marker::PhantomData;
-
 use rayon::prelude::*;
 
 use crate::error::{Given, NavigationError, Result};
-use crate::gains::{GainLanes, Gains};
-use crate::lanes::{Lanes, Real};
-use crate::laws::{ForceFieldLaw, VirtualForceField};
-use crate::metrics::{Performance, Weights, performance};
+use crate::gains::Gains;
+use crate::laws::VirtualForceField;
+use crate::metrics::{Weights, score};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
+use crate::simulate::group::{Driven, Group, Plan};
+use crate::simulate::nominal::{NominalRuns, Ways};
 use crate::simulate::options::Options;
-use crate::simulate::outcome::RunSummary;
-use crate::simulate::record::{DescentCounter, Recorder};
-use crate::simulate::rollout::{Member, run_team};
+use crate::simulate::table::{BatchTable, Cell, Strip};
 
 /// Number of gain sets that are stepped side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +55,7 @@ impl Width {
         }
     }
 
-    fn lanes(self) -> usize {
+    pub(crate) fn lanes(self) -> usize {
         match self {
             Self::One => 1,
             Self::Four => 4,
@@ -96,15 +92,6 @@ pub struct BatchOptions {
     pub instructions: Instructions,
 }
 
-/// A run of a batch with its score.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ScoredRun {
-    /// What is left of the run.
-    pub run: RunSummary,
-    /// Its score.
-    pub performance: Performance,
-}
-
 /// Runs every gain set in every scenario; row `g * scenarios.len() + s`.
 ///
 /// # Errors
@@ -116,10 +103,26 @@ pub fn run_batch(
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<ScoredRun>> {
+) -> Result<BatchTable> {
     check(scenarios, gains, &options.run)?;
-    let work = || run_all(scenarios, law, gains, options, interrupted, progress);
-    match options.threads {
+    let points: Vec<f64> = gains.iter().flat_map(Gains::in_order).collect();
+    let batch = Batch {
+        scenarios,
+        law,
+        points: &points,
+        options,
+        interrupted,
+        progress,
+    };
+    on_threads(options.threads, || batch.run())
+}
+
+/// Does the work on a number of threads of its own, or on those that are there.
+pub(crate) fn on_threads<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> Result<T> + Send,
+) -> Result<T> {
+    match threads {
         None => work(),
         Some(threads) => rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -157,213 +160,105 @@ fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
     Ok(())
 }
 
-fn run_all(
-    scenarios: &[Scenario],
-    law: &VirtualForceField,
-    gains: &[Gains],
-    options: &BatchOptions,
-    interrupted: Interrupted<'_>,
-    progress: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<ScoredRun>> {
-    let width = options
-        .width
-        .unwrap_or_else(|| Width::for_sets(gains.len()));
-    let nominal = NominalRuns::new(scenarios, law, gains, options, interrupted)?;
-    let lanes = width.lanes();
-    let groups = gains.len().div_ceil(lanes);
-    // Groups vary fastest, so that neighbouring tasks share a scenario.
-    let tasks: Vec<Vec<RunSummary>> = (0..groups * scenarios.len())
-        .into_par_iter()
-        .map(|task| {
-            let (scenario, group) = (task / groups, task % groups);
-            let sets = &gains[group * lanes..gains.len().min((group + 1) * lanes)];
-            let runs = run_group(width, &scenarios[scenario], law, sets, options, interrupted)
-                .map_err(|error| {
-                    error.of_run(|run| (group * lanes + run) * scenarios.len() + scenario)
-                })?;
-            progress(sets.len());
-            Ok(runs)
-        })
-        .collect::<Result<_>>()?;
-    let mut tasks: Vec<_> = tasks.into_iter().map(Vec::into_iter).collect();
-    let mut rows = Vec::with_capacity(gains.len() * scenarios.len());
-    for (set, gain) in gains.iter().enumerate() {
-        for (index, scenario) in scenarios.iter().enumerate() {
-            let Some(run) = tasks[index * groups + set / lanes].next() else {
-                continue;
-            };
-            let free = nominal.of(index, gain);
-            let performance = performance(scenario, &run, free, options.weights);
-            rows.push(ScoredRun { run, performance });
-        }
-    }
-    Ok(rows)
-}
-
-/// Gain sets of one task through one scenario.
-fn run_group(
-    width: Width,
-    scenario: &Scenario,
-    law: &VirtualForceField,
-    sets: &[Gains],
-    options: &BatchOptions,
-    interrupted: Interrupted<'_>,
-) -> Result<Vec<RunSummary>> {
-    if interrupted() {
-        return Err(NavigationError::Interrupted);
-    }
-    let job = GroupJob {
-        scenario,
-        law,
-        sets,
-        options,
-        interrupted,
-        kind: PhantomData,
-    };
-    // One job for each kind of run: in one body an unoptimized build would need more stack than
-    // a thread has.
-    let mut runs = match (width, options.descent) {
-        (Width::One, false) => job.dispatch::<f64, (), false>(),
-        (Width::One, true) => job.dispatch::<f64, DescentCounter<f64>, true>(),
-        (Width::Four, false) => job.dispatch::<Lanes<4>, (), false>(),
-        // Sixteen lanes are two groups of eight in step, which share the obstacles' motion.
-        (Width::Eight | Width::Sixteen, false) => job.dispatch::<Lanes<8>, (), false>(),
-        (_, true) => job.dispatch::<Lanes<8>, DescentCounter<Lanes<8>>, true>(),
-    }?;
-    runs.truncate(sets.len());
-    Ok(runs)
-}
-
-/// A task that is compiled once for each instruction set; the widest one that the processor has
-/// is chosen at run time. The arithmetic is the same, bit for bit.
-struct GroupJob<'a, K = ()> {
-    scenario: &'a Scenario,
+struct Batch<'a> {
+    scenarios: &'a [Scenario],
     law: &'a VirtualForceField,
-    sets: &'a [Gains],
+    /// Gain sets in the order of their names.
+    points: &'a [f64],
     options: &'a BatchOptions,
     interrupted: Interrupted<'a>,
-    kind: PhantomData<K>,
+    progress: &'a (dyn Fn(usize) + Sync),
 }
 
-/// Width, recorder, and whether the Lyapunov function is wanted.
-struct Kind<R, C, const RECORD: bool>(PhantomData<(R, C)>);
-
-impl<'a> GroupJob<'a> {
-    fn dispatch<R: Real, C: Recorder<R> + Default, const RECORD: bool>(
-        self,
-    ) -> Result<Vec<RunSummary>> {
-        let processor = match self.options.instructions {
-            Instructions::Widest => pulp::Arch::new(),
-            Instructions::Baseline => pulp::Arch::Scalar,
+impl Batch<'_> {
+    fn run(&self) -> Result<BatchTable> {
+        let sets = self.points.len() / Gains::COUNT;
+        let width = self.options.width.unwrap_or_else(|| Width::for_sets(sets));
+        let plan = Plan {
+            run: self.options.run,
+            width,
+            instructions: self.options.instructions,
+            descent: self.options.descent,
+            shortcuts: false,
         };
-        processor.dispatch(GroupJob::<'a, Kind<R, C, RECORD>> {
-            scenario: self.scenario,
-            law: self.law,
-            sets: self.sets,
-            options: self.options,
+        let count = self.scenarios.len();
+        let ways = Ways::new(self.scenarios);
+        let nominal = NominalRuns::new(&ways, self.law, self.points, &plan, self.interrupted)
+            .map_err(|error| error.of_run(|run| run * count))?;
+        let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
+        let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
+        tasks(&mut strips, plan.team(sets * count))
+            .into_par_iter()
+            .try_for_each(|task| self.work(task, &plan, (&ways, &nominal)))?;
+        Ok(BatchTable::gather(self.scenarios, &strips))
+    }
+
+    fn work(
+        &self,
+        task: Task<'_>,
+        plan: &Plan,
+        (ways, nominal): (&Ways, &NominalRuns),
+    ) -> Result<()> {
+        let Task {
+            scenario: index,
+            first,
+            cells,
+            distances,
+        } = task;
+        let scenario = &self.scenarios[index];
+        let obstacles = scenario.obstacle_count();
+        let way = ways.of(index);
+        let group = Group {
+            scenario,
+            points: &self.points[first * Gains::COUNT..(first + cells.len()) * Gains::COUNT],
+            plan,
             interrupted: self.interrupted,
-            kind: PhantomData,
-        })
-    }
-}
-
-impl<R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::NullaryFnOnce
-    for GroupJob<'_, Kind<R, C, RECORD>>
-{
-    type Output = Result<Vec<RunSummary>>;
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        let lanes = self
-            .sets
-            .chunks(R::WIDTH)
-            .filter_map(<[Gains]>::split_first);
-        let mut team: Vec<_> = lanes
-            .map(|(first, rest)| {
-                let gains = GainLanes::<R>::gather(*first, rest);
-                let law = ForceFieldLaw::<R, RECORD>::new(self.law, gains, self.scenario);
-                Member {
-                    law,
-                    recorder: C::default(),
-                }
-            })
-            .collect();
-        run_team(
-            self.scenario,
-            &mut team,
-            &self.options.run,
-            self.interrupted,
-        )
-    }
-}
-
-/// Runs without obstacles: they depend on `K_1` and `b` only, and on the way.
-struct NominalRuns {
-    /// Way of each scenario.
-    way: Vec<usize>,
-    runs: HashMap<(usize, u64, u64), RunSummary>,
-}
-
-impl NominalRuns {
-    fn new(
-        scenarios: &[Scenario],
-        law: &VirtualForceField,
-        gains: &[Gains],
-        options: &BatchOptions,
-        interrupted: Interrupted<'_>,
-    ) -> Result<Self> {
-        let mut ways: Vec<Scenario> = Vec::new();
-        let mut way = Vec::with_capacity(scenarios.len());
-        for scenario in scenarios {
-            let nominal = scenario.nominal();
-            let known = ways.iter().position(|other| *other == nominal);
-            way.push(known.unwrap_or_else(|| {
-                ways.push(nominal);
-                ways.len() - 1
-            }));
-        }
-        let mut sets: Vec<Gains> = gains.to_vec();
-        let key = |set: &Gains| (set.attractive.to_bits(), set.ratio.to_bits());
-        sets.sort_by_key(key);
-        sets.dedup_by_key(|set| key(set));
-        let width = Width::for_sets(sets.len());
-        let free = BatchOptions {
-            descent: false,
-            ..*options
         };
-        let groups: Vec<(usize, &[Gains])> = (0..ways.len())
-            .flat_map(|index| sets.chunks(width.lanes()).map(move |chunk| (index, chunk)))
-            .collect();
-        let runs: Vec<Vec<RunSummary>> = groups
-            .par_iter()
-            .map(|(index, chunk)| {
-                let row = |run: usize| {
-                    let same = |set: &Gains| chunk.get(run).is_some_and(|own| key(own) == key(set));
-                    let set = gains.iter().position(same).unwrap_or(0);
-                    let scenario = way.iter().position(|known| known == index).unwrap_or(0);
-                    set * scenarios.len() + scenario
+        self.law
+            .run(&group, &mut |set, run, distance| {
+                let own = &mut distances[set * obstacles..(set + 1) * obstacles];
+                for (obstacle, slot) in own.iter_mut().enumerate() {
+                    *slot = distance(obstacle);
+                }
+                let free = nominal.of(way, first + set);
+                let own = own.iter().copied();
+                let weights = self.options.weights;
+                let performance = score(scenario, run.into(), own, free, weights);
+                cells[set] = Cell {
+                    run: *run,
+                    performance,
                 };
-                run_group(width, &ways[*index], law, chunk, &free, interrupted)
-                    .map_err(|error| error.of_run(row))
             })
-            .collect::<Result<_>>()?;
-        let runs = groups
-            .iter()
-            .zip(runs)
-            .flat_map(|((index, chunk), runs)| {
-                chunk.iter().zip(runs).map(|(set, run)| {
-                    ((*index, set.attractive.to_bits(), set.ratio.to_bits()), run)
-                })
-            })
-            .collect();
-        Ok(Self { way, runs })
+            .map_err(|error| error.of_run(|run| (first + run) * self.scenarios.len() + index))?;
+        (self.progress)(cells.len());
+        Ok(())
     }
+}
 
-    fn of(&self, scenario: usize, set: &Gains) -> &RunSummary {
-        &self.runs[&(
-            self.way[scenario],
-            set.attractive.to_bits(),
-            set.ratio.to_bits(),
-        )]
+/// Runs of some gain sets in one scenario.
+struct Task<'a> {
+    scenario: usize,
+    first: usize,
+    cells: &'a mut [Cell],
+    distances: &'a mut [f64],
+}
+
+/// Work of a batch; gain sets vary fastest, so that neighbouring tasks share a scenario.
+fn tasks(strips: &mut [Strip], team: usize) -> Vec<Task<'_>> {
+    let mut tasks = Vec::new();
+    for (scenario, strip) in strips.iter_mut().enumerate() {
+        let obstacles = strip.distances.len() / strip.cells.len();
+        let mut distances = strip.distances.as_mut_slice();
+        for (index, cells) in strip.cells.chunks_mut(team).enumerate() {
+            let (own, rest) = distances.split_at_mut(cells.len() * obstacles);
+            distances = rest;
+            tasks.push(Task {
+                scenario,
+                first: index * team,
+                cells,
+                distances: own,
+            });
+        }
     }
+    tasks
 }

@@ -1,25 +1,35 @@
 //! Runs: control period, integrators, outcomes; one run, or many at once.
 
 mod batch;
+mod group;
+mod nominal;
 mod options;
 mod outcome;
 mod record;
 mod rollout;
 mod runs;
 mod scene;
+mod table;
 
-pub use batch::{BatchOptions, Instructions, ScoredRun, Width, run_batch};
+pub use batch::{BatchOptions, Instructions, Width, run_batch};
+pub use group::AnyLaw;
 pub use options::{Integrator, Options};
-pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary};
+pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
-pub use rollout::{Member, run_team};
+pub use table::BatchTable;
 
-use crate::error::Result;
+pub(crate) use batch::on_threads;
+pub(crate) use group::{Group, Plan};
+pub(crate) use nominal::{Key, Ways, key_of, nominal_runs};
+pub(crate) use table::min_clearance;
+
+use crate::error::{NavigationError, Result};
 use crate::forces::geometry::{Body, RobotState};
 use crate::gains::GainLanes;
 use crate::lanes::Vec2;
 use crate::laws::{FieldTerms, ForceFieldLaw, Situation, VirtualForceField};
 use crate::scenario::Scenario;
+use crate::simulate::rollout::{Member, run_team};
 
 /// Asked now and then whether to stop.
 pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
@@ -40,9 +50,17 @@ pub fn simulate(
         law,
         recorder: TrajectoryRecorder::new(scenario),
     }];
-    let mut summaries = run_team(scenario, &mut team, options, interrupted)?;
+    let mut summary = None;
+    run_team(
+        scenario,
+        (&mut team, false),
+        &Plan::single(*options),
+        interrupted,
+        |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
+    )?;
     let [member] = team;
-    Ok((summaries.swap_remove(0), member.recorder.finish()))
+    let summary = summary.ok_or(NavigationError::Interrupted)?;
+    Ok((summary, member.recorder.finish()))
 }
 
 /// Every force term at one state.

@@ -16,6 +16,27 @@ pub enum Outcome {
     Stopped,
 }
 
+/// What is left of a run in the same few numbers for every scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunTotals {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When it ended, in s.
+    pub end_time: f64,
+    /// First entry into the circle around the goal, in s; NaN without arrival.
+    pub arrival_time: f64,
+    /// Electrical loss in J.
+    pub energy: f64,
+    /// Length of the path in m.
+    pub path_length: f64,
+    /// Obstacles touched while the robot was moving, and while it stood.
+    pub contacts: [u32; 2],
+    /// Share of the control periods over which the Lyapunov function did not grow, if counted.
+    pub descent_share: f64,
+    /// Number of samples of the force.
+    pub force_evaluations: u64,
+}
+
 /// First contact with an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {

@@ -7,6 +7,8 @@ use crate::scenario::Scenario;
 
 /// Listens to a run.
 pub trait Recorder<R: Real> {
+    /// Whether it wants to know the state at every step.
+    const EVERY_STEP: bool = false;
     /// A force was computed; `running`: for whom it counts.
     fn sample(&mut self, _command: &Command<R>, _running: R::Mask) {}
     /// State at the begin of a step.
@@ -138,6 +140,8 @@ impl TrajectoryRecorder {
 }
 
 impl Recorder<f64> for TrajectoryRecorder {
+    const EVERY_STEP: bool = true;
+
     fn sample(&mut self, command: &Command<f64>, _running: bool) {
         self.command = *command;
     }

@@ -7,8 +7,8 @@ use crate::laws::{Law, Situation};
 use crate::measurement::{Measured, Sensor};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
+use crate::simulate::group::Plan;
 use crate::simulate::options::{Clock, Integrator, Options};
-use crate::simulate::outcome::RunSummary;
 use crate::simulate::record::Recorder;
 use crate::simulate::runs::Runs;
 use crate::simulate::scene::{Scene, body_at};
@@ -20,7 +20,7 @@ const BLOCKS_PER_QUESTION: usize = 512;
 const STEPS_PER_BLOCK: usize = 64;
 
 /// A lane group with its law and its recorder.
-pub struct Member<L, C> {
+pub(crate) struct Member<L, C> {
     /// Drives the robots of the group.
     pub law: L,
     /// Listens to their runs.
@@ -29,17 +29,21 @@ pub struct Member<L, C> {
 
 /// Runs lane groups through a scenario, in step, so that they share the motion of the obstacles.
 ///
-/// A group's state stays in registers for all steps of a control period.
+/// A group's state stays in registers for all steps of a control period. At the end every run is
+/// handed over with its index: its group's state, its lane there and its recorder. A team that is
+/// `led` behaves alike until an obstacle acts: its first group goes ahead for all.
 ///
 /// # Errors
 /// An option is out of range, the state of a run became non-finite, or the caller asked to stop.
 #[inline(always)]
-pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
+pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     scenario: &Scenario,
-    team: &mut [Member<L, C>],
-    options: &Options,
+    (team, mut led): (&mut [Member<L, C>], bool),
+    plan: &Plan,
     interrupted: Interrupted<'_>,
-) -> Result<Vec<RunSummary>> {
+    mut keep: impl FnMut(usize, &Runs<'_, R>, usize, &C),
+) -> Result<()> {
+    let options = &plan.run;
     let clock = options.clock(scenario)?;
     let staged = options.integrator == Integrator::Rk4 && !options.hold;
     let mut scene = Scene::new(
@@ -74,9 +78,18 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         } else {
             &scene.frames[0]
         };
-        for (index, (runs, member)) in groups.iter_mut().zip(team.iter_mut()).enumerate() {
+        if led && samples && groups[0].feels_any(known) {
+            led = false;
+            follow(&mut groups);
+        }
+        let active = if led { 1 } else { groups.len() };
+        let members = groups.iter_mut().zip(team.iter_mut()).take(active);
+        for (index, (runs, member)) in members.enumerate() {
             if samples && runs.running.any() {
                 let time = clock.time(first);
+                if plan.shortcuts {
+                    runs.end_hopeless(&scene.frames[0], time);
+                }
                 sample(runs, member, known, measured, &scene.frames[0], time)
                     .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
             }
@@ -93,7 +106,9 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             }
         }
     }
-    let mut summaries = Vec::with_capacity(team.len() * R::WIDTH);
+    if led {
+        follow(&mut groups);
+    }
     for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
         let time = clock.time(first);
         runs.check_finite(time)
@@ -113,9 +128,21 @@ pub fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                     .collect()
             },
         );
-        summaries.extend((0..R::WIDTH).map(|lane| runs.summary(lane, &member.recorder)));
+        for lane in 0..R::WIDTH {
+            keep(index * R::WIDTH + lane, runs, lane, &member.recorder);
+        }
     }
-    Ok(summaries)
+    Ok(())
+}
+
+/// Brings all groups to where the first one is.
+#[cold]
+fn follow<R: Real>(groups: &mut [Runs<'_, R>]) {
+    if let Some((first, others)) = groups.split_first_mut() {
+        for runs in others {
+            runs.clone_from(first);
+        }
+    }
 }
 
 /// Steps that all groups take with the same obstacles.
@@ -178,7 +205,7 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
             Integrator::Rk4 => rk4(runs, &mut member.law, block.scene),
         }
         let later = clock.time(block.first + step + 1);
-        runs.account(&block.scene.frames[step + 1], before, later);
+        runs.account(&block.scene.frames[step + 1], before, later, C::EVERY_STEP);
         if options.stop_on_contact {
             runs.stop_at_contact(later);
         }

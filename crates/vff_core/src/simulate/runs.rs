@@ -7,7 +7,7 @@ use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::scenario::Scenario;
 use crate::simulate::options::Clock;
-use crate::simulate::outcome::{Contact, Outcome, RunSummary};
+use crate::simulate::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 use crate::simulate::record::Recorder;
 use crate::simulate::scene::body_at;
 
@@ -18,12 +18,14 @@ const REST_SPEED: f64 = 1e-3;
 const BOUND_MARGIN: f64 = 1e-6;
 
 /// State of the robots of one lane group.
+#[derive(Clone)]
 pub(crate) struct Runs<'a, R: Real> {
     pub scenario: &'a Scenario,
     pub clock: Clock,
     pub position: Vec2<R>,
     pub velocity: Vec2<R>,
     pub speed: R,
+    /// Motor currents in A of the last step, for a recorder.
     pub currents: [R; 3],
     pub running: R::Mask,
     /// The held force, and what it accelerates with, in m/s^2.
@@ -42,11 +44,15 @@ pub(crate) struct Runs<'a, R: Real> {
     near_goal: bool,
     /// Whether the least distance to each obstacle can change before the next sample.
     watched: Vec<bool>,
+    /// Instant from which no obstacle moves any more, in s.
+    all_stand_from: f64,
     /// Last sample at which each robot was not at rest, in s.
     moved: R,
     end_time: R,
     arrival_time: R,
     stopped: R::Mask,
+    /// Whether an obstacle was touched that was not touched before.
+    touched: bool,
     force_evaluations: R,
     min_distance_squared: Vec<R>,
     contact_time: Vec<R>,
@@ -82,10 +88,12 @@ impl<'a, R: Real> Runs<'a, R> {
             path: R::zero(),
             near_goal: true,
             watched: vec![true; count],
+            all_stand_from: scenario.stands_from(),
             moved: R::zero(),
             end_time: unset,
             arrival_time: unset,
             stopped: R::Mask::none(),
+            touched: false,
             force_evaluations: R::zero(),
             min_distance_squared: vec![R::splat(f64::INFINITY); count],
             contact_time: vec![unset; count],
@@ -104,13 +112,17 @@ impl<'a, R: Real> Runs<'a, R> {
         self.force_evaluations += R::select(self.running, one, R::zero());
     }
 
-    /// Accounts for a motion step from `before`, after which the obstacles are as given.
+    /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
+    /// the currents are looked at afterwards.
     #[inline(always)]
-    pub fn account(&mut self, bodies: &[Body], before: Vec2<R>, time: f64) {
+    pub fn account(&mut self, bodies: &[Body], before: Vec2<R>, time: f64, record: bool) {
         let speeds = self.wheels.speeds(self.velocity);
-        self.currents = self.wheels.currents(&self.wheel_speeds, &speeds);
+        let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
         self.wheel_speeds = speeds;
-        let [first, second, third] = self.currents;
+        if record {
+            self.currents = currents;
+        }
+        let [first, second, third] = currents;
         let squared = first * first + second * second + third * third;
         let way = self.speed * R::splat(self.clock.step);
         if self.near_goal {
@@ -185,6 +197,7 @@ impl<'a, R: Real> Runs<'a, R> {
                 let speed = self.speed.lane(lane);
                 self.contact_time[index] = self.contact_time[index].replace(lane, time);
                 self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
+                self.touched = true;
             }
         }
     }
@@ -230,8 +243,55 @@ impl<'a, R: Real> Runs<'a, R> {
         }
     }
 
+    /// Whether any robot is in the active region of an obstacle.
+    #[inline(always)]
+    pub fn feels_any(&self, bodies: &[Body]) -> bool {
+        bodies.iter().any(|body| {
+            let reach = body.regions.active_radius;
+            let squared = body.offset(self.position).distance_squared;
+            body.state.present && squared.lt(R::splat(reach * reach)).any()
+        })
+    }
+
+    /// Ends the runs of lanes that stand in a critical region for good: obstacle and robot at
+    /// rest, and nothing else that moves.
+    #[inline(always)]
+    pub fn end_hopeless(&mut self, bodies: &[Body], time: f64) {
+        let still = self.running & self.speed.lt(R::splat(REST_SPEED));
+        if still.any() && time >= self.all_stand_from {
+            self.end_caught(bodies, time, still);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn end_caught(&mut self, bodies: &[Body], time: f64, still: R::Mask) {
+        // Braked within one control period, it goes no farther than that.
+        let way = self.speed * R::splat(self.clock.interval) + R::splat(BOUND_MARGIN);
+        let mut caught = R::Mask::none();
+        for body in bodies {
+            let distance = body.offset(self.position).distance_squared.sqrt();
+            caught = caught | (distance + way).lt(R::splat(body.regions.critical_radius));
+        }
+        let ended = still & caught;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
     /// Ends the runs of lanes that have touched an obstacle.
+    #[inline(always)]
     pub fn stop_at_contact(&mut self, time: f64) {
+        if self.touched {
+            self.touched = false;
+            self.stop_touched(time);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn stop_touched(&mut self, time: f64) {
         let mut touched = R::Mask::none();
         for contact in &self.contact_time {
             touched = touched | contact.le(R::splat(time));
@@ -277,40 +337,64 @@ impl<'a, R: Real> Runs<'a, R> {
         Ok(())
     }
 
-    pub fn summary(&self, lane: usize, recorder: &impl Recorder<R>) -> RunSummary {
-        let set = |value: f64| if value.is_nan() { None } else { Some(value) };
-        let contact: Vec<_> = self
-            .contact_time
-            .iter()
-            .zip(&self.contact_speed)
-            .map(|(time, speed)| {
-                set(time.lane(lane)).map(|time| Contact {
-                    time,
-                    speed: speed.lane(lane),
-                })
-            })
-            .collect();
-        let arrival_time = set(self.arrival_time.lane(lane));
-        let outcome = if contact.iter().any(Option::is_some) {
+    /// Least distance `d` to an obstacle in m; infinite if it was never present.
+    pub fn min_distance(&self, obstacle: usize, lane: usize) -> f64 {
+        self.min_distance_squared[obstacle].lane(lane).sqrt()
+    }
+
+    /// First contact with an obstacle.
+    fn contact(&self, obstacle: usize, lane: usize) -> Option<Contact> {
+        let time = self.contact_time[obstacle].lane(lane);
+        let speed = self.contact_speed[obstacle].lane(lane);
+        (!time.is_nan()).then_some(Contact { time, speed })
+    }
+
+    /// What is left of the run of a lane, whatever the number of obstacles.
+    pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
+        let mut contacts = [0, 0];
+        for obstacle in 0..self.scenario.obstacle_count() {
+            if let Some(touch) = self.contact(obstacle, lane) {
+                contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+            }
+        }
+        let arrival_time = self.arrival_time.lane(lane);
+        let outcome = if contacts != [0, 0] {
             Outcome::Collided
-        } else if arrival_time.is_some() {
+        } else if !arrival_time.is_nan() {
             Outcome::Arrived
         } else if self.stopped.lane(lane) {
             Outcome::Stopped
         } else {
             Outcome::TimedOut
         };
-        let root = |squared: &R| squared.lane(lane).sqrt();
-        RunSummary {
+        RunTotals {
             outcome,
             end_time: self.end_time.lane(lane),
             arrival_time,
             energy: self.squared_current.lane(lane) * self.wheels.loss_per_square(),
             path_length: self.path.lane(lane),
-            min_distance: self.min_distance_squared.iter().map(root).collect(),
-            contact,
+            contacts,
             descent_share: recorder.descent_share(lane),
             force_evaluations: count_of(self.force_evaluations.lane(lane)),
+        }
+    }
+
+    /// Everything that is left of the run of a lane.
+    pub fn summary(&self, lane: usize, recorder: &impl Recorder<R>) -> RunSummary {
+        let totals = self.totals(lane, recorder);
+        let obstacles = 0..self.scenario.obstacle_count();
+        let distance = |obstacle| self.min_distance(obstacle, lane);
+        let contact = |obstacle| self.contact(obstacle, lane);
+        RunSummary {
+            outcome: totals.outcome,
+            end_time: totals.end_time,
+            arrival_time: (!totals.arrival_time.is_nan()).then_some(totals.arrival_time),
+            energy: totals.energy,
+            path_length: totals.path_length,
+            min_distance: obstacles.clone().map(distance).collect(),
+            contact: obstacles.map(contact).collect(),
+            descent_share: totals.descent_share,
+            force_evaluations: totals.force_evaluations,
         }
     }
 }

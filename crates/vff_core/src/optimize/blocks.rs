@@ -1,0 +1,276 @@
+//! Evaluating many points: blocks over all threads, found in the ledger or computed.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use crate::error::{NavigationError, Result};
+use crate::optimize::evaluated::Evaluated;
+use crate::optimize::ledger::SearchState;
+use crate::optimize::meeting::{Asker, meet};
+use crate::optimize::observe::{Control, Observer, Report, Stage};
+use crate::optimize::problem::{Candidate, Problem, Score};
+use crate::simulate::on_threads;
+
+/// Blocks that a list of points is cut into at least, so that threads share the work evenly.
+const LEAST_BLOCKS: usize = 64;
+
+/// Fewest points of a block.
+const LEAST_BLOCK: usize = 16;
+
+/// Points of several solvers are cut into multiples of this.
+const FEW_LANES: usize = 4;
+
+/// Values of points block by block; `None` for blocks that are missing after a stop.
+pub(crate) struct Parts {
+    block: usize,
+    parts: Vec<Option<Evaluated>>,
+}
+
+impl Parts {
+    /// Whether no block is missing.
+    pub fn complete(&self) -> bool {
+        self.parts.iter().all(Option::is_some)
+    }
+
+    /// Blocks that are there, with the position of their first point.
+    pub fn blocks(&self) -> impl Iterator<Item = (usize, &Evaluated)> {
+        let parts = self.parts.iter().enumerate();
+        parts.filter_map(|(index, part)| Some((index * self.block, part.as_ref()?)))
+    }
+}
+
+/// A search at work: who watches it, and what is done.
+pub(crate) struct Session<'a> {
+    observer: &'a dyn Observer,
+    stopped: AtomicBool,
+    progress: Mutex<Progress>,
+}
+
+struct Progress {
+    state: SearchState,
+    best: Option<Candidate>,
+    done: u64,
+}
+
+impl<'a> Session<'a> {
+    pub fn new(observer: &'a dyn Observer, state: SearchState) -> Self {
+        let progress = Progress {
+            state,
+            best: None,
+            done: 0,
+        };
+        Self {
+            observer,
+            stopped: AtomicBool::new(false),
+            progress: Mutex::new(progress),
+        }
+    }
+
+    /// Whether the observer has asked to stop.
+    pub fn stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Begins a stage.
+    pub fn begin(&self) {
+        self.with(|progress| progress.done = 0);
+    }
+
+    /// A piece that is already in the ledger.
+    pub fn known(&self, stage: Stage, index: usize) -> Option<Evaluated> {
+        self.with(|progress| progress.state.piece(stage, index).cloned())
+            .flatten()
+    }
+
+    /// Does something with the ledger.
+    pub fn record(&self, change: impl FnOnce(&mut SearchState)) {
+        self.with(|progress| change(&mut progress.state));
+    }
+
+    /// Notes a candidate for the best point.
+    pub fn offer(&self, point: &[f64], score: Score) {
+        self.with(|progress| {
+            let known = progress.best.as_ref();
+            if known.is_none_or(|best| score.better(&best.score)) {
+                let point = point.to_vec();
+                progress.best = Some(Candidate { point, score });
+            }
+        });
+    }
+
+    /// Tells the observer that more is done.
+    pub fn report(&self, stage: Stage, more: u64, total: u64) {
+        let control = self.with(|progress| {
+            progress.done += more;
+            let report = Report {
+                stage,
+                done: progress.done,
+                total,
+                best: progress.best.as_ref(),
+            };
+            let state = &progress.state;
+            self.observer.report(&report, &|| state.clone())
+        });
+        if control != Some(Control::Continue) {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// `None` when an observer has panicked; the search then stops.
+    fn with<T>(&self, work: impl FnOnce(&mut Progress) -> T) -> Option<T> {
+        self.progress.lock().ok().map(|mut guard| work(&mut guard))
+    }
+
+    /// Values of points that come in blocks; `points` gives those of a range of positions.
+    pub fn evaluate(
+        &self,
+        stage: Stage,
+        problem: &dyn Problem,
+        count: usize,
+        points: &(dyn Fn(std::ops::Range<usize>) -> Vec<f64> + Sync),
+    ) -> Result<Parts> {
+        self.begin();
+        let block = block_of(problem, count);
+        let parts = (0..count.div_ceil(block))
+            .into_par_iter()
+            .map(|index| {
+                let range = index * block..count.min((index + 1) * block);
+                let size = range.len();
+                let known = self.known(stage, index).filter(|known| known.len() == size);
+                if known.is_none() && self.stopped() {
+                    return Ok(None);
+                }
+                let points = points(range);
+                let fresh = known.is_none();
+                let evaluated = known.map_or_else(|| Evaluated::of(problem, &points), Ok)?;
+                if problem.objectives() == 1 {
+                    self.offer_best(problem.dimension(), &points, &evaluated);
+                }
+                if fresh {
+                    self.record(|state| state.insert(stage, index, evaluated.clone()));
+                }
+                self.report(stage, size as u64, count as u64);
+                Ok(Some(evaluated))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Parts { block, parts })
+    }
+
+    /// Runs a number of solvers that ask for one point at a time, and evaluates their points side
+    /// by side; in all there are `total` evaluations, or searches in the local stage. What they
+    /// were answered before an interruption comes from the ledger.
+    ///
+    /// The observer hears of every meeting. Local searches count when they are done, by
+    /// themselves; of the others every evaluation counts, `total` in all.
+    pub fn solve<T: Send>(
+        &self,
+        stage: Stage,
+        problem: &dyn Problem,
+        count: usize,
+        total: u64,
+        solver: &(impl Fn(usize, &mut Asker) -> T + Sync),
+    ) -> Result<Vec<Option<T>>> {
+        self.begin();
+        let known = (0..count).map(|who| self.known(stage, who).unwrap_or_default());
+        let known: Vec<Evaluated> = known.collect();
+        let counted = |points: usize| match stage {
+            Stage::Local => 0,
+            _ => points as u64,
+        };
+        self.report(
+            stage,
+            counted(known.iter().map(Evaluated::len).sum()),
+            total,
+        );
+        let mut failure = None;
+        let results = meet(known, solver, |asked| {
+            if self.stopped() {
+                return None;
+            }
+            match self.answer(stage, problem, asked) {
+                Ok(answers) => {
+                    self.report(stage, counted(asked.len()), total);
+                    Some(answers)
+                }
+                Err(error) => {
+                    failure = Some(error);
+                    None
+                }
+            }
+        });
+        failure.map_or(Ok(results), Err)
+    }
+
+    /// Values of the points of several solvers, in parts of a few lanes over all threads.
+    fn answer(
+        &self,
+        stage: Stage,
+        problem: &dyn Problem,
+        asked: &[(usize, Vec<f64>)],
+    ) -> Result<Vec<Evaluated>> {
+        let even = asked.len().div_ceil(2 * rayon::current_num_threads());
+        let part = even.next_multiple_of(FEW_LANES).min(problem.block());
+        let parts: Vec<Evaluated> = asked
+            .par_chunks(part)
+            .map(|asked| {
+                let points: Vec<f64> = asked.iter().flat_map(|(_, point)| point).copied().collect();
+                Evaluated::of(problem, &points)
+            })
+            .collect::<Result<_>>()?;
+        let answers: Vec<Evaluated> = parts
+            .iter()
+            .flat_map(|part| (0..part.len()).map(|index| part.single(index)))
+            .collect();
+        for ((who, point), answer) in asked.iter().zip(&answers) {
+            self.record(|state| state.growing(stage, *who).extend(answer));
+            self.offer(point, answer.score(0));
+        }
+        Ok(answers)
+    }
+
+    /// Notes the best of some points.
+    fn offer_best(&self, dimension: usize, points: &[f64], evaluated: &Evaluated) {
+        let scores = (0..evaluated.len()).map(|index| (index, evaluated.score(index)));
+        if let Some((index, score)) = scores.min_by(|(_, one), (_, other)| one.order(other)) {
+            self.offer(&points[index * dimension..(index + 1) * dimension], score);
+        }
+    }
+}
+
+/// Points of a block: as many as the problem likes, but not so many that threads stand idle.
+fn block_of(problem: &dyn Problem, count: usize) -> usize {
+    let even = count.div_ceil(LEAST_BLOCKS).next_multiple_of(LEAST_BLOCK);
+    even.min(problem.block()).max(1)
+}
+
+/// Values of any list of points, row by row.
+///
+/// # Errors
+/// The problem fails, the caller asked to stop, or the threads could not be made.
+pub fn evaluate_all(
+    problem: &dyn Problem,
+    points: &[f64],
+    threads: Option<usize>,
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> Result<Evaluated> {
+    let dimension = problem.dimension();
+    let block = block_of(problem, points.len() / dimension);
+    on_threads(threads, || {
+        let parts: Vec<Evaluated> = points
+            .par_chunks(block * dimension)
+            .map(|points| {
+                if interrupted() {
+                    return Err(NavigationError::Interrupted);
+                }
+                Evaluated::of(problem, points)
+            })
+            .collect::<Result<_>>()?;
+        let mut all = Evaluated::default();
+        for part in &parts {
+            all.extend(part);
+        }
+        Ok(all)
+    })
+}

@@ -1,0 +1,308 @@
+//! Coarse-to-fine grid: the best points of one grid span the next, Zeng (2011), C.2, steps 1-6.
+
+use crate::error::{Given, NavigationError, Result};
+use crate::optimize::blocks::{Parts, Session};
+use crate::optimize::ledger::Fingerprint;
+use crate::optimize::observe::Stage;
+use crate::optimize::problem::{Bounds, Candidate, Problem, Score};
+
+/// Options of a coarse-to-fine grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridOptions {
+    /// Number of points along each axis, in every round.
+    pub shape: Vec<usize>,
+    /// Number of rounds after the first one.
+    pub refinements: usize,
+    /// Number of best points that span the next round.
+    pub survivors: usize,
+    /// Number of best points that are kept over all rounds.
+    pub keep: usize,
+}
+
+/// A round of a coarse-to-fine grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Round {
+    /// Coordinates of the grid along each axis.
+    pub axes: Vec<Vec<f64>>,
+    /// Distance of neighbours along each axis.
+    pub increments: Vec<f64>,
+    /// Points evaluated.
+    pub evaluations: u64,
+    /// Failures among them.
+    pub failures: u64,
+    /// Best point.
+    pub best: Candidate,
+    /// Least coordinates of the survivors.
+    pub survivor_low: Vec<f64>,
+    /// Largest coordinates of the survivors.
+    pub survivor_high: Vec<f64>,
+    /// Score of the last survivor.
+    pub worst_survivor: Score,
+}
+
+/// Result of the grids.
+pub(crate) struct Grids {
+    pub rounds: Vec<Round>,
+    /// Best points over all rounds.
+    pub top: Vec<Candidate>,
+    pub evaluations: u64,
+    pub failures: u64,
+    /// Whether the last round is complete.
+    pub complete: bool,
+}
+
+impl GridOptions {
+    pub(crate) fn check(&self, bounds: &Bounds) -> Result<()> {
+        let refuse = |name: &str, rule, count: usize| {
+            Err(NavigationError::invalid(
+                name,
+                rule,
+                Given::Count(count as u64),
+            ))
+        };
+        if self.shape.len() != bounds.dimension() {
+            let rule = "have a number of points for every axis";
+            return refuse("grid", rule, self.shape.len());
+        }
+        if self.shape.contains(&0) {
+            return refuse("grid", "have at least one point along every axis", 0);
+        }
+        let points = self.shape.iter().try_fold(1, |points: usize, side| {
+            points
+                .checked_mul(*side)
+                .filter(|points| *points <= MOST_POINTS)
+        });
+        if points.is_none() {
+            return refuse("grid", "have at most 1e8 points", usize::MAX);
+        }
+        if self.survivors == 0 {
+            return refuse("survivors", "be at least one", 0);
+        }
+        if self.keep == 0 {
+            return refuse("keep", "be at least one", 0);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn fingerprint(&self, sum: Fingerprint) -> Fingerprint {
+        let shape = self.shape.iter().fold(sum, |sum, side| sum.count(*side));
+        shape.count(self.survivors)
+    }
+}
+
+/// Most points of one grid: their values must fit into memory.
+const MOST_POINTS: usize = 100_000_000;
+
+/// A regular grid of a box. Points are numbered with the first axis slowest.
+pub(crate) struct Grid {
+    pub axes: Vec<Vec<f64>>,
+    /// Axes from slowest to fastest in which the points are visited.
+    visit: Vec<usize>,
+}
+
+impl Grid {
+    pub fn new(bounds: &Bounds, shape: &[usize], visit: Vec<usize>) -> Self {
+        let sides = bounds.lower().iter().zip(bounds.upper()).zip(shape);
+        let axes = sides.map(|((low, high), count)| spaced(*low, *high, *count));
+        Self {
+            axes: axes.collect(),
+            visit,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.axes.iter().map(Vec::len).product()
+    }
+
+    pub fn increments(&self) -> Vec<f64> {
+        let step = |axis: &Vec<f64>| match axis.as_slice() {
+            [first, .., last] => (last - first) / (axis.len() - 1) as f64,
+            _ => 0.0,
+        };
+        self.axes.iter().map(step).collect()
+    }
+
+    /// The point at a position of the visit, and its number.
+    fn visited(&self, position: usize, point: &mut [f64]) -> usize {
+        let mut rest = position;
+        let mut places = vec![0; self.axes.len()];
+        for axis in self.visit.iter().rev() {
+            let count = self.axes[*axis].len();
+            places[*axis] = rest % count;
+            rest /= count;
+        }
+        let number =
+            |number: usize, (axis, place): (&Vec<f64>, &usize)| number * axis.len() + place;
+        for ((slot, axis), place) in point.iter_mut().zip(&self.axes).zip(&places) {
+            *slot = axis[*place];
+        }
+        self.axes.iter().zip(&places).fold(0, number)
+    }
+
+    /// Points at some positions of the visit, row by row.
+    pub fn points(&self, positions: std::ops::Range<usize>) -> Vec<f64> {
+        let dimension = self.axes.len();
+        let mut points = vec![0.0; positions.len() * dimension];
+        for (position, point) in positions.zip(points.chunks_exact_mut(dimension)) {
+            self.visited(position, point);
+        }
+        points
+    }
+
+    /// The point with a number.
+    pub fn point(&self, number: usize) -> Vec<f64> {
+        let mut rest = number;
+        let mut point: Vec<f64> = Vec::with_capacity(self.axes.len());
+        for axis in self.axes.iter().rev() {
+            point.push(axis[rest % axis.len()]);
+            rest /= axis.len();
+        }
+        point.reverse();
+        point
+    }
+
+    /// Number of every position of the visit.
+    pub fn numbers(&self) -> Vec<usize> {
+        let mut point = vec![0.0; self.axes.len()];
+        (0..self.len())
+            .map(|position| self.visited(position, &mut point))
+            .collect()
+    }
+}
+
+/// Evenly spaced numbers with both ends; the middle alone, also where both ends are one.
+fn spaced(low: f64, high: f64, count: usize) -> Vec<f64> {
+    if count == 1 || low == high {
+        return vec![0.5 * (low + high)];
+    }
+    let step = (high - low) / (count - 1) as f64;
+    let at = |index: usize| {
+        if index + 1 == count {
+            high
+        } else {
+            low + index as f64 * step
+        }
+    };
+    (0..count).map(at).collect()
+}
+
+/// Rounds of grids over ever smaller boxes.
+pub(crate) fn grids(
+    session: &Session<'_>,
+    problem: &dyn Problem,
+    bounds: &Bounds,
+    options: &GridOptions,
+) -> Result<Grids> {
+    let mut result = Grids {
+        rounds: Vec::new(),
+        top: Vec::new(),
+        evaluations: 0,
+        failures: 0,
+        complete: true,
+    };
+    let mut range = bounds.clone();
+    for round in 0..=options.refinements {
+        let grid = Grid::new(&range, &options.shape, problem.slowest_first());
+        let stage = Stage::Grid { round };
+        let points = |positions| grid.points(positions);
+        let parts = session.evaluate(stage, problem, grid.len(), &points)?;
+        let scores = ranked(&grid, &parts);
+        let failures = scores.iter().filter(|(score, _)| score.failed).count() as u64;
+        result.evaluations += scores.len() as u64;
+        result.failures += failures;
+        merge(&mut result.top, &grid, &scores, options.keep);
+        result.complete = parts.complete();
+        if !result.complete {
+            break;
+        }
+        let summary = summary(&grid, scores, failures, options.survivors);
+        range = next_range(bounds, &summary)?;
+        result.rounds.push(summary);
+    }
+    Ok(result)
+}
+
+/// Scores of the points that were evaluated, with their numbers, in the order of the visit.
+fn ranked(grid: &Grid, parts: &Parts) -> Vec<(Score, usize)> {
+    let numbers = grid.numbers();
+    let mut scores = Vec::with_capacity(numbers.len());
+    for (first, part) in parts.blocks() {
+        let own = (0..part.len()).map(|index| part.score(index));
+        scores.extend(own.zip(numbers[first..].iter().copied()));
+    }
+    scores
+}
+
+/// The best points in front, in order; points of the same score by their number.
+fn best_in_front(scores: &mut [(Score, usize)], count: usize) -> &[(Score, usize)] {
+    let order = |one: &(Score, usize), other: &(Score, usize)| {
+        one.0.order(&other.0).then(one.1.cmp(&other.1))
+    };
+    let count = count.min(scores.len());
+    if count < scores.len() {
+        scores.select_nth_unstable_by(count, order);
+    }
+    scores[..count].sort_unstable_by(order);
+    &scores[..count]
+}
+
+/// Takes the best points of a round into the best of all; of equal ones the earlier stays ahead,
+/// and a point that is met again is not taken twice.
+fn merge(top: &mut Vec<Candidate>, grid: &Grid, scores: &[(Score, usize)], keep: usize) {
+    let mut scores = scores.to_vec();
+    for (score, number) in best_in_front(&mut scores, keep) {
+        let point = grid.point(*number);
+        if top.iter().any(|known| known.point == point) {
+            continue;
+        }
+        let place = top.partition_point(|known| !score.better(&known.score));
+        top.insert(
+            place,
+            Candidate {
+                point,
+                score: *score,
+            },
+        );
+    }
+    top.truncate(keep);
+}
+
+fn summary(grid: &Grid, mut scores: Vec<(Score, usize)>, failures: u64, survivors: usize) -> Round {
+    let evaluations = scores.len() as u64;
+    let survivors = best_in_front(&mut scores, survivors);
+    let (first, last) = (survivors[0], survivors[survivors.len() - 1]);
+    let mut low = grid.point(first.1);
+    let mut high = low.clone();
+    for (_, number) in survivors {
+        for (axis, value) in grid.point(*number).into_iter().enumerate() {
+            low[axis] = value.min(low[axis]);
+            high[axis] = value.max(high[axis]);
+        }
+    }
+    Round {
+        axes: grid.axes.clone(),
+        increments: grid.increments(),
+        evaluations,
+        failures,
+        best: Candidate {
+            point: grid.point(first.1),
+            score: first.0,
+        },
+        survivor_low: low,
+        survivor_high: high,
+        worst_survivor: last.0,
+    }
+}
+
+/// The box of the survivors. An axis on which they all agree keeps half an increment to either
+/// side, as far as the bounds go, or its next grid would be one point.
+fn next_range(bounds: &Bounds, round: &Round) -> Result<Bounds> {
+    let (mut low, mut high) = (round.survivor_low.clone(), round.survivor_high.clone());
+    for (axis, increment) in round.increments.iter().enumerate() {
+        if low[axis] == high[axis] {
+            low[axis] = (low[axis] - 0.5 * increment).max(bounds.lower()[axis]);
+            high[axis] = (high[axis] + 0.5 * increment).min(bounds.upper()[axis]);
+        }
+    }
+    Bounds::new(low, high)
+}

@@ -1,0 +1,38 @@
+//! Search over boxes: coarse-to-fine grid, constrained local search, global methods, sets of
+//! best compromises; and the search over the gains of a navigation law.
+//!
+//! The searches know a [`Problem`] and nothing of robots; [`GainProblem`] is the problem of
+//! Zeng (2011), appendix C.2. Every result is the same, bit for bit, for any number of threads,
+//! and after an interruption that was resumed.
+
+mod blocks;
+mod evaluated;
+mod front;
+mod gain_objective;
+mod gain_options;
+mod gain_problem;
+mod global;
+mod grid;
+mod ledger;
+mod local;
+mod meeting;
+mod observe;
+mod pareto;
+mod problem;
+mod search;
+mod solvers;
+
+pub use blocks::evaluate_all;
+pub use evaluated::Evaluated;
+pub use front::{Front, FrontOptions, FrontRound, front_search};
+pub use gain_objective::{Limit, Metric, MetricConstraint, Objective, Over, Robustness};
+pub use gain_options::GainOptions;
+pub use gain_problem::GainProblem;
+pub use global::{GlobalMethod, GlobalOptions, GlobalSearch, global_search};
+pub use grid::{GridOptions, Round};
+pub use ledger::SearchState;
+pub use local::{LocalMethod, LocalOptions, LocalSearch, LocalStatus, local_search};
+pub use observe::{Control, Observer, Report, Stage};
+pub use pareto::{hypervolume, non_dominated};
+pub use problem::{Bounds, Candidate, Evaluation, FEASIBILITY, Problem, Score};
+pub use search::{Search, SearchOptions, search};
