@@ -21,7 +21,7 @@ from hrsafety.errors import (
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from hrsafety import datasets, impact, navigation, plotting, reproduce, scenarios
+    from hrsafety import datasets, impact, navigation, plotting, reproduce, scenarios, sweep
 
 __all__ = [
     "HrsafetyError",
@@ -35,11 +35,12 @@ __all__ = [
     "plotting",
     "reproduce",
     "scenarios",
+    "sweep",
 ]
 
 __version__ = "0.1.0"
 
-_LAZY = frozenset({"datasets", "impact", "navigation", "plotting", "reproduce", "scenarios"})
+_LAZY = frozenset({"datasets", "impact", "navigation", "plotting", "reproduce", "scenarios", "sweep"})
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -14,6 +14,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
 Kind = TypeVar("Kind")
+Call = TypeVar("Call", bound=Callable[..., object])
 
 
 class Parameters:
@@ -96,6 +97,13 @@ def word(name: str, value: object, words: Sequence[str]) -> str:
     if not isinstance(value, str) or value not in words:
         shown = ", ".join(f'"{each}"' for each in words)
         raise InvalidParameterError(name, f"be one of {shown}", value)
+    return value
+
+
+def callback(name: str, value: Call | None) -> Call | None:
+    """Return ``value`` if it can be called or is ``None``."""
+    if value is not None and not callable(value):
+        raise InvalidParameterError(name, "be callable or None", value)
     return value
 
 

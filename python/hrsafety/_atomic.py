@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
-__all__ = ["write_file"]
+__all__ = ["replacing", "write_file"]
 
 
 def write_file(path: Path, content: bytes | str) -> Path:
@@ -29,15 +32,43 @@ def write_file(path: Path, content: bytes | str) -> Path:
     OSError
         If the file cannot be written; nothing is left behind and an older file stays as it was.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
+    with replacing(path) as file:
+        file.write(content.encode("utf-8") if isinstance(content, str) else content)
+    return path
+
+
+@contextmanager
+def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
+    """Open a file that takes the place of another when the block ends without an error.
+
+    Parameters
+    ----------
+    path : Path
+        Where; its folder must exist.
+    durable : bool
+        Whether the content is on the disk before the file gets its name, so that not even a
+        power failure leaves a file that is there and damaged.
+
+    Yields
+    ------
+    file
+        Open for writing bytes.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; nothing is left behind and an older file stays as it was.
+    """
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(data)
+            yield file
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    return path

@@ -13,9 +13,11 @@ import numpy.typing as npt
 
 __all__ = [
     "ConstrainedHead",
+    "CylinderController",
     "DifferentialDriveRobot",
     "DirectDrive",
     "Foam",
+    "GainProblem",
     "Head",
     "HolonomicRobot",
     "Joint",
@@ -31,11 +33,14 @@ __all__ = [
     "effective_two_joints",
     "evaluate",
     "fit_open_loop",
+    "fit_static",
     "foam_boundary",
     "foam_fastest",
     "foam_ratios",
     "force_field",
     "force_terms",
+    "front_hypervolume",
+    "gain_front",
     "hic",
     "hic_half_sine",
     "hic_square",
@@ -46,12 +51,16 @@ __all__ = [
     "impact_gradients",
     "impact_metrics",
     "impact_metrics_batch",
+    "impact_point_speed",
     "impact_simulate",
     "impact_status_words",
     "lyapunov",
     "moving_average",
     "pd_gains",
+    "recorded_metrics",
     "region_radii",
+    "search_gains",
+    "search_gains_globally",
     "simulate",
     "simulate_batch",
     "simulate_direct_drive",
@@ -344,6 +353,144 @@ def simulate_batch(
 ) -> _BatchFields:
     """Return summary columns of every gain set in every scenario."""
 
+# ---- gains ----------------------------------------------------------------------------------
+
+_Flags = npt.NDArray[np.bool_]
+_Bounded = tuple[str, float | None, float | None, int | None]
+_Progress = Callable[[str, int, int, float], object]
+_Save = Callable[[bytes], object]
+
+class _EvaluationFields(TypedDict):
+    values: _Array
+    violation: _Array
+    failed: _Flags
+
+class _CandidateFields(TypedDict):
+    gains: _Array
+    value: float
+    violation: float
+    failed: bool
+
+class _RoundFields(TypedDict):
+    axes: list[_Array]
+    increments: _Array
+    evaluations: int
+    failures: int
+    best_value: float
+    violation: float
+    best_gains: _Array
+    survivor_low: _Array
+    survivor_high: _Array
+    worst_survivor: float
+
+class _LocalFields(TypedDict):
+    start: _Array
+    start_value: float
+    gains: _Array
+    value: float
+    violation: float
+    evaluations: int
+    status: str
+
+class _SearchFields(TypedDict):
+    best: _CandidateFields
+    rounds: list[_RoundFields]
+    local: list[_LocalFields]
+    top: _Array
+    top_values: _Array
+    top_violation: _Array
+    evaluations: int
+    failures: int
+    interrupted: bool
+
+class _GlobalFields(TypedDict):
+    best: _CandidateFields
+    history: _Array
+    evaluations: int
+    failures: int
+    interrupted: bool
+
+class _FrontFields(TypedDict):
+    points: _Array
+    values: _Array
+    evaluations: int
+    failures: int
+    interrupted: bool
+
+@final
+class GainProblem:
+    """Function of the gains over scenarios: objectives to maximize and margins that must not be negative."""
+
+    def __new__(
+        cls,
+        *,
+        scenarios: Sequence[Scenario],
+        law: VirtualForceField,
+        weights: _Triple,
+        integrator: str,
+        step: float,
+        hold: bool,
+        seeds: Sequence[int],
+        lower_bound_factor: float | None,
+        objectives: Sequence[str | None],
+        constraints: Sequence[_Bounded],
+        scorer: Callable[[list[_BatchFields]], tuple[_Array, _Array]] | None,
+        scorer_constraints: int,
+        lanes: int | None,
+    ) -> Self: ...
+    def evaluate(self, points: _Array, *, threads: int | None) -> _EvaluationFields:
+        """Values as maximized, violations and failures of gain sets."""
+
+def search_gains(
+    problem: GainProblem,
+    lower: Sequence[float],
+    upper: Sequence[float],
+    *,
+    shape: Sequence[int],
+    refinements: int,
+    survivors: int,
+    keep: int,
+    local_starts: int,
+    threads: int | None,
+    state: bytes | None,
+    save: _Save | None,
+    progress: _Progress | None,
+) -> _SearchFields:
+    """Coarse-to-fine grids, then local searches from their best points."""
+
+def search_gains_globally(
+    problem: GainProblem,
+    lower: Sequence[float],
+    upper: Sequence[float],
+    *,
+    method: str,
+    evaluations: int,
+    islands: int,
+    seed: int,
+    threads: int | None,
+    state: bytes | None,
+    save: _Save | None,
+    progress: _Progress | None,
+) -> _GlobalFields:
+    """Global search with a budget."""
+
+def gain_front(
+    problem: GainProblem,
+    lower: Sequence[float],
+    upper: Sequence[float],
+    *,
+    shape: Sequence[int],
+    refinements: int,
+    threads: int | None,
+    state: bytes | None,
+    save: _Save | None,
+    progress: _Progress | None,
+) -> _FrontFields:
+    """Gain sets that no other one beats in every objective."""
+
+def front_hypervolume(values: Sequence[float], objectives: int, reference: Sequence[float]) -> float:
+    """Volume between points, all objectives maximized, and a reference below them."""
+
 # ---- impact ---------------------------------------------------------------------------------
 
 _Row = tuple[
@@ -364,7 +511,6 @@ _Row = tuple[
 ]
 _Triplet = Sequence[float | _Array]
 _Limits = Sequence[tuple[str, float, Head | ConstrainedHead]]
-_Flags = npt.NDArray[np.bool_]
 
 class _ResponseFields(TypedDict):
     time: _Array
@@ -403,6 +549,14 @@ class _FoamFitFields(TypedDict):
     position_deviation: float
     degrees_of_freedom: int
     iterations: int
+
+class _StaticFitFields(TypedDict):
+    stiffness: float
+    force_offset: float
+    covariance: _Array
+    interval: _Array
+    force_deviation: float
+    degrees_of_freedom: int
 
 class _OpenLoopFields(TypedDict):
     acceleration: float
@@ -514,6 +668,30 @@ class DirectDrive:
     def linear(self) -> _Triple:
         """Return mass, damping and stiffness without friction and limit."""
 
+@final
+class CylinderController:
+    """Controller of the pneumatic cylinder."""
+
+    def __new__(
+        cls,
+        *,
+        acceleration_gain: float,
+        velocity_gain: float,
+        proportional: float,
+        derivative: float,
+        sample_time: float,
+    ) -> Self: ...
+    def command(
+        self,
+        *,
+        desired_position: float,
+        desired_velocity: float,
+        desired_acceleration: float,
+        position: float,
+        velocity: float,
+    ) -> float:
+        """Return the command of the valve."""
+
 def effective_one_joint(*, inertia: float, damping: float, stiffness: float, lever_arm: float) -> _Triple:
     """Return effective mass, damping and stiffness of one joint."""
 
@@ -527,6 +705,9 @@ def effective_two_joints(
     elbow: float,
 ) -> _Triple:
     """Return effective mass, damping and stiffness of two joints."""
+
+def impact_point_speed(rates: _Pair, *, second_link: float, lever_arm: float, elbow: float) -> float:
+    """Return the speed of the impact point of two joints."""
 
 def uniform_links(*, mass: _Pair, length: _Pair, elbow: float) -> list[list[float]]:
     """Return the mass matrix of two uniform links."""
@@ -568,6 +749,7 @@ def impact_metrics_batch(
     peaks_only: bool,
     threads: int | None,
     lanes: int | None,
+    progress: Callable[[int, int], object] | None,
 ) -> dict[str, npt.NDArray[Any]]:
     """Return columns of metrics, those that were asked for."""
 
@@ -585,6 +767,7 @@ def impact_simulate(
     step: float,
     runge_kutta: bool,
     unilateral: bool,
+    as_printed: bool,
     set_point: SetPoint,
 ) -> tuple[_ResponseFields, _Row]:
     """Return columns of the response, and the row of its metrics."""
@@ -629,6 +812,18 @@ def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Tripl
 def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the level that a signal exceeds without a break."""
 
+def recorded_metrics(
+    time: _Array,
+    acceleration_g: _Array,
+    *,
+    contact_force: _Array | None,
+    compression: _Array | None,
+    manipulator_velocity: _Array | None,
+    start: float | None,
+    linear_range: float,
+) -> _Row:
+    """Return numbers, status and whether the foam leaves its linear range, of a recorded impact."""
+
 def hic_half_sine(peak_g: float, duration: float, window: float) -> float:
     """Return the head injury criterion of a half sine."""
 
@@ -651,6 +846,9 @@ def identify_foam(
     seed: int,
 ) -> _FoamFitFields:
     """Return stiffness, damping ratio and friction from static and drop tests."""
+
+def fit_static(static_force: _Array, static_compression: _Array, intercept: bool) -> _StaticFitFields:
+    """Return the stiffness of a foam from a static test."""
 
 def drop_trajectory(
     time: _Array,

@@ -5,7 +5,7 @@ Every error derives from `HrsafetyError`, so one ``except`` clause catches them 
 
 from __future__ import annotations
 
-__all__ = ["HrsafetyError", "InvalidParameterError", "ShapeError", "SimulationError"]
+__all__ = ["HrsafetyError", "InvalidParameterError", "MissingExtraError", "ShapeError", "SimulationError"]
 
 
 class HrsafetyError(Exception):
@@ -72,3 +72,7 @@ class ShapeError(HrsafetyError, ValueError):
 
 class SimulationError(HrsafetyError):
     """A run could not be carried out, for example because its state became non-finite."""
+
+
+class MissingExtraError(HrsafetyError, ImportError):
+    """An optional library is needed that is not installed."""

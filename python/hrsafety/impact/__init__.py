@@ -2,6 +2,7 @@
 
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError, SimulationError
 from hrsafety.impact.batch import ImpactMetricsBatch, metrics_batch
+from hrsafety.impact.boundaries import FoamBoundary, foam_stiffness_lower, foam_stiffness_upper
 from hrsafety.impact.criteria import (
     HeadInjury,
     ImpactMetrics,
@@ -14,31 +15,23 @@ from hrsafety.impact.criteria import (
     hic_triangle,
     metrics,
 )
-from hrsafety.impact.design import (
-    FoamBoundary,
-    FoamDesign,
-    FoamFeasibility,
-    FoamLimits,
-    FoamMargin,
-    design_foam,
-    foam_stiffness_lower,
-    foam_stiffness_upper,
-)
+from hrsafety.impact.cylinder import CylinderController
+from hrsafety.impact.design import FoamDesign, design_foam
 from hrsafety.impact.direct_drive import DirectDrive, DirectDriveResponse, simulate_direct_drive
 from hrsafety.impact.filters import CHANNEL_CLASSES, channel_corner, channel_filter
-from hrsafety.impact.identification import (
+from hrsafety.impact.foam_tests import FoamFit, StaticFit, drop_trajectory, fit_static, identify_foam
+from hrsafety.impact.joint_tests import (
     DirectDriveFit,
-    FoamFit,
     OpenLoopFit,
     PdGains,
     TubeInertia,
-    drop_trajectory,
     fit_open_loop,
     identify_direct_drive,
-    identify_foam,
     pd_gains,
     tube_inertia,
 )
+from hrsafety.impact.joints import Joint, impact_point_speed, uniform_links
+from hrsafety.impact.limits import FoamFeasibility, FoamLimits, FoamMargin
 from hrsafety.impact.parameters import (
     FOAM_1,
     FOAM_2,
@@ -48,10 +41,9 @@ from hrsafety.impact.parameters import (
     ConstrainedHead,
     Foam,
     Head,
-    Joint,
     Manipulator,
-    uniform_links,
 )
+from hrsafety.impact.recorded import recorded_metrics
 from hrsafety.impact.response import ImpactResponse, SetPoint, simulate
 from hrsafety.impact.sensitivity import ImpactGradients, gradients
 
@@ -63,6 +55,7 @@ __all__ = [
     "MANIPULATOR_1",
     "MANIPULATOR_2",
     "ConstrainedHead",
+    "CylinderController",
     "DirectDrive",
     "DirectDriveFit",
     "DirectDriveResponse",
@@ -89,6 +82,7 @@ __all__ = [
     "SetPoint",
     "ShapeError",
     "SimulationError",
+    "StaticFit",
     "TubeInertia",
     "average_3ms",
     "channel_corner",
@@ -97,6 +91,7 @@ __all__ = [
     "design_foam",
     "drop_trajectory",
     "fit_open_loop",
+    "fit_static",
     "foam_stiffness_lower",
     "foam_stiffness_upper",
     "gradients",
@@ -106,9 +101,11 @@ __all__ = [
     "hic_triangle",
     "identify_direct_drive",
     "identify_foam",
+    "impact_point_speed",
     "metrics",
     "metrics_batch",
     "pd_gains",
+    "recorded_metrics",
     "simulate",
     "simulate_direct_drive",
     "tube_inertia",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, count, instance, numbers, positive, word
+from hrsafety._arguments import Array, callback, count, instance, numbers, positive, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria import ImpactMetrics
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
@@ -23,6 +24,8 @@ _MANIPULATOR = ("manipulator_mass", "manipulator_damping", "manipulator_stiffnes
 _FOAM = ("foam_stiffness", "foam_damping", "linear_range")
 _HEAD = ("head_mass", "head_damping", "head_stiffness")
 _LINEAR_RANGE = Foam(stiffness=0.0, damping=0.0).linear_range
+STATUS_WORDS: tuple[str, ...] = tuple(_hrsafety.impact_status_words())
+"""Every word that a status can be."""
 _FLAGS = ("status", "beyond_linear_range")
 
 
@@ -67,8 +70,14 @@ class ImpactMetricsBatch:
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
-        """Words of `ImpactMetrics.status`; ``"invalid_parameter"`` for a row that cannot be, all NaN."""
-        return np.asarray(np.asarray(_hrsafety.impact_status_words())[self._status_code])
+        """Words of `ImpactMetrics.status`, and of rows that cannot be, all NaN.
+
+        Those name the number that is bad, the first one if there are several:
+        ``"invalid_head_mass"``, ``"invalid_closing_speed"`` and so on, ``"invalid_"`` and the
+        argument of `metrics_batch`. ``"too_stiff"``: every number is possible by itself, but the
+        system has a root that is too fast for the horizon.
+        """
+        return np.asarray(np.asarray(STATUS_WORDS)[self._status_code])
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -121,6 +130,7 @@ def metrics_batch(
     fields: Literal["all", "peaks"] = "all",
     threads: int | None = None,
     lanes: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> ImpactMetricsBatch:
     """Return the loads of many impacts: every number may be an array, and all broadcast.
 
@@ -155,7 +165,9 @@ def metrics_batch(
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
     lanes : int or None
-        Impacts that are solved side by side: 1 or 8; chosen when ``None``.
+        Impacts that are solved side by side: 1, 4, 8 or 16; chosen when ``None``.
+    progress : callable or None
+        Called now and then as ``progress(done, total)`` with numbers of impacts, and at the end.
 
     Returns
     -------
@@ -198,6 +210,7 @@ def metrics_batch(
         peaks_only=word("fields", fields, ("all", "peaks")) == "peaks",
         threads=_threads(threads),
         lanes=None if lanes is None else count("lanes", lanes),
+        progress=callback("progress", progress),
     )
     columns = {name: values.reshape(shape) for name, values in result.items()}
     code = columns.pop("status_code")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import columns, flag, instance, number
+from hrsafety._arguments import Array, columns, flag, instance, number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 
@@ -266,21 +267,19 @@ def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float
     >>> round(impact.average_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
     7.5
     """
-    instants, signal = columns(time=time, acceleration_g=acceleration_g)
-    return MovingLevel._make(_hrsafety.moving_average(instants, signal, number("width", width)))
+    return _moving_level(_hrsafety.moving_average, time, acceleration_g, width)
 
 
 def clip_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 0.003) -> MovingLevel:
-    """Return the level that a signal exceeds for 3 contiguous ms.
+    """Return the level that a signal exceeds for 3 contiguous ms, which the average may be above.
+
+    Parameters, returns and errors are those of `average_3ms`: ``width`` is how long the level is
+    exceeded.
 
     Parameters
     ----------
-    time : array_like of shape (n,)
-        Sample times in s, increasing; the signal is linear between them.
-    acceleration_g : array_like of shape (n,)
-        Head acceleration in g.
-    width : float
-        How long the level is exceeded, in s.
+    time, acceleration_g, width
+        As for `average_3ms`.
 
     Returns
     -------
@@ -289,11 +288,8 @@ def clip_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 
 
     Raises
     ------
-    InvalidParameterError
-        If there are less than two samples, time does not increase, a value is not finite, or the signal
-        is shorter than the window.
-    ShapeError
-        If the arrays are not one-dimensional and of one length.
+    InvalidParameterError, ShapeError
+        As for `average_3ms`.
 
     Examples
     --------
@@ -301,8 +297,17 @@ def clip_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 
     >>> round(impact.clip_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
     5.0
     """
+    return _moving_level(_hrsafety.contiguous_level, time, acceleration_g, width)
+
+
+def _moving_level(
+    level: Callable[[Array, Array, float], tuple[float, float, float]],
+    time: npt.ArrayLike,
+    acceleration_g: npt.ArrayLike,
+    width: float,
+) -> MovingLevel:
     instants, signal = columns(time=time, acceleration_g=acceleration_g)
-    return MovingLevel._make(_hrsafety.contiguous_level(instants, signal, number("width", width)))
+    return MovingLevel._make(level(instants, signal, number("width", width)))
 
 
 def hic_half_sine(peak_g: float, duration: float, window: float = 0.015) -> float:

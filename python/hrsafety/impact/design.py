@@ -5,29 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, instance, not_negative, numbers, positive
+from hrsafety._arguments import Array, instance, not_negative
 from hrsafety.errors import InvalidParameterError
+from hrsafety.impact.boundaries import (
+    AnyHead,
+    FoamBoundary,
+    Impact,
+    Requirement,
+    boundary,
+    check_damping,
+    check_head,
+    check_impact,
+    requirement,
+)
+from hrsafety.impact.limits import FoamFeasibility, FoamLimits, FoamMargin
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 
-__all__ = [
-    "FoamBoundary",
-    "FoamDesign",
-    "FoamFeasibility",
-    "FoamLimits",
-    "FoamMargin",
-    "design_foam",
-    "foam_stiffness_lower",
-    "foam_stiffness_upper",
-]
-
-AnyHead = Head | ConstrainedHead
-_Requirement = tuple[str, float, _hrsafety.Head | _hrsafety.ConstrainedHead]
+__all__ = ["FoamDesign", "design_foam"]
 
 # Limits that are judged with the heavy head.
 _FORCE_LIKE = ("peak_contact_force", "max_compression")
@@ -37,138 +36,6 @@ _AGAINST_SOFTNESS = ("max_compression",)
 
 # Range of foam damping that a design looks at when none is given, in N s/m.
 DEFAULT_DAMPING = np.linspace(0.0, 300.0, 61)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FoamBoundary:
-    """Boundary of the foam stiffness over the foam damping; every point says what it is.
-
-    Attributes
-    ----------
-    damping : ndarray
-        C_c in N s/m, as given.
-    stiffness : ndarray
-        K_c in N/m, on the side that keeps the limits; NaN where there is no boundary.
-    status : ndarray of str
-        What meets the limit there. ``"local_maximum"``: a maximum inside the impact period.
-        ``"end_of_impact_period"``: the value at the end of it, or of the horizon.
-        ``"initial_step"``: the value at first contact. ``"jump"``: nothing; the load jumps over
-        the limit with the impact period. ``"none"``: there is no boundary, see `holds_below`
-        and `holds_above`.
-    limited_by : ndarray of str
-        Field of `FoamLimits` that is met; empty where there is no boundary.
-    crossings : tuple of ndarray
-        For each damping, in flat order, every stiffness at which the limits begin or cease to
-        be kept, increasing, in N/m. More than one or two are a reason to look closer.
-    crossing_status : tuple of tuple of str
-        The status of each.
-    holds_below, holds_above : ndarray of bool
-        Whether the limits are kept at the softest (1 N/m) and the stiffest (10 MN/m) foam that
-        was looked at.
-    """
-
-    damping: Array
-    stiffness: Array
-    status: npt.NDArray[np.str_]
-    limited_by: npt.NDArray[np.str_]
-    crossings: tuple[Array, ...]
-    crossing_status: tuple[tuple[str, ...], ...]
-    holds_below: npt.NDArray[np.bool_]
-    holds_above: npt.NDArray[np.bool_]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FoamLimits(Parameters):
-    """What a foam covering has to keep; ``None`` is no limit.
-
-    Parameters
-    ----------
-    peak_head_acceleration_g : float or None
-        In g.
-    peak_contact_force : float or None
-        In N.
-    hic15, hic36 : float or None
-        Head injury criterion.
-    max_compression : float or None
-        In m; the range in which the foam is linear.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a limit is not finite and positive, or there is none at all.
-
-    Examples
-    --------
-    >>> from hrsafety import impact
-    >>> impact.FoamLimits(peak_contact_force=500.0).peak_head_acceleration_g
-    10.0
-    """
-
-    peak_head_acceleration_g: float | None = 10.0
-    peak_contact_force: float | None = None
-    hic15: float | None = None
-    hic36: float | None = None
-    max_compression: float | None = 0.02
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        for name in (each.name for each in fields(self)):
-            value = getattr(self, name)
-            self._set(**{name: None if value is None else positive(name, value)})
-        if not self.given():
-            raise InvalidParameterError("limits", "hold at least one limit", "none")
-
-    def given(self) -> dict[str, float]:
-        """Return the limits that are set.
-
-        Returns
-        -------
-        dict of str to float
-            By name.
-        """
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        return {name: value for name, value in values.items() if value is not None}
-
-
-class FoamMargin(NamedTuple):
-    """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
-
-    Attributes
-    ----------
-    peak_head_acceleration_g, peak_contact_force, hic15, hic36, max_compression : float
-        1 - load / limit.
-    least : float
-        The least of them.
-    """
-
-    peak_head_acceleration_g: float
-    peak_contact_force: float
-    hic15: float
-    hic36: float
-    max_compression: float
-    least: float
-
-
-class FoamFeasibility(NamedTuple):
-    """Whether some foam keeps all limits, and if not how much slower the manipulator has to be.
-
-    Attributes
-    ----------
-    feasible : bool
-        Whether a foam exists at the closing speed of the design.
-    max_closing_speed : float
-        Largest closing speed at which one exists, in m/s.
-    slow_down : float
-        How much the closing speed has to be reduced, in m/s; 0 if feasible.
-    damping, stiffness : float
-        The foam that allows the largest closing speed, in N s/m and N/m.
-    """
-
-    feasible: bool
-    max_closing_speed: float
-    slow_down: float
-    damping: float
-    stiffness: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -198,10 +65,14 @@ class FoamDesign:
     force_head: AnyHead
     horizon: float | None = None
 
-    def _requirements(self, names: Sequence[str] | None = None) -> list[_Requirement]:
+    def _boundary(self, names: Sequence[str], damping: npt.ArrayLike, *, upper: bool) -> FoamBoundary:
+        impact = Impact(self.closing_speed, self.horizon)
+        return boundary(self.manipulator, self._requirements(names), damping, impact, upper=upper)
+
+    def _requirements(self, names: Sequence[str] | None = None) -> list[Requirement]:
         """Return limits with their heads, all or those of some names."""
         return [
-            _requirement(name, limit, self.force_head if name in _FORCE_LIKE else self.acceleration_head)
+            requirement(name, limit, self.force_head if name in _FORCE_LIKE else self.acceleration_head)
             for name, limit in self.limits.given().items()
             if names is None or name in names
         ]
@@ -224,7 +95,7 @@ class FoamDesign:
         InvalidParameterError
             If a damping is negative, or no such limit is set.
         """
-        return _boundary(self.manipulator, self._requirements(_AGAINST_STIFFNESS), damping, self, upper=True)
+        return self._boundary(_AGAINST_STIFFNESS, damping, upper=True)
 
     def lower(self, damping: npt.ArrayLike) -> FoamBoundary:
         """Return the stiffness from which on the compression is kept.
@@ -244,7 +115,7 @@ class FoamDesign:
         InvalidParameterError
             If a damping is negative, or no limit of compression is set.
         """
-        return _boundary(self.manipulator, self._requirements(_AGAINST_SOFTNESS), damping, self, upper=False)
+        return self._boundary(_AGAINST_SOFTNESS, damping, upper=False)
 
     def margin(self, foam: Foam) -> FoamMargin:
         """Return what a foam leaves of each limit.
@@ -353,7 +224,7 @@ class FoamDesign:
         >>> found.feasible, round(found.slow_down, 4)
         (False, 0.0746)
         """
-        given = _damping(damping).ravel()
+        given = check_damping(damping).ravel()
         if not given.size:
             raise InvalidParameterError("damping", "hold at least one number", damping)
         speeds, stiffness = self._fastest(given)
@@ -377,183 +248,6 @@ class FoamDesign:
             horizon=self.horizon,
         )
         return found["closing_speed"], found["stiffness"]
-
-
-def _requirement(name: str, limit: float, head: AnyHead) -> _Requirement:
-    return (name, limit, head._native)
-
-
-def _damping(damping: npt.ArrayLike) -> Array:
-    given = numbers("damping", damping)
-    bad = given[~(np.isfinite(given) & (given >= 0.0))]
-    if bad.size:
-        raise InvalidParameterError("damping", "be finite and not negative", float(bad[0]))
-    return given
-
-
-def _check_head(name: str, head: AnyHead) -> AnyHead:
-    if not isinstance(head, (Head, ConstrainedHead)):
-        raise InvalidParameterError(name, "be a Head or a ConstrainedHead", head)
-    return head
-
-
-def _boundary(
-    manipulator: Manipulator,
-    requirements: list[_Requirement],
-    damping: npt.ArrayLike,
-    impact: _Impact | FoamDesign,
-    *,
-    upper: bool,
-) -> FoamBoundary:
-    if not requirements:
-        raise InvalidParameterError("limits", "hold a limit for this boundary", "none")
-    given = _damping(damping)
-    found = _hrsafety.foam_boundary(
-        instance("manipulator", manipulator, Manipulator)._native,
-        requirements,
-        given.ravel(),
-        closing_speed=impact.closing_speed,
-        horizon=impact.horizon,
-        upper=upper,
-    )
-    return FoamBoundary(
-        damping=given,
-        stiffness=found["stiffness"].reshape(given.shape),
-        status=_words(found["status"], given.shape),
-        limited_by=_words(found["limited_by"], given.shape),
-        crossings=found["crossings"],
-        crossing_status=tuple(tuple(words) for words in found["crossing_status"]),
-        holds_below=found["holds_below"].reshape(given.shape),
-        holds_above=found["holds_above"].reshape(given.shape),
-    )
-
-
-def _words(words: list[str], shape: tuple[int, ...]) -> npt.NDArray[np.str_]:
-    return np.array(words, dtype=np.str_).reshape(shape)
-
-
-class _Impact(NamedTuple):
-    closing_speed: float
-    horizon: float | None
-
-
-def _impact(closing_speed: float, horizon: float | None) -> _Impact:
-    return _Impact(positive("closing_speed", closing_speed), None if horizon is None else positive("horizon", horizon))
-
-
-def foam_stiffness_upper(
-    manipulator: Manipulator,
-    *,
-    damping: npt.ArrayLike,
-    closing_speed: float,
-    head: Head | ConstrainedHead | None = None,
-    peak_head_acceleration_g: float | None = 10.0,
-    peak_contact_force: float | None = None,
-    hic15: float | None = None,
-    hic36: float | None = None,
-    horizon: float | None = None,
-) -> FoamBoundary:
-    """Return the foam stiffness up to which limits of acceleration, force or injury are kept.
-
-    The smallest stiffness above which they cease to be kept; safeguarded, on the exact response.
-
-    Parameters
-    ----------
-    manipulator : Manipulator
-        What hits.
-    damping : array_like
-        C_c in N s/m.
-    closing_speed : float
-        v_c in m/s, positive.
-    head : Head, ConstrainedHead or None
-        What is hit; ``Head.minimum()`` when ``None``. A constrained head has force limits only.
-    peak_head_acceleration_g : float or None
-        Limit in g.
-    peak_contact_force : float or None
-        Limit in N.
-    hic15, hic36 : float or None
-        Limits of the head injury criterion.
-    horizon : float or None
-        As for `metrics`.
-
-    Returns
-    -------
-    FoamBoundary
-        Of the shape of damping.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is out of range, or there is no limit.
-
-    Examples
-    --------
-    >>> from hrsafety import impact
-    >>> found = impact.foam_stiffness_upper(impact.MANIPULATOR_1, damping=[0.0, 71.9, 400.0], closing_speed=1.25)
-    >>> found.stiffness.round().tolist(), found.status.tolist()
-    ([46036.0, 55860.0, nan], ['local_maximum', 'local_maximum', 'none'])
-    """
-    hit = Head.minimum() if head is None else _check_head("head", head)
-    limits = {
-        "peak_head_acceleration_g": peak_head_acceleration_g,
-        "peak_contact_force": peak_contact_force,
-        "hic15": hic15,
-        "hic36": hic36,
-    }
-    requirements = [
-        _requirement(name, positive(name, limit), hit) for name, limit in limits.items() if limit is not None
-    ]
-    return _boundary(manipulator, requirements, damping, _impact(closing_speed, horizon), upper=True)
-
-
-def foam_stiffness_lower(
-    manipulator: Manipulator,
-    *,
-    damping: npt.ArrayLike,
-    closing_speed: float,
-    head: Head | ConstrainedHead | None = None,
-    max_compression: float = 0.02,
-    horizon: float | None = None,
-) -> FoamBoundary:
-    """Return the foam stiffness from which on the compression keeps its limit.
-
-    The smallest stiffness such that the limit is kept for every larger one.
-
-    Parameters
-    ----------
-    manipulator : Manipulator
-        What hits.
-    damping : array_like
-        C_c in N s/m.
-    closing_speed : float
-        v_c in m/s, positive.
-    head : Head, ConstrainedHead or None
-        What is hit; ``Head.maximum()`` when ``None``.
-    max_compression : float
-        Limit lambda in m.
-    horizon : float or None
-        As for `metrics`.
-
-    Returns
-    -------
-    FoamBoundary
-        Of the shape of damping.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is out of range.
-
-    Examples
-    --------
-    >>> from hrsafety import impact
-    >>> found = impact.foam_stiffness_lower(impact.MANIPULATOR_1, damping=[71.9, 250.0], closing_speed=1.25)
-    >>> found.stiffness.round().tolist(), found.status.tolist()
-    ([12444.0, 15420.0], ['local_maximum', 'jump'])
-    """
-    hit = Head.maximum() if head is None else _check_head("head", head)
-    requirements = [_requirement("max_compression", positive("max_compression", max_compression), hit)]
-    return _boundary(manipulator, requirements, damping, _impact(closing_speed, horizon), upper=False)
 
 
 def design_foam(
@@ -599,7 +293,7 @@ def design_foam(
     >>> design.accepts(impact.FOAM_1), design.feasibility([71.9]).feasible
     (True, True)
     """
-    speed, end = _impact(closing_speed, horizon)
+    speed, end = check_impact(closing_speed, horizon)
     return FoamDesign(
         manipulator=instance("manipulator", manipulator, Manipulator),
         limits=instance("limits", limits, FoamLimits),
@@ -607,6 +301,6 @@ def design_foam(
         acceleration_head=(
             Head.minimum() if acceleration_head is None else instance("acceleration_head", acceleration_head, Head)
         ),
-        force_head=Head.maximum() if force_head is None else _check_head("force_head", force_head),
+        force_head=Head.maximum() if force_head is None else check_head("force_head", force_head),
         horizon=end,
     )

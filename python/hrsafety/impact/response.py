@@ -18,6 +18,7 @@ __all__ = ["ImpactResponse", "SetPoint", "simulate"]
 
 Method = Literal["exact", "rk4"]
 Contact = Literal["linear", "unilateral"]
+Equations = Literal["corrected", "as_printed"]
 Segment = tuple[float, float]
 
 
@@ -160,8 +161,8 @@ class ImpactResponse:
     release_times, touch_times : ndarray
         When the bodies part and meet again, in s; unilateral contact only.
     metrics : ImpactMetrics
-        Loads on the continuous solution, see `metrics`. With a moving set-point peaks and
-        impact period over the duration; the other numbers are NaN.
+        Loads on the continuous solution, see `metrics`. With a moving set-point or the printed
+        equations peaks and impact period over the duration; the other numbers are NaN.
     """
 
     time: Array
@@ -189,6 +190,7 @@ def simulate(
     method: Method = "exact",
     contact: Contact = "linear",
     set_point: SetPoint | None = None,
+    equations: Equations = "corrected",
 ) -> ImpactResponse:
     """Return the histories of an impact.
 
@@ -219,6 +221,12 @@ def simulate(
         become negative, the foam relaxes and may be touched again.
     set_point : SetPoint or None
         Motion of the manipulator's set-point; constant speed when ``None``.
+    equations : str
+        ``"corrected"``: the equations above. ``"as_printed"``: the transfer functions with the
+        coefficient q_2 of (3.5.14) as the source prints it, without C_r C_h / (M_r M_h). It is no
+        law of two bodies (the compression is not their distance then) and is there only to
+        explain printed numbers: exact method, linear contact, set-point at constant speed. Both
+        are the same where C_r or C_h is zero.
 
     Returns
     -------
@@ -228,7 +236,9 @@ def simulate(
     Raises
     ------
     InvalidParameterError
-        If a value is out of range.
+        If a value is out of range, or the samples (at most 1e8) do not fit into memory.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C, however long the record is.
 
     Examples
     --------
@@ -254,6 +264,7 @@ def simulate(
         step=number("step", step),
         runge_kutta=word("method", method, ("exact", "rk4")) == "rk4",
         unilateral=word("contact", contact, ("linear", "unilateral")) == "unilateral",
+        as_printed=word("equations", equations, ("corrected", "as_printed")) == "as_printed",
         set_point=steady._native,
     )
     return ImpactResponse(**columns, metrics=ImpactMetrics._make(values))

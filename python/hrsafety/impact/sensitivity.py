@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
 from hrsafety.impact.criteria import ImpactMetrics, check_parts
@@ -25,12 +27,23 @@ class ImpactGradients:
     values : ndarray of shape (metrics, parameters)
         Derivative of each load with respect to each parameter, in SI units, loads in g in g;
         NaN where a load has no derivative.
+    parameters : ndarray of shape (parameters,)
+        The parameters, in SI units; NaN where there is none.
     """
 
     metrics: ImpactMetrics
     metric_names: tuple[str, ...]
     parameter_names: tuple[str, ...]
     values: Array
+    parameters: Array
+
+    @property
+    def relative(self) -> Array:
+        """Percent by which each load grows with one percent of each parameter, of the shape of `values`."""
+        loads = np.array([getattr(self.metrics, name) for name in self.metric_names])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share: Array = self.values * self.parameters / loads[:, np.newaxis]
+        return share
 
     def of(self, metric: str) -> dict[str, float]:
         """Return the derivatives of one load.
@@ -102,20 +115,35 @@ def gradients(
     ...     impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=1.25)
     >>> round(1e3 * found.of("peak_head_acceleration_g")["foam_stiffness"], 3)
     0.151
+
+    One percent more speed is one percent more force:
+
+    >>> round(float(found.relative[found.metric_names.index("peak_contact_force")][-2]), 9)
+    1.0
     """
     check_parts(manipulator, foam, head)
+    speed = number("closing_speed", closing_speed)
+    own_speed = None if manipulator_speed is None else number("manipulator_speed", manipulator_speed)
     values, matrix = _hrsafety.impact_gradients(
         manipulator._native,
         foam._native,
         head._native,
-        number("closing_speed", closing_speed),
-        None if manipulator_speed is None else number("manipulator_speed", manipulator_speed),
+        speed,
+        own_speed,
         None if horizon is None else number("horizon", horizon),
     )
     metrics, parameters = _hrsafety.impact_gradient_names()
+    parts = {"manipulator": manipulator, "foam": foam, "head": head}
+    given = {
+        f"{owner}_{name}": float(getattr(part, name, np.nan))
+        for owner, part in parts.items()
+        for name in ("mass", "damping", "stiffness")
+    }
+    given |= {"closing_speed": speed, "manipulator_speed": speed if own_speed is None else own_speed}
     return ImpactGradients(
         metrics=ImpactMetrics._make(values),
         metric_names=tuple(metrics),
         parameter_names=tuple(parameters),
         values=matrix,
+        parameters=np.array([given[name] for name in parameters]),
     )

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import flag, number, numbers, sequence
+from hrsafety._arguments import callback, count, flag, number, numbers, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws import VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
@@ -181,21 +181,13 @@ def simulate_batch(
     >>> len(table), set(table.outcome.tolist())
     (9, {'arrived'})
     """
-    scenarios = sequence("scenarios", "be a sequence of Scenario", scenarios)
-    for index, scenario in enumerate(scenarios):
-        _require(f"scenarios[{index}]", scenario, Scenario)
+    scenes = check_scenarios(scenarios)
     _require("law", law, VirtualForceField)
-    if not scenarios:
-        raise InvalidParameterError("scenarios", "hold at least one scenario", "an empty list")
-    for name, value in (("threads", threads), ("lanes", lanes)):
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
-            raise InvalidParameterError(name, "be a positive integer or None", value)
-    if threads is not None and threads > MOST_THREADS:
-        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
-    if progress is not None and not callable(progress):
-        raise InvalidParameterError("progress", "be callable or None", progress)
+    check_threads(threads)
+    if lanes is not None:
+        count("lanes", lanes)
     columns = _hrsafety.simulate_batch(
-        [scenario._native for scenario in scenarios],
+        [scenario._native for scenario in scenes],
         law._native,
         _gain_sets(law, gains),
         check_weights(weights),
@@ -206,9 +198,25 @@ def simulate_batch(
         descent=flag("descent", descent),
         threads=threads,
         lanes=lanes,
-        progress=progress,
+        progress=callback("progress", progress),
     )
     return BatchSummary(**columns)
+
+
+def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
+    """Return the scenarios if there is at least one and nothing else among them."""
+    scenes = sequence("scenarios", "be a sequence of Scenario", scenarios)
+    for index, scenario in enumerate(scenes):
+        _require(f"scenarios[{index}]", scenario, Scenario)
+    if not scenes:
+        raise InvalidParameterError("scenarios", "hold at least one scenario", "an empty list")
+    return scenes
+
+
+def check_threads(threads: int | None) -> None:
+    """Refuse a number of threads that is not a positive integer or exhausts the system."""
+    if threads is not None and count("threads", threads) > MOST_THREADS:
+        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
 
 
 def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:

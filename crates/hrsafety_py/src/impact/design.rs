@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::arrays::Fields;
 use crate::errors::CoreError;
 use crate::impact::parameters::{Foam, Manipulator, Target};
-use crate::impact::watch::watched_each;
+use crate::watch::watched_each;
 
 /// Quantities in the order of Python's limits.
 const QUANTITIES: [Quantity; 5] = [

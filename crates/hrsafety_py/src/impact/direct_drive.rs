@@ -5,8 +5,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
-use crate::errors::{CoreError, CoreResult};
+use crate::errors::CoreResult;
 use crate::impact::parameters::{Foam, Head};
+use crate::watch::{Report, watched};
 
 /// Direct-drive joint with its controller.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -71,9 +72,10 @@ pub fn simulate_direct_drive<'py>(
         step,
     };
     let (drive, foam, head) = (&drive.0, &foam.0, &head.0);
-    let run = py
-        .detach(|| direct_drive::simulate_direct_drive(drive, foam, head, &impact))
-        .map_err(CoreError::from)?;
+    let run = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        direct_drive::simulate_direct_drive_until(drive, foam, head, &impact, &interrupted)
+    })?;
     let fields = Fields::new(py);
     fields.vector("time", run.time)?;
     fields.vector("manipulator_position", run.manipulator_position)?;

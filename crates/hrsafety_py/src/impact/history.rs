@@ -4,7 +4,8 @@ use impact_core::criteria::{self, MetricOptions, Metrics, Status};
 use impact_core::drive::{self, DriveSegment, Stop};
 use impact_core::parameters::{GRAVITY, System, Target};
 use impact_core::response::{
-    Approach, Contact, Method, ResponsePeaks, SimulationOptions, simulate,
+    Approach, Contact, Equations, Method, Response, ResponsePeaks, SimulationOptions, simulate,
+    simulate_until,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -13,6 +14,10 @@ use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::impact::parameters::{self, Foam, Manipulator, system};
 use crate::impact::single::row_tuple;
+use crate::watch::{Report, watched};
+
+/// Samples of a response that takes less than a look at signals.
+const SHORT: f64 = 1e4;
 
 /// Motion of the manipulator's set-point.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -65,8 +70,9 @@ pub fn stopping_segments(
 /// Columns of the response, and the row of its metrics.
 #[pyfunction]
 #[pyo3(signature = (manipulator, foam, head, *, closing_speed, manipulator_speed, duration, step,
-    runge_kutta, unilateral, set_point))]
+    runge_kutta, unilateral, as_printed, set_point))]
 #[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::fn_params_excessive_bools)] // keyword-only in Python
 #[allow(clippy::needless_pass_by_value)] // extracted from a Python object
 pub fn impact_simulate<'py>(
     py: Python<'py>,
@@ -79,6 +85,7 @@ pub fn impact_simulate<'py>(
     step: f64,
     runge_kutta: bool,
     unilateral: bool,
+    as_printed: bool,
     set_point: &SetPoint,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyTuple>)> {
     let system = system(manipulator, foam, &head);
@@ -100,10 +107,13 @@ pub fn impact_simulate<'py>(
             Contact::Linear
         },
         set_point: set_point.0.clone(),
+        equations: if as_printed {
+            Equations::AsPrinted
+        } else {
+            Equations::Corrected
+        },
     };
-    let run = py
-        .detach(|| simulate(&system, &approach, &options))
-        .map_err(CoreError::from)?;
+    let run = run(py, &system, &approach, &options)?;
     let row = metrics(&system, &approach, &options, run.peaks)?;
     let fields = Fields::new(py);
     fields.vector("time", run.time)?;
@@ -119,14 +129,30 @@ pub fn impact_simulate<'py>(
     Ok((fields.finish(), row_tuple(py, &row, foam.0.linear_range)?))
 }
 
-/// Metrics of a response: all of them at constant speed, peaks with a moving set-point.
+/// The response; only long work is worth a thread of its own.
+fn run(
+    py: Python<'_>,
+    system: &System,
+    approach: &Approach,
+    options: &SimulationOptions,
+) -> PyResult<Response> {
+    if options.duration <= SHORT * options.step {
+        let run = py.detach(|| simulate(system, approach, options));
+        return Ok(run.map_err(CoreError::from)?);
+    }
+    watched(py, Report::none(), |control| {
+        simulate_until(system, approach, options, &|| control.interrupted())
+    })
+}
+
+/// Metrics of a response: all of them at constant speed with the right equations, peaks else.
 fn metrics(
     system: &System,
     approach: &Approach,
     options: &SimulationOptions,
     peaks: Option<ResponsePeaks>,
 ) -> CoreResult<Metrics> {
-    if options.set_point.segments.is_empty() {
+    if options.set_point.segments.is_empty() && options.equations == Equations::Corrected {
         let settings = MetricOptions {
             manipulator_speed: approach.manipulator_speed,
             ..MetricOptions::default()

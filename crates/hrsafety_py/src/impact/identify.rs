@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
+use crate::watch::{Report, watched};
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 
@@ -58,9 +59,10 @@ pub fn identify_foam<'py>(
         });
     }
     let (force, compression) = (static_force.as_slice()?, static_compression.as_slice()?);
-    let fit = py
-        .detach(|| identify::identify_foam(force, compression, &signals, &settings))
-        .map_err(CoreError::from)?;
+    let fit = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        identify::identify_foam_until(force, compression, &signals, &settings, &interrupted)
+    })?;
     let fields = Fields::new(py);
     fields.value("stiffness", fit.stiffness)?;
     fields.value("damping_ratio", fit.damping_ratio)?;
@@ -76,6 +78,28 @@ pub fn identify_foam<'py>(
     fields.value("position_deviation", fit.position_deviation)?;
     fields.value("degrees_of_freedom", fit.degrees_of_freedom)?;
     fields.value("iterations", fit.iterations)?;
+    Ok(fields.finish())
+}
+
+/// Stiffness of a foam from a static test.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn fit_static<'py>(
+    py: Python<'py>,
+    static_force: Samples<'py>,
+    static_compression: Samples<'py>,
+    intercept: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (force, compression) = (static_force.as_slice()?, static_compression.as_slice()?);
+    let line = identify::fit_static(force, compression, intercept).map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    fields.value("stiffness", line.slope)?;
+    fields.value("force_offset", line.intercept)?;
+    fields.matrix("covariance", rows(&line.covariance), 2, 2)?;
+    let interval = rows(&[line.slope_interval, line.intercept_interval]);
+    fields.matrix("interval", interval, 2, 2)?;
+    fields.value("force_deviation", line.residual_deviation)?;
+    fields.value("degrees_of_freedom", line.degrees_of_freedom)?;
     Ok(fields.finish())
 }
 

@@ -1,6 +1,6 @@
 //! Joints and the effective manipulator that they make.
 
-use impact_core::effective::{OneJoint, TwoJoints, UniformLinks};
+use impact_core::effective::{OneJoint, Reach, TwoJoints, UniformLinks};
 use impact_core::joint;
 use impact_core::parameters::Manipulator;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -104,6 +104,23 @@ pub fn effective_two_joints(
         elbow,
     };
     Ok(triple(joints.manipulator()?))
+}
+
+/// Speed of the impact point of two joints.
+#[pyfunction]
+#[pyo3(signature = (rates, *, second_link, lever_arm, elbow))]
+pub fn impact_point_speed(
+    rates: [f64; 2],
+    second_link: f64,
+    lever_arm: f64,
+    elbow: f64,
+) -> CoreResult<f64> {
+    let reach = Reach {
+        second_link,
+        lever_arm,
+        elbow,
+    };
+    Ok(reach.speed(rates)?)
 }
 
 /// Mass matrix of two uniform links.

@@ -4,13 +4,17 @@ use impact_core::batch::{
     BatchOptions, Column, Columns, FieldSet, HeadColumns, Width, metrics_batch,
 };
 use impact_core::criteria::Status;
+use impact_core::error::{ImpactError, finite};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
-use crate::impact::watch::watched;
+use crate::watch::{Control, Report, watched};
+
+/// Rows between two looks whether to stop.
+const CHECK: usize = 4096;
 
 /// One number for all rows, or one for each.
 #[derive(FromPyObject)]
@@ -28,16 +32,71 @@ impl Numbers<'_> {
     }
 }
 
-/// Words of the codes in a batch.
+/// Names of the numbers of a row, as the core's errors and as Python's arguments call them.
+const NUMBERS: [(&str, &str); 11] = [
+    ("manipulator.mass", "invalid_manipulator_mass"),
+    ("manipulator.damping", "invalid_manipulator_damping"),
+    ("manipulator.stiffness", "invalid_manipulator_stiffness"),
+    ("foam.stiffness", "invalid_foam_stiffness"),
+    ("foam.damping", "invalid_foam_damping"),
+    ("foam.linear_range", "invalid_linear_range"),
+    ("head.mass", "invalid_head_mass"),
+    ("head.damping", "invalid_head_damping"),
+    ("head.stiffness", "invalid_head_stiffness"),
+    ("closing_speed", "invalid_closing_speed"),
+    ("manipulator_speed", "invalid_manipulator_speed"),
+];
+
+/// Words of the codes in a batch: those of the core, then one for each number that may be bad.
 #[pyfunction]
 pub fn impact_status_words() -> Vec<&'static str> {
-    Status::ALL.map(Status::word).to_vec()
+    let numbers = NUMBERS.iter().map(|(_, word)| *word);
+    Status::ALL
+        .map(Status::word)
+        .into_iter()
+        .chain(numbers)
+        .collect()
+}
+
+/// Code of a row that cannot be, from the first number that its check refuses.
+fn invalid_code(columns: &Columns<'_>, row: usize) -> Option<u8> {
+    let [closing_speed, manipulator_speed] = columns.speeds(row);
+    let refused = columns
+        .system(row)
+        .checked()
+        .and(finite("closing_speed", closing_speed))
+        .and(finite("manipulator_speed", manipulator_speed));
+    let Err(ImpactError::InvalidParameter { name, .. }) = refused else {
+        return None;
+    };
+    let place = NUMBERS.iter().position(|(known, _)| *known == name)?;
+    (Status::ALL.len() + place).try_into().ok()
+}
+
+/// Says which number is bad in every row that cannot be.
+fn name_bad_numbers(
+    columns: &Columns<'_>,
+    status: &mut [u8],
+    control: &Control,
+) -> Result<(), ImpactError> {
+    let invalid = Status::ALL
+        .iter()
+        .position(|each| *each == Status::InvalidParameter);
+    for (row, code) in status.iter_mut().enumerate() {
+        if row.is_multiple_of(CHECK) && control.interrupted() {
+            return Err(ImpactError::Interrupted);
+        }
+        if Some(usize::from(*code)) == invalid {
+            *code = invalid_code(columns, row).unwrap_or(*code);
+        }
+    }
+    Ok(())
 }
 
 /// Columns of metrics, those that were asked for.
 #[pyfunction]
 #[pyo3(signature = (*, manipulator, foam, head, closing_speed, manipulator_speed, horizon,
-    peaks_only, threads, lanes))]
+    peaks_only, threads, lanes, progress))]
 #[allow(clippy::too_many_arguments)] // keyword-only in Python
 #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn impact_metrics_batch<'py>(
@@ -51,6 +110,7 @@ pub fn impact_metrics_batch<'py>(
     peaks_only: bool,
     threads: Option<usize>,
     lanes: Option<usize>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let columns = Columns {
         manipulator_mass: manipulator[0].column()?,
@@ -84,8 +144,13 @@ pub fn impact_metrics_batch<'py>(
         },
         ..BatchOptions::default()
     };
-    let rows = watched(py, |interrupted| {
-        metrics_batch(&columns, &options, interrupted)
+    let report = Report::new(progress.as_ref(), columns.rows().map_err(CoreError::from)?);
+    let rows = watched(py, report, |control| {
+        let interrupted = || control.interrupted();
+        let count = |rows| control.count(rows);
+        let mut found = metrics_batch(&columns, &options, &interrupted, &count)?;
+        name_bad_numbers(&columns, &mut found.status, control)?;
+        Ok::<_, ImpactError>(found)
     })?;
     let fields = Fields::new(py);
     let named = [

@@ -1,5 +1,6 @@
 //! Impact: conversions only, everything is computed by the core.
 
+pub mod cylinder;
 pub mod design;
 pub mod direct_drive;
 pub mod history;
@@ -9,4 +10,3 @@ pub mod many;
 pub mod parameters;
 pub mod signal;
 pub mod single;
-pub mod watch;

@@ -1,10 +1,13 @@
 //! Injury criteria of sampled signals.
 
-use impact_core::signal;
+use impact_core::parameters::GRAVITY;
+use impact_core::signal::{self, Recording};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::errors::CoreError;
+use crate::impact::single::row_tuple;
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 /// Value, start, end.
@@ -71,4 +74,39 @@ pub fn hic_square(peak_g: f64, duration: f64, window: f64) -> PyResult<f64> {
 #[pyfunction]
 pub fn hic_triangle(peak_g: f64, duration: f64, window: f64) -> PyResult<f64> {
     Ok(signal::hic_triangle(peak_g, duration, window).map_err(CoreError::from)?)
+}
+
+fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
+    Ok(samples.map(|samples| samples.as_slice()).transpose()?)
+}
+
+/// Numbers, status and whether the foam leaves its linear range, of a recorded impact.
+#[pyfunction]
+#[pyo3(signature = (time, acceleration_g, *, contact_force, compression, manipulator_velocity,
+    start, linear_range))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn recorded_metrics<'py>(
+    py: Python<'py>,
+    time: Samples<'py>,
+    acceleration_g: Samples<'py>,
+    contact_force: Option<Samples<'py>>,
+    compression: Option<Samples<'py>>,
+    manipulator_velocity: Option<Samples<'py>>,
+    start: Option<f64>,
+    linear_range: f64,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let time = time.as_slice()?;
+    let recording = Recording {
+        time,
+        acceleration_g: acceleration_g.as_slice()?,
+        contact_force: slice(contact_force.as_ref())?,
+        compression: slice(compression.as_ref())?,
+        manipulator_velocity: slice(manipulator_velocity.as_ref())?,
+        start: start.or(time.first().copied()).unwrap_or(f64::NAN),
+        linear_range,
+        gravity: GRAVITY,
+    };
+    let row = recording.metrics().map_err(CoreError::from)?;
+    row_tuple(py, &row, linear_range)
 }

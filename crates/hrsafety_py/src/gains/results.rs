@@ -1,0 +1,117 @@
+//! What searches return, as dictionaries of arrays.
+
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use vff_core::optimize::{Candidate, Front, GlobalSearch, LocalSearch, Round, Search};
+
+use crate::arrays::Fields;
+
+/// A grid search with its local searches.
+pub fn search_fields(py: Python<'_>, found: Search) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    fields.value("best", best_fields(py, found.best.as_ref())?)?;
+    let rounds = found
+        .rounds
+        .into_iter()
+        .map(|round| round_fields(py, round));
+    fields.value("rounds", list(py, rounds)?)?;
+    let local = found.local.iter().map(|local| local_fields(py, local));
+    fields.value("local", list(py, local)?)?;
+    candidates(&fields, &found.top)?;
+    fields.value("evaluations", found.evaluations)?;
+    fields.value("failures", found.failures)?;
+    fields.value("interrupted", found.interrupted)?;
+    Ok(fields.finish())
+}
+
+/// A global search.
+pub fn global_fields<'py>(py: Python<'py>, found: &GlobalSearch) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    fields.value("best", best_fields(py, found.best.as_ref())?)?;
+    let history = found
+        .history
+        .iter()
+        .flat_map(|(evaluations, best)| [*evaluations as f64, *best])
+        .collect();
+    fields.matrix("history", history, found.history.len(), 2)?;
+    fields.value("evaluations", found.evaluations)?;
+    fields.value("failures", found.failures)?;
+    fields.value("interrupted", found.interrupted)?;
+    Ok(fields.finish())
+}
+
+/// A front.
+pub fn front_fields(
+    py: Python<'_>,
+    found: Front,
+    dimension: usize,
+    objectives: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    let rows = found.points.len() / dimension;
+    fields.matrix("points", found.points, rows, dimension)?;
+    fields.matrix("values", found.values, rows, objectives)?;
+    fields.value("evaluations", found.evaluations)?;
+    fields.value("failures", found.failures)?;
+    fields.value("interrupted", found.interrupted)?;
+    Ok(fields.finish())
+}
+
+fn list<'py>(
+    py: Python<'py>,
+    entries: impl Iterator<Item = PyResult<Bound<'py, PyDict>>>,
+) -> PyResult<Bound<'py, PyList>> {
+    PyList::new(py, entries.collect::<PyResult<Vec<_>>>()?)
+}
+
+/// The best point; without one the search was interrupted before anything was evaluated.
+fn best_fields<'py>(py: Python<'py>, best: Option<&Candidate>) -> PyResult<Bound<'py, PyDict>> {
+    let found = best.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
+    let fields = Fields::new(py);
+    fields.vector("gains", found.point.clone())?;
+    fields.value("value", found.score.value)?;
+    fields.value("violation", found.score.violation)?;
+    fields.value("failed", found.score.failed)?;
+    Ok(fields.finish())
+}
+
+fn candidates(fields: &Fields<'_>, found: &[Candidate]) -> PyResult<()> {
+    let points = found.iter().flat_map(|entry| entry.point.iter().copied());
+    fields.matrix("top", points.collect(), found.len(), 4)?;
+    let values = found.iter().map(|entry| entry.score.value);
+    fields.vector("top_values", values.collect())?;
+    let missed = found.iter().map(|entry| entry.score.violation);
+    fields.vector("top_violation", missed.collect())
+}
+
+fn round_fields(py: Python<'_>, round: Round) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    let axes = PyList::empty(py);
+    for axis in round.axes {
+        axes.append(numpy::PyArray1::from_vec(py, axis))?;
+    }
+    fields.value("axes", axes)?;
+    fields.vector("increments", round.increments)?;
+    fields.value("evaluations", round.evaluations)?;
+    fields.value("failures", round.failures)?;
+    fields.value("best_value", round.best.score.value)?;
+    fields.value("violation", round.best.score.violation)?;
+    fields.vector("best_gains", round.best.point)?;
+    fields.vector("survivor_low", round.survivor_low)?;
+    fields.vector("survivor_high", round.survivor_high)?;
+    fields.value("worst_survivor", round.worst_survivor.value)?;
+    Ok(fields.finish())
+}
+
+fn local_fields<'py>(py: Python<'py>, local: &LocalSearch) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    fields.vector("start", local.start.point.clone())?;
+    fields.value("start_value", local.start.score.value)?;
+    fields.vector("gains", local.best.point.clone())?;
+    fields.value("value", local.best.score.value)?;
+    fields.value("violation", local.best.score.violation)?;
+    fields.value("evaluations", local.evaluations)?;
+    fields.value("status", local.status.word())?;
+    Ok(fields.finish())
+}

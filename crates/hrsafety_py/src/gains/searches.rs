@@ -1,0 +1,155 @@
+//! Searches over a gain problem.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::error::Result;
+use vff_core::optimize::{
+    Bounds, FrontOptions, GlobalMethod, GlobalOptions, GridOptions, LocalOptions, Problem,
+    SearchOptions, SearchState, front_search, global_search, hypervolume, search,
+};
+
+use crate::errors::CoreError;
+use crate::gains::problem::GainProblem;
+use crate::gains::results::{front_fields, global_fields, search_fields};
+use crate::gains::watch::{Followers, follow};
+use crate::parameters::word;
+
+/// The state that a search is resumed from.
+fn state_of(state: Option<&[u8]>) -> Result<Option<SearchState>> {
+    state.map(SearchState::from_bytes).transpose()
+}
+
+/// Coarse-to-fine grids, then local searches from their best points.
+#[pyfunction]
+#[pyo3(signature = (problem, lower, upper, *, shape, refinements, survivors, keep, local_starts,
+    threads, state, save, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
+pub fn search_gains<'py>(
+    py: Python<'py>,
+    problem: PyRef<'py, GainProblem>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    shape: Vec<usize>,
+    refinements: usize,
+    survivors: usize,
+    keep: usize,
+    local_starts: usize,
+    threads: Option<usize>,
+    state: Option<&[u8]>,
+    save: Option<Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
+    let local = LocalOptions {
+        starts: local_starts,
+        ..LocalOptions::default()
+    };
+    let options = SearchOptions {
+        grid: GridOptions {
+            shape,
+            refinements,
+            survivors,
+            keep,
+        },
+        local: (local_starts > 0).then_some(local),
+        threads,
+    };
+    let resume = state_of(state).map_err(CoreError::from)?;
+    let followers = Followers { progress, save };
+    let problem: &GainProblem = &problem;
+    let found = py.detach(|| {
+        follow(problem, &followers, |observer| {
+            search(problem, &bounds, &options, observer, resume.as_ref())
+        })
+    })?;
+    search_fields(py, found)
+}
+
+/// Global search with a budget.
+#[pyfunction]
+#[pyo3(signature = (problem, lower, upper, *, method, evaluations, islands, seed,
+    threads, state, save, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
+pub fn search_gains_globally<'py>(
+    py: Python<'py>,
+    problem: PyRef<'py, GainProblem>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    method: &Bound<'py, PyAny>,
+    evaluations: u64,
+    islands: usize,
+    seed: u64,
+    threads: Option<usize>,
+    state: Option<&[u8]>,
+    save: Option<Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
+    let methods = [
+        (
+            "differential_evolution",
+            GlobalMethod::DifferentialEvolution,
+        ),
+        ("cma_es", GlobalMethod::CmaEs),
+    ];
+    let rule = "be \"differential_evolution\" or \"cma_es\"";
+    let options = GlobalOptions {
+        method: word("method", method, rule, &methods)?,
+        evaluations,
+        islands,
+        seed,
+        threads,
+    };
+    let resume = state_of(state).map_err(CoreError::from)?;
+    let followers = Followers { progress, save };
+    let problem: &GainProblem = &problem;
+    let found = py.detach(|| {
+        follow(problem, &followers, |observer| {
+            global_search(problem, &bounds, &options, observer, resume.as_ref())
+        })
+    })?;
+    global_fields(py, &found)
+}
+
+/// Gain sets that no other one beats in every objective.
+#[pyfunction]
+#[pyo3(signature = (problem, lower, upper, *, shape, refinements, threads, state, save, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
+pub fn gain_front<'py>(
+    py: Python<'py>,
+    problem: PyRef<'py, GainProblem>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    shape: Vec<usize>,
+    refinements: usize,
+    threads: Option<usize>,
+    state: Option<&[u8]>,
+    save: Option<Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
+    let options = FrontOptions {
+        shape,
+        refinements,
+        threads,
+    };
+    let resume = state_of(state).map_err(CoreError::from)?;
+    let followers = Followers { progress, save };
+    let problem: &GainProblem = &problem;
+    let found = py.detach(|| {
+        follow(problem, &followers, |observer| {
+            front_search(problem, &bounds, &options, observer, resume.as_ref())
+        })
+    })?;
+    front_fields(py, found, problem.dimension(), problem.objectives())
+}
+
+/// Volume between points, all objectives maximized, and a reference below them.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
+pub fn front_hypervolume(values: Vec<f64>, objectives: usize, reference: Vec<f64>) -> f64 {
+    hypervolume(&values, objectives, &reference)
+}

@@ -1,0 +1,51 @@
+//! Controller of the pneumatic cylinder.
+
+use impact_core::identify::{self, DesiredMotion};
+use pyo3::prelude::*;
+
+use crate::errors::CoreResult;
+
+/// Controller of the pneumatic cylinder.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CylinderController(identify::CylinderController);
+
+#[pymethods]
+impl CylinderController {
+    #[new]
+    #[pyo3(signature = (*, acceleration_gain, velocity_gain, proportional, derivative, sample_time))]
+    fn new(
+        acceleration_gain: f64,
+        velocity_gain: f64,
+        proportional: f64,
+        derivative: f64,
+        sample_time: f64,
+    ) -> CoreResult<Self> {
+        let controller = identify::CylinderController {
+            acceleration_gain,
+            velocity_gain,
+            proportional,
+            derivative,
+            sample_time,
+        };
+        Ok(Self(controller.checked()?))
+    }
+
+    /// Command of the valve.
+    #[pyo3(signature = (*, desired_position, desired_velocity, desired_acceleration, position,
+        velocity))]
+    fn command(
+        &self,
+        desired_position: f64,
+        desired_velocity: f64,
+        desired_acceleration: f64,
+        position: f64,
+        velocity: f64,
+    ) -> CoreResult<f64> {
+        let desired = DesiredMotion {
+            position: desired_position,
+            velocity: desired_velocity,
+            acceleration: desired_acceleration,
+        };
+        Ok(self.0.command(&desired, position, velocity)?)
+    }
+}

@@ -1,0 +1,129 @@
+//! Long work of the cores: it hears that it is to stop, and tells how much is done.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use impact_core::error::ImpactError;
+use pyo3::prelude::*;
+
+use crate::errors::CoreError;
+use crate::signals::attended;
+
+/// What the work hears and tells while it runs.
+#[derive(Default)]
+pub struct Control {
+    cancelled: AtomicBool,
+    done: AtomicUsize,
+}
+
+impl Control {
+    /// Whether to stop.
+    pub fn interrupted(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// So much more has been done.
+    pub fn count(&self, more: usize) {
+        self.done.fetch_add(more, Ordering::Relaxed);
+    }
+}
+
+/// A Python function that hears how much of how much is done.
+#[derive(Clone, Copy, Default)]
+pub struct Report<'a> {
+    call: Option<&'a Py<PyAny>>,
+    total: usize,
+}
+
+impl<'a> Report<'a> {
+    /// A function, if there is one, and how much there is to do.
+    pub fn new(call: Option<&'a Py<PyAny>>, total: usize) -> Self {
+        Self { call, total }
+    }
+
+    /// Nobody hears of it.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// Looks at signals and tells what is new.
+    fn look(&self, done: usize, reported: &mut Option<usize>) -> PyResult<()> {
+        Python::attach(|py| {
+            py.check_signals()?;
+            match self.call {
+                Some(call) if *reported != Some(done) => {
+                    *reported = Some(done);
+                    call.call1(py, (done, self.total)).map(|_| ())
+                }
+                _ => Ok(()),
+            }
+        })
+    }
+}
+
+/// Works in another thread while this one looks at signals and reports progress; the work is told
+/// to stop when one of them raises an exception, and what it returns then is dropped.
+pub fn watched<T: Send, E: Send>(
+    py: Python<'_>,
+    report: Report<'_>,
+    work: impl FnOnce(&Control) -> Result<T, E> + Send,
+) -> PyResult<T>
+where
+    CoreError: From<E>,
+{
+    let control = Control::default();
+    let mut reported = None;
+    let (result, raised) = py.detach(|| {
+        attended(
+            || work(&control),
+            || report.look(control.done.load(Ordering::Relaxed), &mut reported),
+            || control.cancelled.store(true, Ordering::Relaxed),
+        )
+    })?;
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    let found = result.map_err(CoreError::from)?;
+    if report.call.is_some() {
+        report.look(report.total, &mut reported)?;
+    }
+    Ok(found)
+}
+
+/// Work of one item on all cores, as `watched`; results stand in the order of the items.
+pub fn watched_each<T: Send>(
+    py: Python<'_>,
+    items: &[f64],
+    work: impl Fn(f64) -> Result<T, ImpactError> + Sync,
+) -> PyResult<Vec<T>> {
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let next = AtomicUsize::new(0);
+    watched(py, Report::none(), |control| {
+        let share = || -> Result<Vec<(usize, T)>, ImpactError> {
+            let mut done = Vec::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(item) = items.get(index) else {
+                    return Ok(done);
+                };
+                if control.interrupted() {
+                    return Err(ImpactError::Interrupted);
+                }
+                done.push((index, work(*item)?));
+            }
+        };
+        let shares = std::thread::scope(|scope| {
+            let workers: Vec<_> = (1..cores.min(items.len()))
+                .map(|_| scope.spawn(share))
+                .collect();
+            let own = share();
+            let others = workers
+                .into_iter()
+                .map(|worker| worker.join().unwrap_or(Err(ImpactError::Interrupted)));
+            others.chain([own]).collect::<Result<Vec<_>, _>>()
+        })?;
+        let mut all: Vec<_> = shares.into_iter().flatten().collect();
+        all.sort_by_key(|(index, _)| *index);
+        Ok::<_, ImpactError>(all.into_iter().map(|(_, found)| found).collect())
+    })
+}

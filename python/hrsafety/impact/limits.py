@@ -1,0 +1,105 @@
+"""What a foam covering has to keep, and how far a foam is from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+from hrsafety._arguments import Parameters, positive
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["FoamFeasibility", "FoamLimits", "FoamMargin"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FoamLimits(Parameters):
+    """What a foam covering has to keep; ``None`` is no limit.
+
+    Parameters
+    ----------
+    peak_head_acceleration_g : float or None
+        In g.
+    peak_contact_force : float or None
+        In N.
+    hic15, hic36 : float or None
+        Head injury criterion.
+    max_compression : float or None
+        In m; the range in which the foam is linear.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a limit is not finite and positive, or there is none at all.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> impact.FoamLimits(peak_contact_force=500.0).peak_head_acceleration_g
+    10.0
+    """
+
+    peak_head_acceleration_g: float | None = 10.0
+    peak_contact_force: float | None = None
+    hic15: float | None = None
+    hic36: float | None = None
+    max_compression: float | None = 0.02
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name in (each.name for each in fields(self)):
+            value = getattr(self, name)
+            self._set(**{name: None if value is None else positive(name, value)})
+        if not self.given():
+            raise InvalidParameterError("limits", "hold at least one limit", "none")
+
+    def given(self) -> dict[str, float]:
+        """Return the limits that are set.
+
+        Returns
+        -------
+        dict of str to float
+            By name.
+        """
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
+
+
+class FoamMargin(NamedTuple):
+    """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
+
+    Attributes
+    ----------
+    peak_head_acceleration_g, peak_contact_force, hic15, hic36, max_compression : float
+        1 - load / limit.
+    least : float
+        The least of them.
+    """
+
+    peak_head_acceleration_g: float
+    peak_contact_force: float
+    hic15: float
+    hic36: float
+    max_compression: float
+    least: float
+
+
+class FoamFeasibility(NamedTuple):
+    """Whether some foam keeps all limits, and if not how much slower the manipulator has to be.
+
+    Attributes
+    ----------
+    feasible : bool
+        Whether a foam exists at the closing speed of the design.
+    max_closing_speed : float
+        Largest closing speed at which one exists, in m/s.
+    slow_down : float
+        How much the closing speed has to be reduced, in m/s; 0 if feasible.
+    damping, stiffness : float
+        The foam that allows the largest closing speed, in N s/m and N/m.
+    """
+
+    feasible: bool
+    max_closing_speed: float
+    slow_down: float
+    damping: float
+    stiffness: float
