@@ -1,0 +1,158 @@
+"""The result of a sweep in other formats: Polars, xarray, Parquet, NPZ."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._atomic import replacing
+from hrsafety.errors import MissingExtraError
+from hrsafety.sweep.axes import Column
+from hrsafety.sweep.designs import Grid
+from hrsafety.sweep.storage import SweepError
+
+if TYPE_CHECKING:
+    import polars
+    import xarray
+
+    from hrsafety.sweep.result import SweepResult
+
+__all__ = ["to_npz", "to_parquet", "to_polars", "to_xarray"]
+
+# Array of an NPZ file and metadata of a Parquet file that hold units and provenance.
+NPZ_TEXT = "_hrsafety"
+PARQUET_KEY = "hrsafety"
+
+
+def _polars() -> Any:
+    try:
+        import polars
+    except ModuleNotFoundError:
+        raise MissingExtraError("this format needs Polars: pip install hrsafety[sweep]") from None
+    return polars
+
+
+def description(result: SweepResult, columns: Sequence[Column]) -> str:
+    """Return units and provenance as JSON.
+
+    Parameters
+    ----------
+    result : SweepResult
+        The result.
+    columns : sequence of Column
+        Columns that are written.
+
+    Returns
+    -------
+    str
+        One object with ``units`` and ``provenance``.
+    """
+    units = {column.name: column.unit for column in columns}
+    return json.dumps({"units": units, "provenance": result.provenance}, ensure_ascii=False)
+
+
+def _schema(columns: Sequence[Column]) -> dict[str, Any]:
+    pl = _polars()
+    kinds = {"number": pl.Float64, "integer": pl.Int64, "flag": pl.Boolean}
+    return {each.name: pl.Enum(each.words) if each.words else kinds[each.kind] for each in columns}
+
+
+def _frame(stored: Mapping[str, npt.NDArray[Any]], schema: Mapping[str, Any], columns: Sequence[Column]) -> Any:
+    """Return a chunk as a data frame."""
+    pl = _polars()
+    series = {}
+    for column in columns:
+        values = stored[column.name]
+        if column.words:
+            series[column.name] = pl.Series(list(column.words))[values.astype(np.uint32)].cast(schema[column.name])
+        else:
+            series[column.name] = pl.Series(values)
+    return pl.DataFrame(series, schema=schema)
+
+
+def to_polars(result: SweepResult, columns: Sequence[Column]) -> polars.DataFrame:
+    """Return a data frame, see `SweepResult.to_polars`."""
+    pl = _polars()
+    schema = _schema(columns)
+    frames = [_frame(stored, schema, columns) for stored in result.stored_chunks(columns)]
+    frame: polars.DataFrame = pl.concat([pl.DataFrame(schema=schema), *frames], rechunk=True)
+    return frame
+
+
+def to_parquet(result: SweepResult, columns: Sequence[Column], path: Path) -> Path:
+    """Write a Parquet file, see `SweepResult.to_parquet`."""
+    pl = _polars()
+    from polars.io.plugins import register_io_source
+
+    schema = _schema(columns)
+    # Words pass as text and become an Enum behind the source: earlier releases lose it on the way.
+    passed = {name: pl.String if isinstance(kind, pl.Enum) else kind for name, kind in schema.items()}
+
+    def chunks(names: list[str] | None, predicate: Any, rows: int | None, _size: int | None) -> Iterator[Any]:
+        left = rows
+        for stored in result.stored_chunks(columns):
+            frame = _frame(stored, passed, columns)
+            frame = frame if names is None else frame.select(names)
+            frame = frame if left is None else frame.head(left)
+            left = None if left is None else left - len(frame)
+            yield frame if predicate is None else frame.filter(predicate)
+
+    lazy: Any = register_io_source(chunks, schema=passed)
+    lazy = lazy.cast(schema)
+    with replacing(path) as file:
+        lazy.sink_parquet(file, metadata={PARQUET_KEY: description(result, columns)}, maintain_order=True)
+    return path
+
+
+def to_npz(result: SweepResult, columns: Sequence[Column], path: Path) -> Path:
+    """Write an NPZ file, see `SweepResult.to_npz`."""
+    with replacing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for column in columns:
+            kind = column.decoded(np.empty(0, dtype=column.stored)).dtype
+            header = {"descr": np.lib.format.dtype_to_descr(kind), "fortran_order": False, "shape": (len(result),)}
+            with archive.open(zipfile.ZipInfo(f"{column.name}.npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array_header_1_0(member, header)
+                for stored in result.stored_chunks([column]):
+                    member.write(np.ascontiguousarray(column.decoded(stored[column.name])).tobytes())
+        with archive.open(zipfile.ZipInfo(f"{NPZ_TEXT}.npy"), "w") as member:
+            np.lib.format.write_array(member, np.array(description(result, columns)), allow_pickle=False)
+    return path
+
+
+def to_xarray(result: SweepResult, columns: Sequence[Column]) -> xarray.Dataset:
+    """Return a dataset, see `SweepResult.to_xarray`."""
+    try:
+        import xarray
+    except ModuleNotFoundError:
+        raise MissingExtraError("this format needs xarray: pip install hrsafety[sweep]") from None
+    if not result.complete:
+        text = f"{len(result.finished)} of {result.chunk_count} chunks"
+        raise SweepError(f"the sweep is not complete ({text}); run it again to go on")
+    case = result.columns[len(result.axes)].name if result.cases else None
+    lengths = [len(result.cases)] if result.cases else []
+    coordinates: dict[str, Any] = {} if case is None else {case: ((case,), list(result.cases))}
+    if isinstance(result.design, Grid):
+        dimensions = [axis.name for axis in result.axes]
+        shape = [*result.design.shape, *lengths]
+        for axis in result.axes:
+            coordinates[axis.name] = ((axis.name,), axis.levels(), _attributes(axis))
+    else:
+        dimensions, shape = ["row"], [len(result.design), *lengths]
+        own = result.to_numpy([axis.name for axis in result.axes])
+        for axis in result.axes:
+            coordinates[axis.name] = (("row",), own[axis.name].reshape(shape[0], -1)[:, 0], _attributes(axis))
+    along = (*dimensions, *([case] if case else []))
+    found = result.to_numpy([column.name for column in columns])
+    variables = {each.name: (along, found[each.name].reshape(shape), _attributes(each)) for each in columns}
+    return xarray.Dataset(variables, coords=coordinates, attrs={"provenance": json.dumps(result.provenance)})
+
+
+def _attributes(named: Any) -> dict[str, str]:
+    """Return the attributes of a variable, by the names that plots of xarray look for."""
+    return {"units": named.unit or "", "long_name": named.name.replace("_", " ")}

@@ -1,0 +1,322 @@
+"""Runs of mobile robots for each row of a design: gains, limits, noise, obstacles, or any scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import navigation as nav
+from hrsafety._arguments import Array, flag, positive, sequence, word
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.simulation import check_weights
+from hrsafety.sweep.axes import Column, checked_name
+from hrsafety.sweep.studies import Cases, Found, Study, chosen
+
+__all__ = ["NavigationStudy"]
+
+Scenes = nav.Scenario | Sequence[nav.Scenario]
+
+# Scenes that exist at the same time: they are built block by block.
+BLOCK = 1024
+
+GAIN_UNITS: Mapping[str, str] = MappingProxyType(
+    dict(zip(nav.VirtualForceField.GAIN_NAMES, ("N/m", "N/m", "N/m^2", "s"), strict=True))
+)
+LAW_UNITS: Mapping[str, str] = MappingProxyType(
+    {"stabilizing_force_cap": "N", "stabilizing_momentum_cap": "", "side_hysteresis": "rad"}
+)
+SCENE_UNITS: Mapping[str, str] = MappingProxyType(
+    {
+        "control_period": "s",
+        "time_limit": "s",
+        "arrival_tolerance": "m",
+        "heading": "rad",
+        "rest_time": "s",
+        "seed": "",
+        "measurement_scale": "m",
+        "robot_mass": "kg",
+        "robot_radius": "m",
+        "robot_max_speed": "m/s",
+        "robot_max_acceleration": "m/s^2",
+        "obstacle_speed": "m/s",
+    }
+)
+_OUTCOMES = ("arrived", "collided", "timed_out", "stopped")
+_FIRST = (
+    Column(name="outcome", kind="word", words=_OUTCOMES),
+    Column(name="end_time", unit="s"),
+    Column(name="arrival_time", unit="s"),
+    Column(name="energy", unit="J"),
+    Column(name="path_length", unit="m"),
+    Column(name="min_clearance", unit="m"),
+)
+_LAST = (
+    Column(name="entered_active", kind="integer"),
+    Column(name="contacts_moving", kind="integer"),
+    Column(name="contacts_standing", kind="integer"),
+    Column(name="performance_total"),
+    Column(name="performance_arrival_time"),
+    Column(name="performance_avoidance"),
+    Column(name="performance_energy_saving"),
+    Column(name="force_evaluations", kind="integer"),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NavigationStudy(Study):
+    """Runs of a robot under a law in one or several scenarios, as by `navigation.simulate_batch`.
+
+    Axes by name:
+
+    - the gains ``attractive_gain``, ``repulsive_gain``, ``detour_gain``, ``gain_ratio``, and
+      ``stabilizing_force_cap``, ``stabilizing_momentum_cap``, ``side_hysteresis`` of the law;
+    - ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
+      ``seed`` of the scenarios; ``measurement_scale`` (the noise is that of `Measurement`
+      where a scenario has none); ``robot_mass``, ``robot_radius``, ``robot_max_speed``,
+      ``robot_max_acceleration``; ``obstacle_speed``, which every obstacle that walks straight
+      takes on in its direction. The regions around obstacles stay as they are;
+    - with ``scenario``, any others: the function builds the scene from them.
+
+    Gains that vary alone run fastest. Scenes that differ from row to row are built one by one,
+    and if gains differ from row to row as well, each row is a batch of its own: put the gains
+    last in a grid.
+
+    Parameters
+    ----------
+    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
+        Where; with names that appear in the result if it is a mapping. Not with ``scenario``.
+    law : VirtualForceField or None
+        The law; the default one when ``None``.
+    scenario : callable or None
+        ``scenario(row) -> Scenario`` or a sequence of them, one for each of ``names``; row is a
+        dict of the axes that are none of the law. It must be importable where rows are
+        computed, and give the same for the same row.
+    names : sequence of str or None
+        Names of the scenarios.
+    axis_units : mapping of str to str
+        Units of axes that only ``scenario`` knows, if they are not given there.
+    weights, integrator, step, hold, stop_on_contact
+        As for `navigation.simulate_batch`.
+    outputs : sequence of str or None
+        Columns to keep; all when ``None``: ``outcome``, ``end_time``, ``arrival_time``,
+        ``energy``, ``path_length``, ``min_clearance``, ``entered_active``,
+        ``contacts_moving``, ``contacts_standing``, the four of the performance,
+        ``force_evaluations``, and, without ``scenario``, ``min_distance_0`` and so on.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is of the wrong kind, or a name is unknown.
+
+    Examples
+    --------
+    >>> from hrsafety import scenarios, sweep
+    >>> study = sweep.NavigationStudy(scenarios={name: scenarios.configuration(name) for name in ("c1", "c3")})
+    >>> result = sweep.run(sweep.Grid([sweep.Axis(name="detour_gain", values=[10.0, 17.0, 30.0])]), study)
+    >>> result["scenario"].tolist()[:2], set(result["outcome"].tolist())
+    (['c1', 'c3'], {'arrived'})
+    """
+
+    scenarios: tuple[nav.Scenario, ...] = ()
+    law: nav.VirtualForceField = field(default_factory=nav.VirtualForceField)
+    scenario: Callable[[dict[str, float]], Scenes] | None = None
+    names: tuple[str, ...] | None = None
+    axis_units: Mapping[str, str] = field(default_factory=dict)
+    weights: tuple[float, float, float] = (1 / 3, 1 / 3, 1 / 3)
+    integrator: str = "semi_implicit_euler"
+    step: float = 0.01
+    hold: bool = True
+    stop_on_contact: bool = False
+    outputs: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        law = nav.VirtualForceField() if self.law is None else self.law
+        if not isinstance(law, nav.VirtualForceField):
+            raise InvalidParameterError("law", "be a VirtualForceField or None", law)
+        scenes, names = self._checked_scenarios()
+        if not isinstance(self.axis_units, Mapping):
+            raise InvalidParameterError("axis_units", "be a mapping", self.axis_units)
+        word("integrator", self.integrator, ("semi_implicit_euler", "rk4"))
+        values = {
+            "law": law,
+            "scenarios": scenes,
+            "names": names,
+            "axis_units": dict(self.axis_units),
+            "step": positive("step", self.step),
+            "hold": flag("hold", self.hold),
+            "stop_on_contact": flag("stop_on_contact", self.stop_on_contact),
+            "weights": check_weights(self.weights),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "outputs", chosen(self._possible(), self.outputs))
+
+    def _checked_scenarios(self) -> tuple[tuple[nav.Scenario, ...], tuple[str, ...] | None]:
+        """Return the scenarios and their names."""
+        given: Any = self.scenarios
+        names = self.names
+        if isinstance(given, Mapping):
+            if names is not None:
+                raise InvalidParameterError("names", "be None when the scenarios have names", names)
+            names, given = tuple(given), tuple(given.values())
+        scenes = (given,) if isinstance(given, nav.Scenario) else given
+        scenes = tuple(sequence("scenarios", "be a sequence or a mapping of Scenario", scenes))
+        for index, scene in enumerate(scenes):
+            if not isinstance(scene, nav.Scenario):
+                raise InvalidParameterError(f"scenarios[{index}]", "be a Scenario", scene)
+        if self.scenario is not None and not callable(self.scenario):
+            raise InvalidParameterError("scenario", "be callable or None", self.scenario)
+        if (self.scenario is None) == (not scenes):
+            raise InvalidParameterError("scenarios", "be given, or a function scenario instead of them", scenes)
+        if names is None and len(scenes) > 1:
+            names = tuple(str(index) for index in range(len(scenes)))
+        if names is not None:
+            names = tuple(sequence("names", "be a sequence of texts", names))
+            if not names or not all(isinstance(name, str) for name in names) or len(set(names)) != len(names):
+                raise InvalidParameterError("names", "be different texts, at least one", names)
+            if scenes and len(names) != len(scenes):
+                raise InvalidParameterError("names", f"be {len(scenes)}, one for each scenario", names)
+        return scenes, names
+
+    @property
+    def cases(self) -> Cases | None:
+        """The scenarios, if they have names or there are several."""
+        return None if self.names is None else Cases("scenario", self.names)
+
+    def _possible(self) -> tuple[Column, ...]:
+        most = max((len(scene.obstacles) for scene in self.scenarios), default=0)
+        distances = (Column(name=f"min_distance_{index}", unit="m") for index in range(most))
+        return (*_FIRST, *distances, *_LAST)
+
+    def columns(self) -> tuple[Column, ...]:
+        """Return what is found for each row, without axes and scenarios."""
+        return tuple(each for each in self._possible() if self.outputs is None or each.name in self.outputs)
+
+    def units(self, names: Sequence[str]) -> dict[str, str]:
+        """Return the units of axes with these names, see `Study.units`."""
+        known = {**GAIN_UNITS, **LAW_UNITS}
+        if self.scenario is None:
+            known |= SCENE_UNITS
+            for name in names:
+                word("name of an axis", name, tuple(known))
+        else:
+            known |= {checked_name("axis_units", name): unit for name, unit in self.axis_units.items()}
+        return {name: known[name] for name in names if name in known}
+
+    def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:
+        """Return the columns for some rows, see `Study.compute`."""
+        total = len(next(iter(rows.values())))
+        each = 1 if self.names is None else len(self.names)
+        found = {column.name: np.empty((total, each), dtype=_computed(column)) for column in self.columns()}
+        for part in self._batches(rows, each):
+            table = nav.simulate_batch(
+                part.scenes,
+                part.law,
+                part.gains,
+                weights=self.weights,
+                integrator=self.integrator,  # type: ignore[arg-type]  # one of its words, checked
+                step=self.step,
+                hold=self.hold,
+                stop_on_contact=self.stop_on_contact,
+                threads=threads,
+            ).columns()
+            for name, values in found.items():
+                values[part.rows] = table[name].reshape(-1, each)[part.order]
+        return {name: values.reshape(-1) for name, values in found.items()}
+
+    def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
+        """Yield calls that cover all rows: those that share everything but the gains run together."""
+        gains = {name: rows[name] for name in rows if name in GAIN_UNITS} or None
+        others = [name for name in rows if name not in GAIN_UNITS]
+        if not others:
+            yield _Batch(slice(None), list(self.scenarios), self.law, gains, slice(None))
+            return
+        keys = np.stack([rows[name] for name in others], axis=1)
+        distinct, inverse = np.unique(keys, axis=0, return_inverse=True)
+        order = np.argsort(inverse.reshape(-1), kind="stable")
+        starts = np.searchsorted(inverse.reshape(-1)[order], np.arange(len(distinct) + 1))
+        together = 1 if gains or set(others) & set(LAW_UNITS) else max(BLOCK // each, 1)
+        for first in range(0, len(distinct), together):
+            last = min(first + together, len(distinct))
+            members = order[starts[first] : starts[last]]
+            values = [dict(zip(others, row, strict=True)) for row in distinct[first:last].tolist()]
+            scenes = [scene for row in values for scene in self._scenes(row, each)]
+            own = None if gains is None else {name: array[members] for name, array in gains.items()}
+            places = inverse.reshape(-1)[members] - first if gains is None else slice(None)
+            yield _Batch(members, scenes, self._law(values[0]), own, places)
+
+    def _law(self, row: dict[str, float]) -> nav.VirtualForceField:
+        """Return the law of a row, its gains aside."""
+        changes: dict[str, Any] = {name: value for name, value in row.items() if name in LAW_UNITS}
+        return replace(self.law, **changes)
+
+    def _scenes(self, row: dict[str, float], each: int) -> list[nav.Scenario]:
+        """Return the scenarios of a row."""
+        values = {name: value for name, value in row.items() if name not in LAW_UNITS}
+        if self.scenario is None:
+            return [_changed(scene, values) for scene in self.scenarios]
+        made = self.scenario(values)
+        scenes = [made] if isinstance(made, nav.Scenario) else list(made)
+        if len(scenes) != each or not all(isinstance(scene, nav.Scenario) for scene in scenes):
+            raise InvalidParameterError("scenario", f"return {each} Scenario", made)
+        return scenes
+
+
+class _Batch(NamedTuple):
+    """One call: which rows of the chunk it gives, and which rows of its table they are."""
+
+    rows: npt.NDArray[np.int64] | slice
+    scenes: list[nav.Scenario]
+    law: nav.VirtualForceField
+    gains: dict[str, Array] | None
+    order: npt.NDArray[np.int64] | slice
+
+
+def _computed(column: Column) -> np.dtype[Any]:
+    """Return the type of a column as it is computed."""
+    return np.dtype(f"U{max(map(len, column.words))}") if column.words else column.stored
+
+
+def _changed(scene: nav.Scenario, values: Mapping[str, float]) -> nav.Scenario:
+    """Return a scenario with some of its numbers replaced."""
+    changes: dict[str, Any] = {}
+    robot: dict[str, Any] = {}
+    for name, value in values.items():
+        if name == "seed":
+            changes["seed"] = _whole("seed", value)
+        elif name == "measurement_scale":
+            changes["measurement"] = replace(scene.measurement or nav.Measurement(), scale=value)
+        elif name == "obstacle_speed":
+            changes["obstacles"] = tuple(_at_speed(obstacle, value) for obstacle in scene.obstacles)
+        elif name.startswith("robot_"):
+            robot[name.removeprefix("robot_")] = value
+        else:
+            changes[name] = value
+    if robot:
+        changes["robot"] = replace(scene.robot, **robot)
+    return replace(scene, **changes)
+
+
+def _whole(name: str, value: float) -> int:
+    if value != math.floor(value) or value < 0.0:
+        raise InvalidParameterError(name, "be an integer that is not negative", value)
+    return int(value)
+
+
+def _at_speed(obstacle: nav.Obstacle, speed: float) -> nav.Obstacle:
+    """Return an obstacle that walks straight at another speed; others as they are."""
+    if not isinstance(obstacle, (nav.Human, nav.MovingDisc)):
+        return obstacle
+    if obstacle.segments is not None or obstacle.path is not None:
+        raise InvalidParameterError("obstacle_speed", "be an axis only where all obstacles walk straight", obstacle)
+    own = math.hypot(*obstacle.velocity)
+    if own == 0.0:
+        return obstacle
+    return replace(obstacle, velocity=(obstacle.velocity[0] * speed / own, obstacle.velocity[1] * speed / own))

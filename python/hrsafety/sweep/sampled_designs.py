@@ -1,0 +1,200 @@
+"""Designs that fill the space of the axes: Latin hypercubes and Sobol sequences."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import threading
+import warnings
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from hrsafety._arguments import Array, count, flag
+from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.sweep.designs import MOST_ROWS, Design
+from hrsafety.sweep.strata import latin_shares
+
+__all__ = ["LatinHypercube", "Sobol"]
+
+MOST_SOBOL_ROWS = 2**30
+MOST_SOBOL_AXES = 21201
+# Up to here a Latin hypercube is SciPy's, above it needs no memory for its permutations.
+MOST_STORED_ROWS = 65536
+
+
+def _stats() -> Any:
+    """Return SciPy's module of quasi-random sequences."""
+    try:
+        from scipy.stats import qmc
+    except ModuleNotFoundError:
+        raise MissingExtraError("sampled designs need SciPy: pip install hrsafety[sweep]") from None
+    return qmc
+
+
+def _engine(kind: str, axes: int, seed: int, **options: Any) -> Any:
+    """Return one of SciPy's engines; its argument for the generator was renamed in SciPy 1.15."""
+    make = getattr(_stats(), kind)
+    name = "rng" if "rng" in inspect.signature(make.__init__).parameters else "seed"
+    return make(axes, **{name: np.random.default_rng(seed)}, **options)
+
+
+@dataclass(frozen=True, slots=True)
+class _Sampled(Design):
+    """Base of the designs that fill the space of the axes with a given number of rows."""
+
+    size: int
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        Design.__post_init__(self)
+        object.__setattr__(self, "size", count("size", self.size))
+        object.__setattr__(self, "seed", count("seed", self.seed, least=0))
+        if self.size > MOST_ROWS:
+            raise InvalidParameterError("size", "be at most 2**53", self.size)
+
+    @abstractmethod
+    def _shares(self, start: int, stop: int) -> Array:
+        """Return rows in the unit cube."""
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return self.size
+
+    def _block(self, start: int, stop: int) -> Array:
+        shares = self._shares(start, stop)
+        return np.stack([axis.at(shares[:, index]) for index, axis in enumerate(self.axes)], axis=1)
+
+    def settings(self) -> dict[str, Any]:
+        """Return the fields for the manifest."""
+        return {**Design.settings(self), "seed": self.seed}
+
+
+@functools.lru_cache(maxsize=4)
+def _latin_sample(axes: int, seed: int, size: int) -> Array:
+    """Return a whole Latin hypercube of SciPy; kept, because its rows are asked for in ranges."""
+    sample: Array = _engine("LatinHypercube", axes, seed).random(size)
+    return sample
+
+
+@dataclass(frozen=True, slots=True)
+class LatinHypercube(_Sampled):
+    """Random rows of which each falls into a stratum of its own on every axis.
+
+    Up to 65,536 rows the design is that of ``scipy.stats.qmc.LatinHypercube`` with the same
+    seed, which is kept in memory (8 bytes per row and axis). Longer ones come from keyed
+    permutations that need no memory at all: every row can be computed by itself.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        Ranges or values.
+    size : int
+        Number of rows.
+    seed : int
+        Which of the possible designs.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range.
+    MissingExtraError
+        When rows are asked for, if SciPy is not installed and the design is not a long one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import sweep
+    >>> design = sweep.LatinHypercube([sweep.Axis(name="foam_damping", low=0.0, high=100.0)], 10, seed=1)
+    >>> np.sort(design.rows()[:, 0] // 10.0).tolist()
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]
+    """
+
+    kind: ClassVar[str] = "latin_hypercube"
+
+    def _shares(self, start: int, stop: int) -> Array:
+        if self.size > MOST_STORED_ROWS:
+            return latin_shares(self.size, len(self.axes), self.seed, start, stop)
+        return _latin_sample(len(self.axes), self.seed, self.size)[start:stop]
+
+
+@dataclass(frozen=True, slots=True)
+class Sobol(_Sampled):
+    """Rows of a scrambled Sobol sequence, those of ``scipy.stats.qmc.Sobol`` with the same seed.
+
+    The sequence is balanced when the number of rows is a power of two.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        Ranges or values, at most 21201.
+    size : int
+        Number of rows, at most 2**30.
+    seed : int
+        Of the scrambling.
+    scramble : bool
+        Whether the sequence is scrambled; the plain one starts with a row of zeros.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range.
+    MissingExtraError
+        When rows are asked for, if SciPy is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import sweep
+    >>> design = sweep.Sobol([sweep.Axis(name="foam_damping", low=0.0, high=100.0)], 8, scramble=False)
+    >>> design.rows(2, 5).ravel().tolist()
+    [75.0, 25.0, 37.5]
+    """
+
+    kind: ClassVar[str] = "sobol"
+    scramble: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        _Sampled.__post_init__(self)
+        flag("scramble", self.scramble)
+        if self.size > MOST_SOBOL_ROWS:
+            raise InvalidParameterError("size", "be at most 2**30 for a Sobol sequence", self.size)
+        if len(self.axes) > MOST_SOBOL_AXES:
+            raise InvalidParameterError("axes", f"be at most {MOST_SOBOL_AXES}", len(self.axes))
+
+    def _shares(self, start: int, stop: int) -> Array:
+        return _SEQUENCES.block((len(self.axes), self.seed, self.scramble), start, stop)
+
+    def settings(self) -> dict[str, Any]:
+        """Return the fields for the manifest."""
+        return {**_Sampled.settings(self), "scramble": self.scramble}
+
+
+class _Sequences(threading.local):
+    """The Sobol engine that was used last, one for each thread, so that going on costs nothing."""
+
+    def __init__(self) -> None:
+        self._key: tuple[int, int, bool] | None = None
+        self._engine: Any = None
+
+    def block(self, key: tuple[int, int, bool], start: int, stop: int) -> Array:
+        """Return rows of the sequence with this number of axes, seed and scrambling."""
+        if stop == start:
+            return np.empty((0, key[0]))
+        if key != self._key or self._engine.num_generated > start:
+            axes, seed, scramble = key
+            self._engine = _engine("Sobol", axes, seed, scramble=scramble)
+            self._key = key
+        if start > self._engine.num_generated:
+            self._engine.fast_forward(start - self._engine.num_generated)
+        with warnings.catch_warnings():
+            # The balance depends on the whole design, not on the block that is asked for.
+            warnings.filterwarnings("ignore", message="The balance properties of Sobol", category=UserWarning)
+            sample: Array = self._engine.random(stop - start)
+        return sample
+
+
+_SEQUENCES = _Sequences()

@@ -1,0 +1,107 @@
+"""What is computed for each row of a design: what all studies share."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, sequence, word
+from hrsafety.errors import InvalidParameterError
+from hrsafety.sweep.axes import Column
+from hrsafety.sweep.identity import described
+
+__all__ = ["Cases", "Found", "Study", "chosen"]
+
+Found = Mapping[str, npt.NDArray[Any]]
+
+
+class Cases(NamedTuple):
+    """Several result rows for each row of the design, as those of several scenarios.
+
+    Attributes
+    ----------
+    name : str
+        Name of the column that tells them apart.
+    words : tuple of str
+        One for each case; the cases vary fastest.
+    """
+
+    name: str
+    words: tuple[str, ...]
+
+
+class Study(ABC):
+    """Base of the studies.
+
+    A study is pickled to wherever its rows are computed, and described in the manifest of the
+    results. The result of a row depends on that row alone.
+    """
+
+    __slots__ = ()
+
+    @property
+    def cases(self) -> Cases | None:
+        """Result rows of each row of the design; ``None`` for one."""
+        return None
+
+    @abstractmethod
+    def units(self, names: Sequence[str]) -> dict[str, str]:
+        """Return the units of axes with these names.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of the axes of a design.
+
+        Returns
+        -------
+        dict of str to str
+            Unit by name; without names whose unit the study does not know.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the study cannot vary one of them.
+        """
+
+    @abstractmethod
+    def columns(self) -> tuple[Column, ...]:
+        """Return what is found for each row, without the axes and cases."""
+
+    @abstractmethod
+    def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:
+        """Return the columns for some rows of a design.
+
+        Parameters
+        ----------
+        rows : dict of str to ndarray, shape (n,)
+            Values of the axes.
+        threads : int or None
+            Number of threads; all cores when ``None``.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (n * number of cases,)
+            A column for each of `columns`.
+        """
+
+    def settings(self) -> dict[str, Any]:
+        """Return everything that the result depends on, as plain data."""
+        found: dict[str, Any] = described(self)
+        return found
+
+
+def chosen(columns: Sequence[Column], outputs: object) -> tuple[str, ...] | None:
+    """Return the names of the columns to keep, all known."""
+    if outputs is None:
+        return None
+    names = tuple(sequence("outputs", "be a sequence of names of columns", outputs))
+    known = [column.name for column in columns]
+    for name in names:
+        word("outputs", name, known)
+    if not names or len(set(names)) != len(names):
+        raise InvalidParameterError("outputs", "be at least one name, none of them twice", names)
+    return names
