@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce the published results, simulate, design foam coverings."""
+"""Command line ``hrsafety``: reproduce published results, simulate, design foam, search gains, sweep."""
 
 from __future__ import annotations
 
@@ -31,6 +31,24 @@ _FOAM_EXAMPLE = """example:
 The file names a manipulator, a closing speed, limits, a range of foam damping and foams. The
 folder receives summary.html with the picture of the boundaries, boundaries.csv and
 boundaries.png.
+"""
+_OPTIMIZE_EXAMPLE = """examples:
+  hrsafety optimize examples/gain_study.toml --out gains
+  hrsafety optimize examples/gain_study.toml --out gains --resume
+
+The file names scenarios, bounds, the grid and its refinements, an objective, constraints and
+whatever else differs from the published procedure. Ctrl-C keeps what is done in the folder;
+--resume goes on from there and ends with the same result. The folder receives summary.html
+with the pictures, results.json with every value, and the pictures.
+"""
+_SWEEP_EXAMPLE = """examples:
+  hrsafety sweep examples/impact_sweep.toml --out foams
+  hrsafety sweep examples/gain_sweep.toml --out gains --workers 4 --table gains/result.parquet
+
+The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
+is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
+command goes on after a stop, whatever stopped it. The folder receives summary.html with the
+pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
 """
 
 
@@ -106,6 +124,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_reproduce(commands)
     _add_simulate(commands)
     _add_foam(commands)
+    _add_optimize(commands)
+    _add_sweep(commands)
     return parser
 
 
@@ -180,6 +200,36 @@ def _add_foam(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
 
 
+def _add_optimize(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "optimize",
+        summary="search the gains that perform best in given scenarios",
+        example=_OPTIMIZE_EXAMPLE,
+    )
+    parser.add_argument("study", metavar="STUDY.toml", help="gain study file")
+    parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
+    parser.add_argument("--resume", action="store_true", help="go on with an interrupted search, if there is one")
+    parser.add_argument("--threads", type=int, metavar="N", help="number of threads [all cores]")
+
+
+def _add_sweep(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "sweep",
+        summary="compute impacts or runs over ranges of their parameters",
+        example=_SWEEP_EXAMPLE,
+    )
+    parser.add_argument("study", metavar="STUDY.toml", help="sweep file")
+    parser.add_argument(
+        "--out", metavar="DIR", default="sweep", help="folder to write into, or to go on in [%(default)s]"
+    )
+    parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads of one chunk [all cores; one with workers]")
+    parser.add_argument("--workers", type=int, metavar="N", help="compute chunks in so many processes")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute chunks on the Dask cluster of this scheduler")
+
+
 def _reproduce(options: argparse.Namespace) -> None:
     from hrsafety import reproduce
 
@@ -213,4 +263,22 @@ def _foam(options: argparse.Namespace) -> None:
     design_file(options)
 
 
-_COMMANDS = {"reproduce": _reproduce, "simulate": _simulate, "foam": _foam}
+def _optimize(options: argparse.Namespace) -> None:
+    from hrsafety.cli.optimize import optimize_file
+
+    optimize_file(options)
+
+
+def _sweep(options: argparse.Namespace) -> None:
+    from hrsafety.cli.sweep import sweep_file
+
+    sweep_file(options)
+
+
+_COMMANDS = {
+    "reproduce": _reproduce,
+    "simulate": _simulate,
+    "foam": _foam,
+    "optimize": _optimize,
+    "sweep": _sweep,
+}

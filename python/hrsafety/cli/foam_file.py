@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -14,10 +13,11 @@ import numpy.typing as npt
 
 from hrsafety import impact
 from hrsafety.errors import InvalidParameterError
+from hrsafety.scenarios import files
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 
-__all__ = ["FoamDesignFile", "load"]
+__all__ = ["FoamDesignFile", "load", "manipulator_of"]
 
 Array = npt.NDArray[np.float64]
 
@@ -106,14 +106,14 @@ def load(path: str) -> FoamDesignFile:
         If the file cannot be read, is not TOML, or a value breaks a rule; the message names the
         key.
     """
-    fields = checked("", _parsed(Path(path)), _TOP, required=("closing_speed", "manipulator"))
+    fields = checked("", files.parsed(Path(path)), _TOP, required=("closing_speed", "manipulator"))
     speed = fields["closing_speed"]
     if not (math.isfinite(speed) and speed > 0.0):
         raise InvalidParameterError("closing_speed", "be finite and positive", speed)
     kept = _limits(fields.get("limits"))
     return FoamDesignFile(
         title=fields.get("title", "Foam covering"),
-        manipulator=_manipulator(fields["manipulator"]),
+        manipulator=manipulator_of(fields["manipulator"]),
         limits=kept,
         closing_speed=speed,
         damping=_damping(fields.get("damping", {})),
@@ -121,23 +121,8 @@ def load(path: str) -> FoamDesignFile:
     )
 
 
-def _parsed(path: Path) -> dict[str, Any]:
-    """Return the tables of a TOML file as read."""
-    if not path.is_file():
-        raise InvalidParameterError("path", "name a readable file", str(path))
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InvalidParameterError("path", "name a readable file", f"{path} ({error.strerror})") from None
-    except UnicodeDecodeError as error:
-        raise InvalidParameterError(path.name, "be UTF-8 text", f"byte {error.object[error.start]:#04x}") from None
-    except RecursionError:
-        raise InvalidParameterError(path.name, "be a TOML file", "brackets nested too deeply") from None
-    except ValueError as error:
-        raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
-
-
-def _manipulator(table: dict[str, Any]) -> impact.Manipulator:
+def manipulator_of(table: dict[str, Any]) -> impact.Manipulator:
+    """Return the manipulator of a table: as felt at the impact point, or a joint and a lever arm."""
     if "inertia" in table or "lever_arm" in table:
         joint = checked("manipulator", table, _JOINT, required=tuple(_JOINT))
         with located("manipulator"):

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from hrsafety.errors import HrsafetyError
+from hrsafety.errors import MissingExtraError
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -68,10 +68,6 @@ _LOOK: Properties = {
     "lines.linewidth": 1.8,
     "image.cmap": "viridis",
 }
-
-
-class MissingExtraError(HrsafetyError, ImportError):
-    """An optional library is needed that is not installed."""
 
 
 def require_matplotlib() -> None:

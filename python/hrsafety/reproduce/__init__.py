@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import figures, impact_part, page, study, tables, trends
+from hrsafety.reproduce import figures, gain_figures, gain_tables, impact_part, page, study, tables, trends
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.published import published_tables
 
@@ -77,6 +77,8 @@ def run(
             report.study_pictures.extend(figures.of_study(report.study))
         else:
             report.cells.extend(_TABLES[part]())
+        if part == "tables-c":
+            report.gain_pictures.extend(gain_figures.make())
     if {"tables-c", "figures-6"} <= set(parts):
         report.pictures.extend(trends.make(report.cells))
     report.seconds = time.perf_counter() - begin
@@ -88,14 +90,14 @@ _TABLES: dict[str, Callable[[], list[Cell]]] = {
     "tables-6": tables.chapter_6,
     "tables-7": tables.chapter_7,
     "table-5.1": tables.unpredictable_human,
-    "tables-c": tables.appendix_c,
+    "tables-c": gain_tables.appendix_c,
 }
 _TITLES = {
     "impact": "chapters 3 and 4, appendix A: tables, claims and pictures of impacts",
     "tables-6": "Tables 6.1 to 6.5",
     "tables-7": "Tables 7.1 to 7.4",
     "table-5.1": "Table 5.1",
-    "tables-c": "Tables C.1 to C.9",
+    "tables-c": "Tables C.1 to C.9 and the search for the best gains",
     "figures-6": "Figures 6.3 to 6.18",
     "stabilizing": "stabilizing force off, capped and full",
 }

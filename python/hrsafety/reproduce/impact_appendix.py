@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 
 from hrsafety import impact
+from hrsafety.reproduce import impact_rig
 from hrsafety.reproduce.cells import Cell, Tolerance
 from hrsafety.reproduce.impact_cases import CLOSING_SPEED, FOAM_OF_FIGURES, KILO, manipulator, published_lever_arm
 from hrsafety.reproduce.impact_cells import FOAM_TOLERANCE, listed, number
@@ -18,8 +19,6 @@ __all__ = ["cells", "drives"]
 
 ROUNDED_MEAN = Tolerance(0.00051, relative=False)  # half a unit of the third digit, and binary rounding
 RECOVERED = Tolerance(0.05, relative=True)  # of one seed; intervals are tested elsewhere
-TWO_DIGITS = Tolerance(0.01, relative=True)
-INCH = 0.0254
 
 
 def cells() -> list[Cell]:
@@ -28,9 +27,9 @@ def cells() -> list[Cell]:
     Returns
     -------
     list of Cell
-        Sections A.1 and A.2 and Table A.1.
+        Sections A.1 to A.3 and Table A.1.
     """
-    return [*_foam(), *_inertia(), *_table(), *_constants(), *_gains(), *_saturation()]
+    return [*_foam(), *impact_rig.arm(), *_table(), *_constants(), *_gains(), *_saturation(), *impact_rig.cylinder()]
 
 
 def _figure(name: str) -> float:
@@ -105,75 +104,6 @@ def _recovered(foam: int, seed: int) -> Iterator[Cell]:
             unit=unit,
             reason="The recordings are not printed. Made again with these values, 0.1 mm and 1 N of noise, and fitted.",
         )
-
-
-def _inertia() -> Iterator[Cell]:
-    tube = impact.tube_inertia(density=2700.0, length=0.664, width=0.0508, height=0.0508, wall=INCH / 16.0)
-    yield number(
-        "Section A.2",
-        "Tube",
-        "inertia about its center",
-        printed=_figure("tube_inertia_center"),
-        measured=tube.inertia,
-        tolerance=FOAM_TOLERANCE,
-        unit="kg m^2",
-        reason="Needs open ends and walls of 1/16 inch; the printed formula takes one wall off each size instead of "
-        "two, with 3 mm.",
-    )
-    yield number(
-        "Section A.2",
-        "Tube",
-        "mass",
-        printed=_figure("tube_mass"),
-        measured=tube.mass,
-        tolerance=TWO_DIGITS,
-        unit="kg",
-        reason="The tube that has the printed density and inertia weighs more than the measured 0.5343 kg.",
-    )
-    offset = 0.502 - 0.644 / 2.0
-    own = _figure("tube_inertia_center") + _figure("tube_mass") * offset**2
-    other = _figure("tube_inertia_center") + _figure("tube_mass") * (0.502 - 0.664 / 2.0) ** 2
-    disk = 1.497 * (0.0508**2 / 2.0 + 0.113**2)
-    yield number(
-        "Section A.2",
-        "Tube",
-        "inertia about the joint",
-        printed=_figure("tube_inertia"),
-        measured=own,
-        tolerance=TWO_DIGITS,
-        unit="kg m^2",
-        reason=f"With the printed 0.644 m; with the tube's length of 0.664 m it is {other:.4f}.",
-    )
-    yield number(
-        "Section A.2",
-        "Disk",
-        "inertia about the joint",
-        printed=_figure("disk_inertia"),
-        measured=disk,
-        tolerance=TWO_DIGITS,
-        unit="kg m^2",
-    )
-    yield number(
-        "Section A.2",
-        "Arm",
-        "inertia m_dd",
-        printed=_figure("inertia"),
-        measured=own + disk,
-        tolerance=TWO_DIGITS,
-        unit="kg m^2",
-        reason=f"With 0.664 m: {other + disk:.4f}, an effective mass of "
-        f"{(other + disk) / published_lever_arm(1) ** 2:.2f} kg.",
-    )
-    yield number(
-        "Section A.2",
-        "Arm",
-        "effective mass",
-        printed=_figure("effective_mass"),
-        measured=_figure("inertia") / published_lever_arm(1) ** 2,
-        tolerance=FOAM_TOLERANCE,
-        unit="kg",
-        reason="0.059 / 0.078^2 is 9.70; the tables use 9.6.",
-    )
 
 
 def _table() -> Iterator[Cell]:

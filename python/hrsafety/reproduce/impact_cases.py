@@ -20,6 +20,7 @@ __all__ = [
     "foam",
     "manipulator",
     "parameter_sets",
+    "printed_metrics",
     "published_lever_arm",
     "simulations",
 ]
@@ -165,3 +166,22 @@ def simulations() -> dict[int, tuple[impact.Manipulator, impact.Head]]:
 def _row(table: str, key: str, number: int) -> dict[str, Any]:
     (row,) = (row for row in printed_rows(table) if row[key] == number)
     return row
+
+
+def printed_metrics(arm: impact.Manipulator, head: impact.Head) -> impact.ImpactMetrics:
+    """Return the peaks that the printed coefficient q_2 of (3.5.14) gives with the foam of the figures.
+
+    Parameters
+    ----------
+    arm : Manipulator
+        What hits.
+    head : Head
+        What is hit.
+
+    Returns
+    -------
+    ImpactMetrics
+        Peaks and impact period; the other numbers are NaN.
+    """
+    run = impact.simulate(arm, FOAM_OF_FIGURES, head, closing_speed=CLOSING_SPEED, equations="as_printed")
+    return run.metrics

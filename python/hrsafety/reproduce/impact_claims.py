@@ -15,10 +15,10 @@ from hrsafety.reproduce.impact_cases import (
     MANIPULATOR_SPEED,
     foam,
     manipulator,
+    printed_metrics,
     simulations,
 )
 from hrsafety.reproduce.impact_cells import PERCENT, claim, listed, number
-from hrsafety.reproduce.impact_printed_form import printed_peaks
 from hrsafety.reproduce.published import printed_figure
 
 __all__ = ["cells"]
@@ -111,15 +111,12 @@ def _compared(
     second: int,
 ) -> Iterator[Cell]:
     """Yield two percentages of one simulation against another."""
-    printed_form = {
-        key: printed_peaks(cases[key][0], FOAM_OF_FIGURES, cases[key][1], closing_speed=CLOSING_SPEED)
-        for key in (first, second)
-    }
+    as_printed = [printed_metrics(*cases[key]) for key in (first, second)]
     for name, quantity, key in (
         ("f_c,max", "peak_contact_force", "force"),
         ("a_h,max", "peak_head_acceleration", "acceleration"),
     ):
-        old = [getattr(printed_form[each], quantity.removeprefix("peak_")) for each in (first, second)]
+        old = [getattr(each, quantity) for each in as_printed]
         yield number(
             "Section 3.6",
             f"Simulation {first} against {second}",

@@ -177,7 +177,8 @@ def _three(one: Sequence[Experiment], other: Sequence[Experiment], column: str) 
     printed = np.mean([first.printed[column] / second.printed[column] for first, second in pairs])
     measured = np.mean([first.mean(column) / second.mean(column) for first, second in pairs])
     exact = np.mean([first.simulated["A"][column] / second.simulated["A"][column] for first, second in pairs])
-    return tuple(100.0 * (float(ratio) - 1.0) for ratio in (printed, measured, exact))  # type: ignore[return-value]
+    by_simulation, by_experiment, by_response = (100.0 * (float(ratio) - 1.0) for ratio in (printed, measured, exact))
+    return by_simulation, by_experiment, by_response
 
 
 def _influence(

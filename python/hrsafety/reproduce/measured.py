@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 
-__all__ = ["GAIN_SETS", "Measured", "measure", "score_of_parts"]
+__all__ = ["GAIN_SETS", "Measured", "kind_of", "measure", "score_of_parts"]
 
 Gains = tuple[float, float, float, float]
 
@@ -81,7 +81,7 @@ def _row(summary: nav.BatchSummary, index: int, scenario: nav.Scenario) -> Measu
     energy = float(summary.energy[index])
     values = {"T_arrive": time, "L_energy": energy, "H": float(summary.performance_total[index])}
     for obstacle, distance in zip(scenario.obstacles, summary.min_distance[index].tolist(), strict=False):
-        column = f"d_{_kind(obstacle)}_min"
+        column = f"d_{kind_of(obstacle)}_min"
         values[column] = min(distance, values.get(column, math.inf))
     return Measured(
         values=values,
@@ -93,7 +93,8 @@ def _row(summary: nav.BatchSummary, index: int, scenario: nav.Scenario) -> Measu
     )
 
 
-def _kind(obstacle: nav.Obstacle) -> str:
+def kind_of(obstacle: nav.Obstacle) -> str:
+    """Return the word that the tables have for an obstacle."""
     if isinstance(obstacle, nav.Human):
         return "human"
     return "rectangle" if isinstance(obstacle, nav.Rectangle) else "circle"
@@ -123,5 +124,5 @@ def score_of_parts(run: Measured, *, time: float, energy: float, distances: Mapp
         size = run.scenario.robot.radius + getattr(obstacle, "radius", 0.0)
         active = getattr(obstacle, "active_radius", None)
         if active is not None:
-            shares.append(min((distances[f"d_{_kind(obstacle)}_min"] - size) / (active - size), 1.0))
+            shares.append(min((distances[f"d_{kind_of(obstacle)}_min"] - size) / (active - size), 1.0))
     return (run.nominal_time / time + float(np.mean(shares)) + run.nominal_energy / energy) / 3.0

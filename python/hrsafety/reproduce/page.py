@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from hrsafety._atomic import write_file
-from hrsafety.reproduce import evidence, impact_page, markup, records
+from hrsafety.reproduce import evidence, gain_page, impact_page, markup, records
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.study import Study
@@ -34,6 +34,8 @@ class Report:
         Every printed value of the tables.
     pictures : list of Picture
         Pictures in their order.
+    gain_pictures : list of Picture
+        Pictures of the search for the best gains.
     study : Study or None
         Comparison of the stabilizing modes.
     study_pictures : list of Picture
@@ -50,6 +52,7 @@ class Report:
     parts: tuple[str, ...]
     cells: list[Cell] = field(default_factory=list)
     pictures: list[Picture] = field(default_factory=list)
+    gain_pictures: list[Picture] = field(default_factory=list)
     study: Study | None = None
     study_pictures: list[Picture] = field(default_factory=list)
     impact_cells: list[Cell] = field(default_factory=list)
@@ -64,7 +67,7 @@ class Report:
     @property
     def all_pictures(self) -> list[Picture]:
         """Pictures of all parts."""
-        return [*self.impact_pictures, *self.pictures, *self.study_pictures]
+        return [*self.impact_pictures, *self.gain_pictures, *self.pictures, *self.study_pictures]
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -172,7 +175,6 @@ def _sections(report: Report) -> Iterator[str]:
         ("tables-6", "Chapter 6: holonomic robot, configurations c1 to c4", "6."),
         ("tables-7", "Chapter 7: holonomic rows, configurations n1 to n4", "7."),
         ("table-5.1", "Section 5.7: a person who stops and turns", "5."),
-        ("tables-c", "Appendix C: one gain at a time changed", "C."),
     ):
         if part in report.parts:
             yield f'<section id="{part}"><h2>{escape(words)}</h2>'
@@ -180,6 +182,10 @@ def _sections(report: Report) -> Iterator[str]:
                 if table.startswith(prefix):
                     yield markup.table_of_cells(table, cells)
             yield "</section>"
+    if "tables-c" in report.parts:
+        yield '<section id="tables-c"><h2>Appendix C: the best gains, and one gain at a time changed</h2>'
+        yield from gain_page.section(report.cells, report.gain_pictures)
+        yield "</section>"
     if report.study is not None:
         yield '<section id="stabilizing"><h2>Stabilizing force: off, capped, full</h2>'
         yield from evidence.section(report.study)

@@ -64,7 +64,7 @@ _ROBOT: Keys = MappingProxyType(
     }
 )
 _MEASUREMENT: Keys = MappingProxyType({"scale": kind.number, "distribution": kind.word, "of": kind.word})
-_LAW: Keys = MappingProxyType(
+LAW: Keys = MappingProxyType(
     {
         "type": kind.word,
         "attractive_gain": kind.number,
@@ -142,8 +142,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     (0.0, 0.0)
     """
     place = Path(path)
-    fields = checked("", _parsed(place), _TOP, required=("start", "goal"))
-    law = _law(fields.pop("law", {"type": "virtual_force_field"}))
+    fields = checked("", parsed(place), _TOP, required=("start", "goal"))
+    law = law_of(fields.pop("law", {"type": "virtual_force_field"}))
     if "robot" in fields:
         fields["robot"] = _robot(fields["robot"])
     if "measurement" in fields:
@@ -156,7 +156,7 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
         return ScenarioFile(nav.Scenario(obstacles=tuple(obstacles), **fields), law)
 
 
-def _parsed(path: Path) -> dict[str, Any]:
+def parsed(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as read."""
     if not path.is_file():
         raise InvalidParameterError("path", "name a readable file", str(path))
@@ -173,8 +173,9 @@ def _parsed(path: Path) -> dict[str, Any]:
         raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
 
 
-def _law(table: dict[str, Any]) -> nav.VirtualForceField:
-    given = checked("law", table, _LAW, required=("type",))
+def law_of(table: dict[str, Any]) -> nav.VirtualForceField:
+    """Return the law that a table ``[law]`` describes."""
+    given = checked("law", table, LAW, required=("type",))
     _one_of("law.type", given.pop("type"), ("virtual_force_field",))
     with located("law"):
         return nav.VirtualForceField(**given)

@@ -27,6 +27,7 @@ __all__ = [
     "tables",
     "triple",
     "word",
+    "words",
 ]
 
 Kind = Callable[[str, Any], Any]
@@ -137,6 +138,11 @@ def word(path: str, value: Any) -> str:
     if not isinstance(value, str):
         raise InvalidParameterError(path, "be a text in quotes", shown(value))
     return value
+
+
+def words(path: str, value: Any) -> list[str]:
+    """Check an array of texts."""
+    return [word(f"{path}[{index}]", entry) for index, entry in enumerate(_array(path, value, "texts in quotes"))]
 
 
 def table(path: str, value: Any) -> dict[str, Any]:

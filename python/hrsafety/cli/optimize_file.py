@@ -1,0 +1,235 @@
+"""Gain study files: TOML in, a checked search for gains out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.gain_metrics import METRICS
+from hrsafety.scenarios import files
+from hrsafety.scenarios import keys as kind
+from hrsafety.scenarios.keys import Keys, checked, located
+
+__all__ = ["GainStudy", "load", "scenarios_of"]
+
+Gains = tuple[float, float, float, float]
+GAIN_NAMES = nav.VirtualForceField.GAIN_NAMES
+
+
+def _counts(path: str, value: Any) -> tuple[int, ...]:
+    """Check an array of four positive integers."""
+    if not isinstance(value, list) or len(value) != len(GAIN_NAMES):
+        raise InvalidParameterError(path, f"be an array of {len(GAIN_NAMES)} integers", kind.shown(value))
+    counts = tuple(kind.integer(f"{path}[{index}]", entry) for index, entry in enumerate(value))
+    for index, entry in enumerate(counts):
+        if entry < 1:
+            raise InvalidParameterError(f"{path}[{index}]", "be at least 1", entry)
+    return counts
+
+
+_TOP: Keys = MappingProxyType(
+    {
+        "title": kind.word,
+        "scenarios": kind.words,
+        "checkpoint": kind.word,
+        "law": kind.table,
+        "bounds": kind.table,
+        "search": kind.table,
+        "objective": kind.table,
+        "constraints": kind.tables,
+        "noise": kind.table,
+        "run": kind.table,
+        "front": kind.table,
+        "compare": kind.tables,
+    }
+)
+_LAW: Keys = MappingProxyType({name: check for name, check in files.LAW.items() if name not in GAIN_NAMES})
+_BOUNDS: Keys = MappingProxyType(dict.fromkeys(GAIN_NAMES, kind.pair))
+_SEARCH: Keys = MappingProxyType(
+    {
+        "method": kind.word,
+        "grid": _counts,
+        "refinements": kind.integer,
+        "survivors": kind.integer,
+        "local_starts": kind.integer,
+        "evaluations": kind.integer,
+        "seed": kind.integer,
+    }
+)
+_OBJECTIVE: Keys = MappingProxyType({"metric": kind.word, "weights": kind.triple})
+_CONSTRAINT: Keys = MappingProxyType(
+    {"metric": kind.word, "at_least": kind.number, "at_most": kind.number, "scenario": kind.word}
+)
+_NOISE: Keys = MappingProxyType({"seeds": kind.integer, "robustness": kind.word})
+_RUN: Keys = MappingProxyType(
+    {"integrator": kind.word, "step": kind.number, "hold": kind.boolean, "time_limit": kind.number}
+)
+_FRONT: Keys = MappingProxyType({"objectives": kind.words, "grid": _counts, "refinements": kind.integer})
+_COMPARE: Keys = MappingProxyType({"name": kind.word, **dict.fromkeys(GAIN_NAMES, kind.number)})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GainStudy:
+    """What a gain study file describes.
+
+    Attributes
+    ----------
+    title : str
+        Heading of the page.
+    names : tuple of str
+        Names of the scenarios: of a configuration, or a file without its ending.
+    scenarios : tuple of Scenario
+        Where.
+    law : VirtualForceField or None
+        Mode and side rules; its gains are searched. ``None``: without stabilizing force.
+    search : dict
+        Arguments of `hrsafety.navigation.optimize_gains` beyond scenarios and law.
+    front : dict or None
+        Arguments of `hrsafety.navigation.pareto_front` that differ from those of the search;
+        ``None``: no front is wanted.
+    compare : dict of str to tuple
+        Gain sets to show beside the best one, by name.
+    checkpoint : Path or None
+        Where unfinished work is kept; ``None``: in the output folder.
+    """
+
+    title: str
+    names: tuple[str, ...]
+    scenarios: tuple[nav.Scenario, ...]
+    law: nav.VirtualForceField | None
+    search: dict[str, Any]
+    front: dict[str, Any] | None
+    compare: dict[str, Gains] = field(default_factory=dict)
+    checkpoint: Path | None = None
+
+    @property
+    def objective(self) -> str:
+        """Name of the objective."""
+        return str(self.search.get("objective", "performance"))
+
+
+def load(path: str) -> GainStudy:
+    """Read a gain study file.
+
+    Parameters
+    ----------
+    path : str
+        The file, see ``examples/gain_study.toml``. Names of files in it are relative to it.
+
+    Returns
+    -------
+    GainStudy
+        Every key known and every value of its kind; ranges are checked by the search itself.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read, is not TOML, or a value breaks a rule; the message names the
+        key.
+    """
+    place = Path(path)
+    fields = checked("", files.parsed(place), _TOP, required=("scenarios",))
+    names, scenes = scenarios_of(fields["scenarios"], place.parent)
+    search = checked("search", fields.get("search", {}), _SEARCH)
+    search |= checked("run", fields.get("run", {}), _RUN) | checked("noise", fields.get("noise", {}), _NOISE)
+    search |= _objective(fields.get("objective", {}))
+    search["bounds"] = checked("bounds", fields.get("bounds", {}), _BOUNDS)
+    search["constraints"] = tuple(
+        _constraint(f"constraints[{index}]", table, names) for index, table in enumerate(fields.get("constraints", []))
+    )
+    if "checkpoint" in fields and not fields["checkpoint"].strip():
+        raise InvalidParameterError("checkpoint", "name a file", "an empty text")
+    return GainStudy(
+        title=fields.get("title", "Gains"),
+        names=names,
+        scenarios=scenes,
+        law=_law(fields["law"]) if "law" in fields else None,
+        search=search,
+        front=_front(fields["front"]) if "front" in fields else None,
+        compare=_compare(fields.get("compare", [])),
+        checkpoint=place.parent / fields["checkpoint"] if "checkpoint" in fields else None,
+    )
+
+
+def _law(table: dict[str, Any]) -> nav.VirtualForceField:
+    """Return the law, whose gains a study does not name: they are what is searched."""
+    return files.law_of(checked("law", table, _LAW))
+
+
+def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple[nav.Scenario, ...]]:
+    """Return the scenarios with short names: published configurations and scenario files."""
+    if not given:
+        raise InvalidParameterError("scenarios", "name at least one scenario", "an empty array")
+    found: dict[str, nav.Scenario] = {}
+    for index, word in enumerate(given):
+        where = f"scenarios[{index}]"
+        name = word if word in scenarios.CONFIGURATIONS else Path(word).stem
+        if name in found:
+            raise InvalidParameterError(where, "be a scenario that is not named before", word)
+        if word in scenarios.CONFIGURATIONS:
+            found[name] = scenarios.configuration(word)
+        else:
+            found[name] = _scenario_file(where, folder / word, word)
+    return tuple(found), tuple(found.values())
+
+
+def _scenario_file(where: str, path: Path, word: str) -> nav.Scenario:
+    if not path.is_file():
+        known = ", ".join(scenarios.CONFIGURATIONS)
+        raise InvalidParameterError(where, f"be a scenario file or one of {known}", word)
+    try:
+        return files.load(path).scenario
+    except InvalidParameterError as error:
+        raise InvalidParameterError(f"{where}: {word}: {error.argument}", error.requirement, error.value) from None
+
+
+def _objective(table: dict[str, Any]) -> dict[str, Any]:
+    given = checked("objective", table, _OBJECTIVE)
+    if "metric" in given:
+        given["objective"] = _metric("objective.metric", given.pop("metric"))
+    return given
+
+
+def _metric(path: str, word: str) -> str:
+    if word not in METRICS:
+        raise InvalidParameterError(path, f"be one of {', '.join(METRICS)}", word)
+    return word
+
+
+def _constraint(path: str, table: dict[str, Any], names: tuple[str, ...]) -> nav.GainConstraint:
+    given = checked(path, table, _CONSTRAINT, required=("metric",))
+    if "scenario" in given:
+        name = given["scenario"]
+        if name not in names:
+            raise InvalidParameterError(f"{path}.scenario", f"be one of {', '.join(names)}", name)
+        given["scenario"] = names.index(name)
+    with located(path):
+        return nav.GainConstraint(**given)
+
+
+def _front(table: dict[str, Any]) -> dict[str, Any]:
+    given = checked("front", table, _FRONT)
+    if "objectives" in given:
+        words = [_metric(f"front.objectives[{index}]", word) for index, word in enumerate(given["objectives"])]
+        if len(words) < 2 or len(set(words)) < len(words):
+            raise InvalidParameterError("front.objectives", "name at least two different metrics", ", ".join(words))
+        given["objectives"] = tuple(words)
+    return given
+
+
+def _compare(tables: list[dict[str, Any]]) -> dict[str, Gains]:
+    found: dict[str, Gains] = {}
+    for index, table in enumerate(tables):
+        path = f"compare[{index}]"
+        given = checked(path, table, _COMPARE, required=tuple(_COMPARE))
+        name = given.pop("name")
+        if name in found or not name.strip():
+            raise InvalidParameterError(f"{path}.name", "be a name that no other gain set has", name or "an empty text")
+        with located(path):
+            found[name] = nav.VirtualForceField(**given).gains
+    return found

@@ -1,0 +1,56 @@
+"""The part of the summary page about appendix C: best gains, sensitivities, trends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from hrsafety.reproduce import markup
+from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.figures import Picture
+from hrsafety.reproduce.gain_deviations import deviations
+
+__all__ = ["section"]
+
+_INTRO = (
+    "<p>The search of section C.2 is run with its own settings: four grids of 77,616 gain sets in configurations 1 to "
+    "3, each drawn around the 500 best of the one before, and local searches from the 20 best; the force is held and "
+    "motion steps are 0.01 s. Table C.1 shows what it finds beside the printed optimum. Tables C.2 to C.9 are the "
+    "printed optimum with one gain changed at a time. What the text says about trends is judged at the end, with what "
+    "is <strong>not</strong> reproduced.</p>"
+)
+_DEVIATIONS = (
+    "<p>Deviation of measured from printed over all rows of Tables C.2 to C.9: 12 changes of each of 4 gains; "
+    "configuration 3 has two distances.</p>"
+)
+_HEAD = ("Where", "Quantity", "Values", "Mean (%)", "Largest (%)", "Second largest (%)")
+_ORDER = ("C.1", "Section C.2", *(f"C.{number}" for number in range(2, 10)), "Section C.3")
+
+
+def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
+    """Yield tables, claims and pictures of appendix C.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        Cells of the page; those of other parts are left out.
+    pictures : sequence of Picture
+        Pictures of the search.
+
+    Yields
+    ------
+    str
+        HTML.
+    """
+    yield _INTRO
+    tables = markup.by_table(cells)
+    for table in _ORDER:
+        yield markup.table_of_cells(table, tables[table])
+        if table == "Section C.2":
+            yield from (markup.figure(picture) for picture in pictures)
+    yield "<h3>All rows of Tables C.2 to C.9</h3>" + _DEVIATIONS
+    lines = "".join(
+        f'<tr><th scope="row">{row.configuration}</th><td class="text">{row.quantity}</td><td>{row.values}</td>'
+        f"<td>{row.mean:+.1f}</td><td>{row.worst:.1f}</td><td>{row.second_worst:.1f}</td></tr>"
+        for row in deviations(cells)
+    )
+    yield markup.scroll(f"<table>{markup.head(_HEAD)}<tbody>{lines}</tbody></table>")
