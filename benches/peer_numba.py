@@ -21,10 +21,12 @@ STEPS = round(TIME_LIMIT / STEP)
 (HUMAN_X, HUMAN_Y), HUMAN_SPEED, HUMAN_STOP_TIME = same.HUMAN_START, same.HUMAN_SPEED, same.HUMAN_STOP_TIME
 (BOX_X, BOX_Y), HALF_LENGTH, HALF_WIDTH = same.BOX_CENTER, same.BOX_HALF_LENGTH, same.BOX_HALF_WIDTH
 DISC_X, DISC_Y = same.DISC_CENTER
-R3, R2 = (np.array(column) for column in zip(*same.RADII, strict=True))
+AHEAD_X, AHEAD_Y = 2.45, 0.595  # the disc of configuration 1
+R3, R2 = (np.array(column) for column in zip(*same.RADII, same.RADII[2], strict=True))
 WHEELS, INERTIA, VISCOUS, STATIC = same.WHEELS, same.INERTIA, same.VISCOUS, same.STATIC
 RESISTANCE, ALIGNED = same.RESISTANCE, same.ALIGNED
-HUMAN, BOX, DISC = 0, 1, 2
+HUMAN, BOX, DISC, DISC_AHEAD = 0, 1, 2, 3
+CONFIGURATION_4 = (HUMAN, BOX, DISC)
 
 
 @numba.njit(inline="always")
@@ -36,6 +38,8 @@ def nearest(which, x, y, time):
         near_x = BOX_X + min(max(x - BOX_X, -HALF_LENGTH), HALF_LENGTH)
         near_y = BOX_Y + min(max(y - BOX_Y, -HALF_WIDTH), HALF_WIDTH)
         return near_x, near_y
+    if which == DISC_AHEAD:
+        return AHEAD_X, AHEAD_Y
     return DISC_X, DISC_Y
 
 
@@ -79,11 +83,11 @@ def side_of(which, x, y, point_y, moving, phi):
 
 
 @numba.njit
-def force(k1, k3, k5, b, x, y, vx, vy, time, rest):
+def force(k1, k3, k5, b, x, y, vx, vy, time, rest, present):
     """Return the commanded force; ``rest`` is scratch space for undecided detours."""
     fx, fy = k1 * (GOAL_X - x - b * vx), k1 * (GOAL_Y - y - b * vy)
     push_x, push_y, size, undecided = 0.0, 0.0, 0.0, 0
-    for which in range(3):
+    for which in present:
         point_x, point_y = nearest(which, x, y, time)
         dx, dy = x - point_x, y - point_y
         d2 = dx * dx + dy * dy
@@ -147,7 +151,7 @@ def run(k1, k3, k5, b, least, rest):
         least[which] = math.hypot(x - point_x, y - point_y)
     for step in range(STEPS):
         if step % STEPS_PER_PERIOD == 0:
-            fx, fy = force(k1, k3, k5, b, x, y, vx, vy, step * STEP, rest)
+            fx, fy = force(k1, k3, k5, b, x, y, vx, vy, step * STEP, rest, CONFIGURATION_4)
             evaluations += 1
         ax, ay = fx / MASS, fy / MASS
         acceleration = math.sqrt(ax * ax + ay * ay)

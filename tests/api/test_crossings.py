@@ -135,13 +135,13 @@ def test_crossings_can_be_pickled() -> None:
 )
 def test_bad_options_of_crossings_are_errors(options: dict[str, object], argument: str) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        scenarios.crossings(stream(), **options)  # type: ignore[arg-type]
+        scenarios.crossings(stream(), **options)  # type: ignore[arg-type]  # bad on purpose
     assert caught.value.argument == argument
 
 
 def test_only_a_recording_can_be_crossed() -> None:
     with pytest.raises(InvalidParameterError, match="recording must be a Recording"):
-        scenarios.crossings([1, 2, 3])  # type: ignore[arg-type]
+        scenarios.crossings([1, 2, 3])  # type: ignore[arg-type]  # bad on purpose
 
 
 MANY = 5

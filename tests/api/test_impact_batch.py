@@ -1,11 +1,7 @@
-"""Many impacts in one call: shapes, rows that cannot be, agreement with single calls, Ctrl-C."""
+"""Many impacts in one call: shapes, rows that cannot be, agreement with single calls, progress."""
 
 from __future__ import annotations
 
-import signal
-import subprocess
-import sys
-import time
 from typing import Any
 
 import numpy as np
@@ -155,7 +151,7 @@ def test_bad_row_is_nan_with_a_status_and_the_others_stand(argument: str, bad: l
     found = impact.metrics_batch(**{**PARTS, "closing_speed": 1.25, argument: column}, fields=fields)
     for name in NUMBERS:
         assert np.isnan(getattr(found, name)[1:-1]).all(), name
-    assert set(found.status[1:-1].tolist()) == {"invalid_parameter"}
+    assert set(found.status[1:-1].tolist()) == {f"invalid_{argument}"}
     whole = impact.metrics(MANIPULATOR, FOAM, HEAD, closing_speed=1.25)
     for row in (0, -1):
         assert found.status[row] == "released"
@@ -214,7 +210,9 @@ def many(**options: Any) -> impact.ImpactMetricsBatch:
     )
 
 
-@pytest.mark.parametrize("options", [{"threads": 1}, {"threads": 3}, {"lanes": 1}, {"lanes": 8}])
+@pytest.mark.parametrize(
+    "options", [{"threads": 1}, {"threads": 3}, {"lanes": 1}, {"lanes": 4}, {"lanes": 8}, {"lanes": 16}]
+)
 def test_threads_and_lanes_change_nothing_that_counts(options: dict[str, int]) -> None:
     plain, other = many(), many(**options)
     assert other.status.tolist() == plain.status.tolist()
@@ -252,53 +250,53 @@ def test_huge_and_tiny_numbers_never_fail_the_batch() -> None:
             "released",
             "no_release",
             "beyond_linear_range",
-            "invalid_parameter",
+            "too_stiff",
         }, name
 
 
-# ---- Ctrl-C ---------------------------------------------------------------------------------
-
-# Work for many seconds, so that the signal always arrives while it runs.
-BATCH = """
-import time
-import numpy as np
-from hrsafety import impact
-speeds = np.linspace(0.1, 2.0, 20_000_000)
-print("started", flush=True)
-try:
-    impact.metrics_batch(
-        manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum(), closing_speed=speeds,
-        threads=1,
+def test_first_bad_number_gives_the_status() -> None:
+    found = impact.metrics_batch(
+        **{**PARTS, "closing_speed": [np.nan, 1.25, -1.0]},
+        head_mass=[-1.0, -1.0, 4.4],
+        manipulator_mass=[0.0, 9.6, 9.6],
+        foam_damping=[1.0, 2.0, np.inf],
     )
-except KeyboardInterrupt:
-    print("interrupted", time.monotonic(), flush=True)
-else:
-    print("finished", flush=True)
-"""
-
-# Time that the batch is given to get going, in s.
-WARM_UP = 1.5
-
-# The promise is 0.2 s; the limit leaves room for a loaded machine, in s.
-LIMIT = 2.0
+    assert found.status.tolist() == ["invalid_manipulator_mass", "invalid_head_mass", "invalid_foam_damping"]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
-def test_running_batch_answers_ctrl_c(capsys: pytest.CaptureFixture[str]) -> None:
-    process = subprocess.Popen([sys.executable, "-c", BATCH], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    assert process.stdout.readline() == "started\n"
-    time.sleep(WARM_UP)
-    sent = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    try:
-        output, errors = process.communicate(timeout=LIMIT)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        pytest.fail(f"the process did not end within {LIMIT} s of the signal")
-    words = output.split()
-    assert words[:1] == ["interrupted"], (output, errors)
-    assert process.returncode == 0, errors
-    with capsys.disabled():
-        print(f" [Ctrl-C answered in {1e3 * (float(words[1]) - sent):.0f} ms]", end="")
+def test_bad_number_against_a_wall_is_named_too() -> None:
+    found = impact.metrics_batch(
+        **{**PARTS, "head": impact.ConstrainedHead()}, closing_speed=[1.0, np.inf], manipulator_stiffness=[-1.0, 20e3]
+    )
+    assert found.status.tolist() == ["invalid_manipulator_stiffness", "invalid_closing_speed"]
+
+
+# ---- progress -------------------------------------------------------------------------------
+
+
+def test_progress_is_told_and_ends_with_the_total() -> None:
+    heard: list[tuple[int, int]] = []
+    impact.metrics_batch(
+        **PARTS,
+        closing_speed=np.linspace(0.1, 2.0, 300_000),
+        threads=1,
+        progress=lambda done, total: heard.append((done, total)),
+    )
+    done = [each for each, _ in heard]
+    assert done == sorted(set(done))
+    assert heard[-1] == (300_000, 300_000)
+    assert {total for _, total in heard} == {300_000}
+
+
+def test_progress_that_raises_ends_the_batch() -> None:
+    def stop(done: int, total: int) -> None:
+        raise ValueError(f"{done} of {total}")
+
+    with pytest.raises(ValueError, match="of 300"):
+        impact.metrics_batch(**PARTS, closing_speed=np.linspace(0.1, 2.0, 300), progress=stop)
+
+
+def test_progress_that_cannot_be_called_is_refused() -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        impact.metrics_batch(**PARTS, closing_speed=1.25, progress=3)  # type: ignore[arg-type]  # the point
+    assert caught.value.argument == "progress"

@@ -29,6 +29,7 @@ VALUES: list[tuple[Any, dict[str, Any]]] = [
     (impact.DirectDrive(proportional=448.7, derivative=5.579), {"voltage_limit": math.inf}),
     (impact.SetPoint.accelerating(5.0, duration=0.05), {"feed_forward": True}),
     (impact.FoamLimits(), {"peak_head_acceleration_g": 8.0}),
+    (impact.CylinderController(), {"derivative": 0.0}),
 ]
 
 each_value = pytest.mark.parametrize(("value", "change"), VALUES, ids=[type(value).__name__ for value, _ in VALUES])
@@ -209,3 +210,28 @@ def test_damping_ratio_is_rescaled_to_the_moving_mass() -> None:
     foam = impact.Foam.from_damping_ratio(stiffness=24.25e3, damping_ratio=0.112, moving_mass=4.4)
     assert foam.damping == pytest.approx(2 * 0.112 * math.sqrt(4.4 * 24.25e3), rel=ROUNDING)
     assert foam.stiffness == 24.25e3
+
+
+def test_speed_of_the_impact_point_is_that_of_its_links() -> None:
+    second, lever, elbow, rates = 0.43, 0.4, 0.7, np.array([0.8, -0.3])
+    step = 1e-6
+
+    def place(time: float) -> np.ndarray:
+        first, both = 0.2 + rates[0] * time, 0.2 + elbow + rates.sum() * time
+        return second * np.array([np.cos(first), np.sin(first)]) + lever * np.array([np.cos(both), np.sin(both)])
+
+    normal = np.array([-np.sin(0.2 + elbow), np.cos(0.2 + elbow)])
+    wanted = float(normal @ (place(step) - place(-step))) / (2.0 * step)
+    found = impact.impact_point_speed(rates, second_link=second, lever_arm=lever, elbow=elbow)
+    assert found == pytest.approx(wanted, rel=1e-9)  # central differences
+    straight = impact.impact_point_speed(rates, second_link=second, lever_arm=lever)
+    assert straight == pytest.approx((second + lever) * rates[0] + lever * rates[1], rel=ROUNDING)
+
+
+def test_cylinder_is_commanded_by_its_errors_and_its_wanted_motion() -> None:
+    command = impact.CylinderController().command
+    moving = {"desired_position": 0.2, "desired_velocity": 1.0, "position": 0.2, "velocity": 1.0}
+    assert command(**moving) == pytest.approx(0.44, rel=ROUNDING)
+    assert command(**moving, desired_acceleration=2.0) == pytest.approx(0.44 + 2.0 * 0.34, rel=ROUNDING)
+    assert command(**{**moving, "position": 0.199}) == pytest.approx(0.44 + 0.2085, rel=1e-12)  # a difference
+    assert command(**{**moving, "velocity": 0.9}) == pytest.approx(0.44 + 1.49, rel=1e-12)

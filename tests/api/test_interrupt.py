@@ -1,4 +1,4 @@
-"""Ctrl-C while a batch runs."""
+"""Ctrl-C while the core works: batches, one huge record, a bootstrap, a map of boundaries."""
 
 from __future__ import annotations
 
@@ -9,28 +9,67 @@ import time
 
 import pytest
 
-# There is work for several seconds, so the signal always arrives while it runs: a robot without
-# forces waits for its time limit in each of the long runs; the short runs arrive.
-BATCH = """
-import sys, time
+# Every piece of work takes many seconds, so the signal always arrives while it runs.
+PROGRAM = """
+import time
 import numpy as np
-from hrsafety import navigation as nav
-scene = nav.Scenario(
-    start=(3.9, 0.6), goal=(0.0, 0.6), time_limit=60.0, rest_time=60.0,
-    obstacles=[nav.Human(start=(0.0, y), velocity=(0.01, 0.0)) for y in (-5.0, 5.0, 8.0)],
-)
-gains = np.tile({gains}, (400_000, 1))
-report = {report}
+from hrsafety import impact, navigation as nav
+{preparation}
 print("started", flush=True)
 try:
-    nav.simulate_batch([scene], nav.VirtualForceField(), gains, {options}, progress=report)
+    {work}
 except KeyboardInterrupt:
     print("interrupted", time.monotonic(), flush=True)
 else:
     print("finished", flush=True)
 """
 
-# Time that the batch is given to get going, in s.
+# A robot without forces waits for its time limit in each of the long runs; the short runs arrive.
+RUNS = """
+scene = nav.Scenario(
+    start=(3.9, 0.6), goal=(0.0, 0.6), time_limit=60.0, rest_time=60.0,
+    obstacles=[nav.Human(start=(0.0, y), velocity=(0.01, 0.0)) for y in (-5.0, 5.0, 8.0)],
+)
+gains = np.tile({gains}, (400_000, 1))
+"""
+LONG, SHORT = RUNS.format(gains=(0.0, 0.0, 0.0, 0.0)), RUNS.format(gains=(3.0, 20.0, 17.0, 0.25))
+SIMULATE = "nav.simulate_batch([scene], nav.VirtualForceField(), gains, {options})"
+
+PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
+SPEEDS = "speeds = np.linspace(0.1, 2.0, 20_000_000)\n" + PARTS
+BATCH = (
+    "impact.metrics_batch(manipulator=parts[0], foam=parts[1], head=parts[2], closing_speed=speeds, threads=1{more})"
+)
+RECORD = "impact.simulate(*parts, closing_speed=1.25, duration=0.04, step=1e-9, method={method!r})"
+JOINT = """
+drive = impact.DirectDrive(proportional=448.7, derivative=5.579)
+"""
+DRIVEN = """impact.simulate_direct_drive(
+        drive, impact.FOAM_1, impact.Head.apparatus(), closing_speed=1.25, duration=2500.0, step=1e-3)"""
+DROP = """
+time_ = np.arange(0.0, 0.4, 0.001)
+drop = impact.drop_trajectory(time_, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0)
+depth = np.linspace(0.0, 0.008, 17)
+force = 24250.0 * depth + np.sin(np.arange(17.0))
+"""
+BOOTSTRAP = "impact.identify_foam(force, depth, time_, np.round(drop, 4), 1.54, bootstrap=200_000)"
+BOUNDARY = "impact.foam_stiffness_upper(parts[0], damping=np.linspace(0.0, 300.0, 400_000), closing_speed=1.25)"
+
+JOBS = {
+    "long runs": (LONG, SIMULATE.format(options="threads=2")),
+    "long runs, reported": (LONG, SIMULATE.format(options="threads=2, progress=lambda done, total: None")),
+    "short runs": (SHORT, SIMULATE.format(options="threads=1, lanes=1")),
+    "short runs, reported": (SHORT, SIMULATE.format(options="threads=1, lanes=1, progress=lambda done, total: None")),
+    "impacts": (SPEEDS, BATCH.format(more="")),
+    "impacts, reported": (SPEEDS, BATCH.format(more=", progress=lambda done, total: None")),
+    "one impact, exact": (PARTS, RECORD.format(method="exact")),
+    "one impact, stepped": (PARTS, RECORD.format(method="rk4")),
+    "one joint": (JOINT, DRIVEN),
+    "bootstrap": (DROP, BOOTSTRAP),
+    "boundary": (PARTS, BOUNDARY),
+}
+
+# Time that the work is given to get going, in s.
 WARM_UP = 0.7
 
 # The promise is 0.2 s; the limit leaves room for a loaded machine and for the end of the
@@ -39,16 +78,10 @@ LIMIT = 2.0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
-@pytest.mark.parametrize("report", ["None", "lambda done, total: None"])
-@pytest.mark.parametrize(
-    ("gains", "options"),
-    [("(0.0, 0.0, 0.0, 0.0)", "threads=2"), ("(3.0, 20.0, 17.0, 0.25)", "threads=1, lanes=1")],
-    ids=["long runs", "short runs"],
-)
-def test_running_batch_answers_ctrl_c(
-    gains: str, options: str, report: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    program = BATCH.replace("{report}", report).replace("{gains}", gains).replace("{options}", options)
+@pytest.mark.parametrize("job", JOBS)
+def test_running_work_answers_ctrl_c(job: str, capsys: pytest.CaptureFixture[str]) -> None:
+    preparation, work = JOBS[job]
+    program = PROGRAM.format(preparation=preparation, work=work)
     process = subprocess.Popen(
         [sys.executable, "-c", program],
         stdout=subprocess.PIPE,

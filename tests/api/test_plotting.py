@@ -2,13 +2,25 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-import stat
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+from api.plotted import (
+    DISC,
+    LAW,
+    PERSON,
+    RECTANGLE,
+    STATIONARY,
+    WALKING,
+    crowd,
+    made_up_field,
+    made_up_run,
+    scene,
+    touched,
+)
 from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError
@@ -17,97 +29,12 @@ matplotlib = pytest.importorskip("matplotlib")
 Image = pytest.importorskip("PIL.Image")
 
 from matplotlib.colors import to_hex  # noqa: E402  # needs the check above
-from matplotlib.patches import Circle, Polygon  # noqa: E402
+from matplotlib.patches import Circle, Polygon  # noqa: E402  # needs the check above
 
-from hrsafety.plotting import shapes, style  # noqa: E402
-
-STATIONARY = {"active_radius": 0.8, "critical_radius": 0.4}
-WALKING = {"active_radius": 2.1, "critical_radius": 0.8}
-DISC = nav.Disc(center=(2.45, 1.4), radius=0.1, **STATIONARY)
-RECTANGLE = nav.Rectangle(center=(2.3, 0.0), length=1.4, width=0.6, **STATIONARY)
-PERSON = nav.Human(start=(0.6, 0.6), velocity=(1.0, 0.0), stop=(4.0, 0.6), **WALKING)
-LAW = nav.VirtualForceField(stabilizing="off")
-STEP = 0.01
+from hrsafety.plotting import shapes, style  # noqa: E402  # needs the check above
 
 ROUNDING = 1e-12  # sums and differences of a few numbers of order one
 LOSS_ROUNDING = 1e-9  # the same sum of thousands of terms in another order
-LARGEST_GIF = 3_000_000  # bytes, for a run of 15 s
-
-
-def scene(*obstacles: nav.Obstacle) -> nav.Scenario:
-    return nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=obstacles)
-
-
-def made_up_run(*obstacles: nav.Obstacle, duration: float = 5.5, arrived: bool = True) -> nav.Trajectory:
-    """A run along a sine from start to goal; obstacles stand, people walk along x and are absent before 1 s."""
-    scenario = scene(*obstacles)
-    time = np.arange(round(duration / STEP) + 1) * STEP
-    share = time / duration
-    position = np.stack([3.9 * (1.0 - share), 0.6 + 0.9 * np.sin(np.pi * share)], axis=1)
-    places = np.empty((len(time), len(obstacles), 2))
-    for index, obstacle in enumerate(obstacles):
-        if isinstance(obstacle, nav.Human):
-            places[:, index] = np.array(obstacle.start) + time[:, np.newaxis] * np.array(obstacle.velocity)
-            places[time < 1.0, index] = np.nan
-        else:
-            places[:, index] = obstacle.center
-    distance = np.linalg.norm(position[:, np.newaxis] - places, axis=2)
-    radii = np.array([getattr(obstacle, "radius", 0.0) + scenario.robot.radius for obstacle in obstacles])
-    least = np.nanmin(distance, axis=0) if obstacles else np.empty(0)
-    current = 0.2 * np.stack([np.sign(np.sin(time)), np.ones_like(time), -np.ones_like(time)], axis=1)
-    return nav.Trajectory(
-        scenario=scenario,
-        law=LAW,
-        time=time,
-        position=position,
-        velocity=np.gradient(position, time, axis=0),
-        force=np.zeros_like(position),
-        heading=np.zeros_like(time),
-        wheel_current=current,
-        obstacle_position=places,
-        distance=distance,
-        outcome="arrived" if arrived else "timed_out",
-        arrival_time=float(time[-1]) if arrived else np.nan,
-        energy=float(4.86 * STEP * (current[1:] ** 2).sum()),
-        min_distance=least,
-        min_clearance=least - radii,
-        contact_time=np.full(len(obstacles), np.nan),
-        contact_speed=np.full(len(obstacles), np.nan),
-        path_length=4.5,
-        stabilizing=np.zeros_like(position),
-        lyapunov=100.0 * np.exp(-time),
-    )
-
-
-def crowd(people: int) -> list[nav.Human]:
-    """People who walk through an area of 10 m x 8 m around the way of the robot."""
-    places = np.random.default_rng(7).uniform((-4.0, -3.5), (6.0, 4.5), (people, 2))
-    return [
-        nav.Human(start=tuple(place), velocity=(0.5, 0.1), **WALKING) for place in places if abs(place[0] - 3.9) > 0.7
-    ]
-
-
-def made_up_field(*, hole: tuple[float, float] | None = (2.45, 1.4)) -> nav.ForceField:
-    x, y = np.meshgrid(np.linspace(0.0, 4.0, 33), np.linspace(-0.4, 2.6, 25))
-    position = np.column_stack([x.ravel(), y.ravel()])
-    offset = position - np.array(hole or (9.0, 9.0))
-    distance = np.hypot(*offset.T)
-    attraction = np.array([0.0, 0.6]) - position
-    repulsion = np.where(distance < 0.8, 1.0 / np.maximum(distance - 0.4, 1e-9), 0.0)[:, np.newaxis] * offset
-    inside = distance <= 0.4
-    terms = {name: np.zeros_like(position) for name in ("detour", "stabilizing")}
-    total = np.where(inside[:, np.newaxis], 0.0, attraction + repulsion)
-    potential = np.where(inside, np.nan, (attraction**2).sum(axis=1) + (repulsion**2).sum(axis=1) + 1e-3)
-    masked = {"attractive": attraction, "repulsive": repulsion, **terms}
-    for values in masked.values():
-        values[inside] = np.nan
-    return nav.ForceField(position=position, total=total, potential=potential, **masked)
-
-
-def touched(run: nav.Trajectory, obstacle: int, instant: float) -> nav.Trajectory:
-    times = run.contact_time.copy()
-    times[obstacle] = instant
-    return dataclasses.replace(run, contact_time=times, outcome="collided")
 
 
 @pytest.fixture(scope="module")
@@ -519,127 +446,6 @@ def test_wrong_groups_are_named():
         plotting.outcomes({"a": ["arrived"]}, contacts_moving={}, contacts_standing={})
     with pytest.raises(ShapeError, match=r"contacts_moving\['a'\]"):
         plotting.outcomes({"a": ["arrived"]}, contacts_moving={"a": [0, 1]}, contacts_standing={"a": [0]})
-
-
-# ---- animation ----------------------------------------------------------------------------------------
-
-
-def pictures_of(file) -> list[np.ndarray]:
-    with Image.open(file) as picture:
-        frames = []
-        for index in range(picture.n_frames):
-            picture.seek(index)
-            frames.append(np.asarray(picture.convert("RGB")))
-    return frames
-
-
-def test_animation_shows_the_run_in_its_own_time(tmp_path, run):
-    file = plotting.animate(run, tmp_path / "run.gif", frames_per_second=15)
-    with Image.open(file) as picture:
-        frames, durations = picture.n_frames, []
-        for index in range(frames):
-            picture.seek(index)
-            durations.append(picture.info["duration"])
-    assert frames > 5
-    assert abs(sum(durations[:-1]) / 1000.0 - run.time[-1]) < 0.1  # one frame and the 10 ms of a GIF
-    assert list(tmp_path.iterdir()) == [file]
-
-
-def test_animation_of_a_long_run_in_a_crowd_stays_small(tmp_path):
-    file = plotting.animate(made_up_run(*crowd(45), duration=15.0), tmp_path / "crowd.gif")
-    assert file.stat().st_size < LARGEST_GIF
-    assert len(pictures_of(file)) == 301
-
-
-def test_who_is_absent_is_hidden_in_an_animation(tmp_path):
-    slow = nav.Human(start=(1.0, 2.0), velocity=(0.06, 0.0), **WALKING)
-    file = plotting.animate(made_up_run(slow), tmp_path / "run.gif", frames_per_second=2, regions=False)
-    orange = np.array([0xD5, 0x5E, 0x00])
-    shown = [bool((np.abs(frame - orange).sum(axis=2) < 30).any()) for frame in np.int64(pictures_of(file))]
-    assert shown[:2] == [False, False]  # absent before 1 s
-    assert all(shown[2:])
-
-
-def test_speed_shortens_an_animation(tmp_path):
-    lengths = []
-    for speed in (1.0, 2.0):
-        file = plotting.animate(made_up_run(), tmp_path / f"{speed}.gif", frames_per_second=10, speed=speed)
-        lengths.append(len(pictures_of(file)))
-    assert lengths == [56, 29]
-
-
-@pytest.mark.parametrize(
-    ("options", "named"),
-    [
-        ({"path": "run.avi"}, "path must end in .gif or .mp4"),
-        ({"path": "nowhere/run.gif"}, "path must lie in a folder that exists"),
-        ({"frames_per_second": 0}, "frames_per_second must be finite and positive"),
-        ({"frames_per_second": np.nan}, "frames_per_second must be finite and positive"),
-        ({"frames_per_second": 60}, "frames_per_second must be at most 50"),
-        ({"speed": -1.0}, "speed must be finite and positive"),
-        ({"speed": 1e-3}, "speed must be high enough"),
-        ({"names": ["a", "b"]}, "names must be 1 strings"),
-    ],
-)
-def test_animations_that_cannot_be_written_are_refused(tmp_path, options, named):
-    path = tmp_path / options.pop("path", "run.gif")
-    with pytest.raises(InvalidParameterError, match=named):
-        plotting.animate(made_up_run(DISC), path, **options)
-    assert not list(tmp_path.iterdir())
-
-
-def test_an_animation_that_fails_leaves_an_older_file_alone(tmp_path, monkeypatch):
-    file = tmp_path / "run.gif"
-    file.write_bytes(b"older")
-    made_up = made_up_run(DISC)
-
-    def broken(*_arguments: object, **_options: object) -> None:
-        raise OSError("disk full")
-
-    monkeypatch.setattr(Image.Image, "save", broken)
-    with pytest.raises(OSError, match="disk full"):
-        plotting.animate(made_up, file, frames_per_second=2)
-    assert file.read_bytes() == b"older"
-    assert list(tmp_path.iterdir()) == [file]
-
-
-def test_mp4_without_ffmpeg_says_so(tmp_path, monkeypatch):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(plotting.MissingExtraError, match="ffmpeg"):
-        plotting.animate(made_up_run(), tmp_path / "run.mp4")
-
-
-def stand_in_for_ffmpeg(folder, code: str) -> None:
-    program = folder / "ffmpeg"
-    program.write_text(f"#!{sys.executable}\nimport sys\n{code}\n")
-    program.chmod(program.stat().st_mode | stat.S_IXUSR)
-
-
-def test_mp4_is_piped_to_ffmpeg_frame_by_frame(tmp_path, monkeypatch):
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    stand_in_for_ffmpeg(
-        programs,
-        "raw = sys.stdin.buffer.read()\n"
-        "size = sys.argv[sys.argv.index('-s') + 1]\n"
-        "open(sys.argv[-1], 'w').write(f'{size} {len(raw)}')",
-    )
-    monkeypatch.setenv("PATH", str(programs))
-    file = plotting.animate(made_up_run(), tmp_path / "run.mp4", frames_per_second=10)
-    size, total = file.read_text().split()
-    width, height = (int(number) for number in size.split("x"))
-    assert width % 2 == height % 2 == 0
-    assert int(total) == 3 * width * height * (56 + 12)  # the run, and its last picture held
-
-
-def test_failure_of_ffmpeg_is_told(tmp_path, monkeypatch):
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    stand_in_for_ffmpeg(programs, "sys.exit('no such codec')")
-    monkeypatch.setenv("PATH", str(programs))
-    with pytest.raises(HrsafetyError, match=r"ffmpeg could not write .*: no such codec"):
-        plotting.animate(made_up_run(), tmp_path / "run.mp4", frames_per_second=10)
-    assert not (tmp_path / "run.mp4").exists()
 
 
 # ---- the real thing -----------------------------------------------------------------------------------

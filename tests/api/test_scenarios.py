@@ -89,7 +89,7 @@ def test_the_unpredictable_human_brakes_and_walks_off_sideways(instant: float, e
 @pytest.mark.parametrize("name", ["c5", "C1", "", None, 1, ["c1"]])
 def test_an_unknown_configuration_is_an_error_that_lists_the_names(name: object) -> None:
     with pytest.raises(InvalidParameterError, match=r"name must be one of c1, c2, .*multiple_obstacles"):
-        scenarios.configuration(name)  # type: ignore[arg-type]
+        scenarios.configuration(name)  # type: ignore[arg-type]  # bad on purpose
 
 
 @pytest.mark.parametrize("people", [0, 1, 3, 12, 40])
@@ -139,5 +139,5 @@ def test_most_people_of_a_crowd_walk_through_the_way_of_the_robot() -> None:
 )
 def test_bad_crowds_are_errors(people: object, seed: object, argument: str) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        scenarios.random_crowd(people, seed=seed)  # type: ignore[arg-type]
+        scenarios.random_crowd(people, seed=seed)  # type: ignore[arg-type]  # bad on purpose
     assert caught.value.argument == argument

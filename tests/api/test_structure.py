@@ -29,7 +29,10 @@ CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
 NATIVE_USERS = ("navigation", "impact", "reactive")
-COMPUTING = {"simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"}
+COMPUTING = {
+    *("simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"),
+    *("optimize_gains", "pareto_front", "gain_sensitivity", "gain_gradient"),
+}
 COMPUTING_IMPACT = {"simulate", "simulate_direct_drive", "metrics", "metrics_batch", "gradients", "hic", "design_foam"}
 VAGUE_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "types", "manager"}
 
@@ -160,8 +163,8 @@ def test_plotting_computes_no_impact(path: Path) -> None:
 
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
-    optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "numba", "pandas"}
-    parts = ("navigation", "impact", "scenarios", "datasets", "plotting", "cli")
+    optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "distributed", "numba", "pandas"}
+    parts = ("navigation", "impact", "scenarios", "datasets", "plotting", "sweep", "cli")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -237,7 +240,7 @@ def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
 # ---- docstrings -----------------------------------------------------------------------------
 
 # Modules whose public names users call. Examples stand where a call makes sense on its own.
-DOCUMENTED = ("navigation", "impact", "scenarios", "datasets", "plotting", "reproduce", "errors")
+DOCUMENTED = ("navigation", "impact", "scenarios", "datasets", "plotting", "reproduce", "sweep", "errors")
 NEEDS_NO_EXAMPLE = {
     "reproduce",  # runs for minutes
 }

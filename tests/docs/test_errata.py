@@ -45,15 +45,15 @@ class Term:
     alphaddot: float
 
     @property
-    def L(self) -> float:  # noqa: N802
+    def L(self) -> float:  # noqa: N802  # letters of the source
         return self.a**2 / self.c
 
     @property
-    def Ld(self) -> float:  # noqa: N802
+    def Ld(self) -> float:  # noqa: N802  # letters of the source
         return -self.ddot * self.a**2 / self.c**2
 
     @property
-    def KLdot(self) -> float:  # noqa: N802
+    def KLdot(self) -> float:  # noqa: N802  # letters of the source
         return -2.0 * self.ddot * (self.a**2 / self.c**3 + self.a / self.c**2)
 
     @property
@@ -69,7 +69,7 @@ class Term:
         return K3 * self.L * self.u + K5 * self.psi * self.u_psi
 
     @property
-    def l(self) -> np.ndarray:  # noqa: E743
+    def l(self) -> np.ndarray:  # noqa: E743  # letter of the source
         return K3 * self.Ld * self.u + K5 * self.psid * self.u_psi
 
 
@@ -107,8 +107,8 @@ PRINTED: dict[str, dict[str, Callable[[Term], float]]] = {
 
 def disc_term(disc: nav.MovingDisc, position: np.ndarray, velocity: np.ndarray, side: int) -> Term:
     """Return the geometry of one disc."""
-    V_o, a_o = np.array(disc.velocity), np.array(disc.acceleration)  # noqa: N806
-    D, W = position - disc.center, GOAL - disc.center  # noqa: N806
+    V_o, a_o = np.array(disc.velocity), np.array(disc.acceleration)  # noqa: N806  # letters of the source
+    D, W = position - disc.center, GOAL - disc.center  # noqa: N806  # letters of the source
     d, w = float(np.hypot(*D)), float(np.hypot(*W))
     u, u_w = D / d, W / w
     t, t_w = np.array([-u[1], u[0]]), np.array([-u_w[1], u_w[0]])

@@ -68,3 +68,16 @@ def test_derivatives_come_with_the_metrics_themselves() -> None:
 
 def test_golden_gradients_are_what_their_script_makes() -> None:
     assert gradient_row(Parameters(*CASES[3]["parameters"])) == CASES[3]
+
+
+def test_relative_derivatives_of_a_proportional_impact_are_its_powers() -> None:
+    found = impact.gradients(impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=1.25)
+    speed = found.relative[:, found.parameter_names.index("closing_speed")]
+    powers = {"impact_duration": 0.0, "hic15": 2.5, "hic36": 2.5, "peak_power_manipulator": 2.0, "peak_power_foam": 2.0}
+    wanted = [powers.get(name, 1.0) for name in found.metric_names]
+    assert speed == pytest.approx(wanted, abs=1e-9)
+    # Scaling all masses, dampings and stiffnesses together changes the forces and nothing else.
+    bodies = [i for i, name in enumerate(found.parameter_names) if not name.endswith("speed")]
+    together = dict(zip(found.metric_names, found.relative[:, bodies].sum(axis=1), strict=True))
+    for name, value in together.items():
+        assert value == pytest.approx(1.0 if "force" in name or "power" in name else 0.0, abs=1e-9), name

@@ -98,6 +98,23 @@ def test_nominal_intervals_cover_the_truth_in_90_to_99_percent_of_500_repeats() 
     np.testing.assert_array_less(np.abs(np.mean(values, axis=0) - TRUTH), 4.0 * error)
 
 
+@pytest.mark.parametrize("offset", [False, True])
+def test_static_fit_is_the_least_squares_line_and_its_intervals_cover_the_truth(offset: bool) -> None:
+    covered, zero = 0, 3.0 if offset else 0.0
+    for seed in range(REPEATS):
+        generator = np.random.default_rng(seed)
+        depth = np.linspace(0.4e-3, 5e-3, 12)
+        force = STIFFNESS * depth + zero + generator.normal(0.0, 1.0, 12)
+        fit = impact.fit_static(force, depth, offset=offset)
+        plain = np.column_stack([depth, np.ones(12)] if offset else [depth])
+        solution = np.linalg.lstsq(plain, force, rcond=None)[0]
+        assert fit.stiffness == pytest.approx(solution[0], rel=1e-9)
+        assert fit.force_offset == pytest.approx(solution[1] if offset else 0.0, rel=1e-8)
+        assert fit.degrees_of_freedom == 12 - plain.shape[1]
+        covered += fit.interval[0, 0] <= STIFFNESS <= fit.interval[0, 1]
+    assert 0.90 * REPEATS <= covered <= 0.99 * REPEATS
+
+
 def test_several_drops_narrow_the_intervals() -> None:
     benches = [bench(seed) for seed in range(3)]
     one = impact.identify_foam(*benches[0], MASS)

@@ -118,8 +118,8 @@ def plain_unilateral(case: tuple[Any, ...]) -> tuple[list[Piece], list[float], l
     def touches(_: float, y: np.ndarray, __: bool) -> float:
         return (y[0] - y[2]) - y[4]
 
-    pulls.terminal = touches.terminal = True  # type: ignore[attr-defined]
-    pulls.direction, touches.direction = -1.0, 1.0  # type: ignore[attr-defined]
+    pulls.terminal = touches.terminal = True  # type: ignore[attr-defined]  # read by SciPy
+    pulls.direction, touches.direction = -1.0, 1.0  # type: ignore[attr-defined]  # read by SciPy
     pieces, releases, meetings = [], [], []
     t, y, touching = 0.0, np.array([0.0, v_r, 0.0, v_h, 0.0]), True
     while t < duration:

@@ -174,8 +174,8 @@ class Extent:
             k = int(np.argmax(edge))
             best = (one[i], two[j]) if score[i, j] >= edge[k] else (one[k], full[k])
             reach = 3.0 * max(one[1] - one[0], two[1] - two[0])
-            low = tuple(max(0.0, t - reach) for t in best)  # type: ignore[assignment]
-            high = tuple(min(end, t + reach) for t in best)  # type: ignore[assignment]
+            low = (max(0.0, best[0] - reach), max(0.0, best[1] - reach))
+            high = (min(end, best[0] + reach), min(end, best[1] + reach))
         return float(best[0]), float(best[1])
 
     def _stationary(self, window: Number, t1: float, t2: float) -> Iterable[tuple[Number, Number]]:

@@ -1,0 +1,234 @@
+"""``hrsafety sweep STUDY.toml``: what it prints and writes, how it goes on, how it answers a bad file."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hrsafety import impact, sweep
+from hrsafety.cli import main
+from hrsafety.cli.sweep_file import load
+
+ROOT = Path(__file__).resolve().parents[2]
+IMPACTS, GAINS = ROOT / "examples" / "impact_sweep.toml", ROOT / "examples" / "gain_sweep.toml"
+PATIENCE = 60.0
+FAST = """
+head = "minimum"
+axes = [
+    { name = "foam_stiffness", from = 5e3, to = 6e4, points = 4 },
+    { name = "foam_damping", values = [0.0, 50.0, 100.0] },
+]
+[manipulator]
+mass = 49.4
+damping = 111.0
+stiffness = 14400.0
+[impact]
+closing_speed = 1.25
+"""
+CROSSING = """
+scenarios = ["c1", "c2"]
+axes = [{ name = "detour_gain", from = 10.0, to = 30.0, points = 3 }]
+"""
+VOID_TAGS = {"meta", "img", "br"}
+
+
+class Page(HTMLParser):
+    """Checks that every tag is closed and counts pictures."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.images = 0
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.images += tag == "img" and (dict(attrs).get("src") or "").startswith("data:image/png;base64,")
+        if tag not in VOID_TAGS:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def written(path: Path, text: str) -> str:
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def error_line(capsys: pytest.CaptureFixture[str]) -> str:
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert captured.err.startswith("hrsafety: error: ")
+    return captured.err
+
+
+def images(path: Path) -> int:
+    page = Page()
+    page.feed((path / "summary.html").read_text(encoding="utf-8"))
+    page.close()
+    assert page.open == []
+    return page.images
+
+
+def test_example_of_impacts_writes_maps_table_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "tables" / "all.npz"
+    assert main(["sweep", str(IMPACTS), "--out", str(tmp_path / "out"), "--table", str(table)]) == 0
+    text = capsys.readouterr().out
+    assert "grid of 3,660 rows" in text
+    assert images(tmp_path / "out") == 2
+    for path in re.findall(r"^wrote (.*)$", text, re.MULTILINE):
+        assert Path(path).stat().st_size > 1000
+    result = sweep.open(tmp_path / "out")
+    with np.load(table) as columns:
+        np.testing.assert_array_equal(columns["hic15"], result["hic15"])
+    shown = re.search(r"^max compression \(m\) +(\S+) +(\S+) +(\S+) +(\d+)$", text, re.MULTILINE)
+    assert shown is not None
+    found = result["max_compression"]
+    expected = [f"{value:.5g}" for value in (found.min(), found.mean(), found.max())]
+    assert list(shown.groups()) == [*expected, "0"]
+
+
+def test_example_of_gains_writes_an_overview(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["sweep", str(GAINS), "--out", str(out)]) == 0
+    assert "3,072 in 1 chunk" in capsys.readouterr().out
+    assert images(out) == 4
+    result = sweep.open(out)
+    assert result.cases == ("c1", "c2", "c3")
+    best = f"{result['performance_total'].max():.5g}"
+    assert f"<td>{best}</td>" in (out / "summary.html").read_text(encoding="utf-8")
+
+
+def test_one_axis_gives_a_line_for_each_scenario(tmp_path: Path) -> None:
+    assert main(["sweep", written(tmp_path / "a.toml", CROSSING), "--out", str(tmp_path / "out")]) == 0
+    assert images(tmp_path / "out") == 3
+    assert (tmp_path / "out" / "lines_arrival_time.png").exists()
+
+
+def test_file_says_what_the_call_would(tmp_path: Path) -> None:
+    described = load(written(tmp_path / "a.toml", FAST))
+    study = sweep.ImpactStudy(
+        manipulator=impact.Manipulator(mass=49.4, damping=111.0, stiffness=14400.0),
+        head=impact.Head.minimum(),
+        fixed={"closing_speed": 1.25},
+    )
+    assert described.study == study
+    assert described.design == sweep.Grid(
+        (
+            sweep.Axis(name="foam_stiffness", low=5e3, high=6e4, points=4),
+            sweep.Axis(name="foam_damping", values=(0.0, 50.0, 100.0)),
+        )
+    )
+
+
+def test_processes_give_the_same_result_and_a_second_call_computes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = written(tmp_path / "a.toml", "chunk_rows = 3\n" + FAST)
+    assert main(["sweep", file, "--out", str(tmp_path / "one"), "--threads", "1"]) == 0
+    assert main(["sweep", file, "--out", str(tmp_path / "two"), "--workers", "1"]) == 0
+    assert "in 4 chunks" in capsys.readouterr().out
+    chunks = {path: path.stat().st_mtime_ns for path in (tmp_path / "two" / "chunks").iterdir()}
+    for path in chunks:
+        assert path.read_bytes() == (tmp_path / "one" / "chunks" / path.name).read_bytes()
+    assert main(["sweep", file, "--out", str(tmp_path / "two")]) == 0
+    assert {path: path.stat().st_mtime_ns for path in chunks} == chunks
+
+
+def test_damaged_chunk_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = written(tmp_path / "a.toml", FAST), tmp_path / "out"
+    assert main(["sweep", file, "--out", str(out)]) == 0
+    (out / "chunks" / "chunk-00000000.npz").write_bytes(b"")
+    capsys.readouterr()
+    assert main(["sweep", file, "--out", str(out)]) == 0
+    assert re.fullmatch(r"hrsafety: .*npz is damaged and is computed again\n", capsys.readouterr().err)
+
+
+def test_ctrl_c_says_what_is_finished_and_the_same_call_goes_on(tmp_path: Path) -> None:
+    slow = CROSSING.replace("points = 3", "points = 40000").replace('"c2"', '"c2", "c3"')
+    file, out = written(tmp_path / "a.toml", "chunk_rows = 500\n" + slow), tmp_path / "out"
+    command = [sys.executable, "-c", "import sys; from hrsafety.cli import main; sys.exit(main(sys.argv[1:]))"]
+    command += ["sweep", file, "--out", str(out), "--threads", "1"]
+    child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + PATIENCE
+    while not list(out.glob("chunks/chunk-*.npz")):
+        assert child.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    child.send_signal(signal.SIGINT)
+    _, errors = child.communicate(timeout=PATIENCE)
+    assert child.returncode == 130
+    assert re.fullmatch(
+        r"hrsafety: sweep stopped with \d+ of 40000 rows finished; they are in .*, the same call.*\n", errors
+    )
+    assert 0 < len(sweep.open(out).finished) < 80
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "axes must be given"),
+        ("x = 1", "x must be one of the keys"),
+        ("axes = 3", "axes must be an array of tables"),
+        ("axes = []\n" + FAST.split("]\n", 1)[1], "design.axes must hold at least one"),
+        (FAST.replace('"foam_damping"', '"foam"'), "name of an axis must be one of"),
+        (FAST.replace("points = 4", "point = 4"), "axes[0].point must be one of the keys"),
+        (FAST.replace("points = 4", "points = 1"), "axes[0].points must be an integer of at least 2"),
+        (FAST.replace("to = 6e4", "to = 1e3"), "axes[0].to must be above low"),
+        (FAST.replace("from = 5e3, ", ""), "axes[0].from must be given"),
+        (FAST.replace('"minimum"', '"small"'), "head must be a table or one of minimum"),
+        (FAST.replace('"minimum"', "3"), "head must be a table"),
+        (FAST.replace("mass = 49.4", "mass = -1.0"), "manipulator.mass must be finite and positive"),
+        (FAST.replace("closing_speed = 1.25", ""), "closing_speed must be an axis or among the fixed numbers"),
+        (FAST.replace("closing_speed", "speed"), "impact.speed must be one of the keys"),
+        ("outputs = ['hic99']\n" + FAST, "outputs must be one of"),
+        ("show = ['status']\n" + FAST, "show[0] must be one of"),
+        ("chunk_rows = 0\n" + FAST, "chunk_rows must be an integer of at least 1"),
+        (FAST + "[design]\nkind = 'sobol'\n", "design.size must be given for a sobol"),
+        (FAST + "[design]\nkind = 'random'\n", "design.kind must be one of grid"),
+        (FAST + "[design]\nsize = 4\n", "design.size must not be given for a grid"),
+        (FAST + "[design]\nkind = 'sobol'\nsize = 0\n", "design.size must be an integer of at least 1"),
+        (FAST + "[run]\nstep = 0.01\n", "run must be given with scenarios only"),
+        (CROSSING + "[impact]\n", "impact must not be given with scenarios"),
+        (CROSSING.replace('"c2"', '"c9"'), "scenarios[1] must be a scenario file or one of"),
+        (CROSSING + "[run]\nstep = -1.0\n", "step must be finite and positive"),
+        (CROSSING + "[law]\ntype = 'none'\n", "law.type must be"),
+    ],
+)
+def test_bad_file_is_refused_naming_the_key(
+    text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = written(tmp_path / "a.toml", text)
+    assert main(["sweep", file, "--out", str(tmp_path / "out")]) == 2
+    line = error_line(capsys)
+    assert f"{file}: {words}" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_bad_options_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = written(tmp_path / "a.toml", FAST), str(tmp_path / "out")
+    for options, words in (
+        (["--workers", "0"], "--workers must be at least 1"),
+        (["--workers", "1", "--scheduler", "tcp://x"], "--workers must not be given with --scheduler"),
+        (["--table", "a.csv"], "--table must end in .parquet or .npz"),
+        (["--threads", "0"], "threads must be an integer of at least 1"),
+    ):
+        assert main(["sweep", file, "--out", out, *options]) == 2
+        assert words in error_line(capsys)
+    assert main(["sweep", str(tmp_path / "none.toml"), "--out", out]) == 2
+    assert "path must name a readable file" in error_line(capsys)
+
+
+def test_folder_of_another_sweep_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = str(tmp_path / "out")
+    assert main(["sweep", written(tmp_path / "a.toml", FAST), "--out", out]) == 0
+    capsys.readouterr()
+    assert main(["sweep", written(tmp_path / "b.toml", FAST.replace("1.25", "1.5")), "--out", out]) == 2
+    assert "holds another sweep: study.fixed.closing_speed is 1.25 there and 1.5 here" in error_line(capsys)
