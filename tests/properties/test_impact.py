@@ -54,9 +54,12 @@ def test_metrics_go_with_their_power_of_the_closing_speed(
     fast = {"closing_speed": factor * speed, "manipulator_speed": share * factor * speed}
     other = impact.metrics(manipulator, foam, head, **fast)
     assert other.status == one.status
+    # A power of an arm that hardly moves is a small difference of speeds as large as the closing speed.
+    rounding = ROUNDING * other.peak_contact_force * factor * speed
     for name, power in FIELDS.items():
         expected = getattr(one, name) * factor**power
-        assert getattr(other, name) == pytest.approx(expected, rel=ROUNDING, abs=0.0, nan_ok=True), name
+        least = rounding if name.startswith("peak_power") else 0.0
+        assert getattr(other, name) == pytest.approx(expected, rel=ROUNDING, abs=least, nan_ok=True), name
 
 
 def random_columns(count: int, seed: int) -> dict[str, np.ndarray]:

@@ -90,7 +90,13 @@ fn compare(rows: usize) {
         let one = searched(&system, inputs.0[8][row], &options).unwrap();
         let single = metrics(&system, inputs.0[8][row], &options).unwrap();
         assert_eq!(single.hic15.to_bits(), batch.hic15[row].to_bits());
-        assert_eq!(Status::ALL[usize::from(batch.status[row])], one.status);
+        assert_eq!(
+            Status::ALL[usize::from(batch.status[row])],
+            one.status,
+            "row {row}: {} for {}, {system:?}",
+            batch.max_compression[row],
+            one.max_compression,
+        );
         for (name, many, one) in [
             (
                 "a",

@@ -2,7 +2,7 @@
 
 use super::{BatchOptions, Block, Column, Columns, FieldSet, HeadColumns, Width, code};
 use crate::criteria::{FREE_HORIZON, Impact, MetricOptions, Metrics, Status};
-use crate::fast::{Group, GroupPeaks, GroupRest, Workspace};
+use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
 use crate::parameters::{System, Target};
 use crate::series::Plant;
 use lanes::{Lanes, Mask, Real};
@@ -85,7 +85,7 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
         let first = block.first + place;
         // Lanes that are left over repeat the last row.
         let row = |lane: usize| first + lane.min(count - 1);
-        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, row);
+        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, CELL_ANGLE, row);
         found.store(block, place, count, options.gravity);
         for lane in 0..count {
             if !found.accepted.lane(lane) {
@@ -121,6 +121,7 @@ impl<R: Real> Side<R> {
         space: &mut Workspace<R>,
         columns: &Columns<'_>,
         options: &BatchOptions,
+        cell_angle: f64,
         row: impl Fn(usize) -> usize,
     ) -> Self {
         let one = |column: &Column<'_>| gather::<R>(column, &row);
@@ -165,6 +166,7 @@ impl<R: Real> Side<R> {
             closing_speed,
             manipulator_speed,
             horizon: options.horizon.unwrap_or(FREE_HORIZON),
+            cell_angle,
         };
         let mut solved = group.solve::<S, ALL>(simd, space, valid);
         let peaks = solved.peaks();
@@ -275,11 +277,25 @@ pub(crate) fn usual(
         gravity: options.gravity,
         ..BatchOptions::default()
     };
-    let found = Side::<f64>::of::<_, true>(Scalar, &mut Workspace::new(), &columns, &batch, |_| 0);
+    by_itself::<true>(&columns, &batch, CELL_ANGLE, 0)
+        .or_else(|| by_itself::<true>(&columns, &batch, FINE_CELL_ANGLE, 0))
+}
+
+/// Metrics of one row if its response has the usual shape in cells of some length.
+#[inline(never)]
+fn by_itself<const ALL: bool>(
+    columns: &Columns<'_>,
+    options: &BatchOptions,
+    cell_angle: f64,
+    row: usize,
+) -> Option<Metrics> {
+    let mut space = Workspace::new();
+    let found =
+        Side::<f64>::of::<_, ALL>(Scalar, &mut space, columns, options, cell_angle, |_| row);
     found.accepted.then(|| found.lane(0, options.gravity))
 }
 
-/// One row by the general search.
+/// One row in finer cells, or by the general search.
 #[inline(never)]
 fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
     let system = columns.system(row);
@@ -291,6 +307,14 @@ fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
     }
     if closing_speed <= 0.0 {
         return Metrics::none(Status::NoImpact);
+    }
+    let fine = match (&columns.head, options.fields) {
+        (HeadColumns::Constrained, _) => None,
+        (_, FieldSet::All) => by_itself::<true>(columns, options, FINE_CELL_ANGLE, row),
+        (_, FieldSet::Peaks) => by_itself::<false>(columns, options, FINE_CELL_ANGLE, row),
+    };
+    if let Some(metrics) = fine {
+        return metrics;
     }
     let Ok(impact) = Impact::new(&system, closing_speed, options.horizon) else {
         return Metrics::none(Status::TooStiff);

@@ -3,22 +3,28 @@
 use super::apart::apart;
 use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
-use super::{MAX_STEPS, MapWith, Solved};
+use super::{Each, MAX_STEPS, MapWith, Solved};
 use crate::criteria::INJURY_WINDOWS;
 use lanes::{Mask, Real};
 use pulp::Simd;
 
-/// Windows between nodes that are looked at, at most.
-const SEEDS: usize = 4;
-/// How much better than between nodes a window may be.
-const NEAR: f64 = 1.25;
+/// Places of windows that are looked at, at most.
+const SEEDS: usize = 6;
+/// How much better than in the middle of its cells a window may be.
+const NEAR: f64 = 1.5;
+/// How far from the middle of its cells a window may be, in cells.
+const FAR: f64 = 2.0;
+/// A stationary window this near to the best one has to be a maximum itself.
+const CLOSE: f64 = 0.99;
 
-/// A window between nodes.
+/// A pair of cells, with a start in one and an end in the other, that may hold the best window.
 #[derive(Clone, Copy)]
 struct Seed<R: Real> {
     found: R::Mask,
+    /// The middle of both.
     ends: [R; 2],
-    rise: R,
+    /// `rise^2.5 width^-1.5` there, squared.
+    square: R,
 }
 
 impl<S: Simd, R: Real> Solved<'_, S, R> {
@@ -92,11 +98,15 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     #[inline(always)]
     fn trough(&mut self, mask: R::Mask) -> [R; 2] {
         let mut time = self.valley.piece.zero();
+        let mask = mask & self.valley.found;
         let mut open = mask & self.accepted;
         let mut value = R::zero();
+        let mut bent_up = R::Mask::none();
         for _ in 0..MAX_STEPS {
             let [_, acceleration, slope, curve] = self.head(time);
             let step = -(slope / curve);
+            let up = curve.gt(R::zero());
+            bent_up = (bent_up & !open) | (up & open);
             let lowest = acceleration + R::splat(0.5) * step * slope;
             value = R::select(open, lowest, value);
             time = R::select(open, time + step, time);
@@ -105,8 +115,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 break;
             }
         }
-        self.accepted = self.accepted & !(mask & open);
-        [time, value]
+        let past = time - self.valley.piece.from;
+        let slack = R::splat(SETTLED);
+        let inside = past.ge(-slack) & past.le(self.valley.piece.width + slack);
+        self.accepted = self.accepted & !(mask & (open | !bent_up | !inside));
+        // Without a valley, a time that no window holds.
+        [R::select(mask, time, R::splat(-1.0)), value]
     }
 
     /// The same where there may be several good windows: those that are better than their
@@ -139,30 +153,49 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }
         let full = best;
         let before = self.motion.head[0].at_contact();
+        // Over the time, as all of it is zero at contact; there it may start to grow from zero.
         let from_contact = |solved: &Self, time: R| {
             let [velocity, acceleration, slope, _] = solved.head(time);
+            let started = time.gt(zero);
+            let span = R::select(started, time, R::splat(1.0));
+            let mean = (velocity - before) / span;
+            let bend = (acceleration - mean) / span;
+            let smallest = R::splat(f64::MIN_POSITIVE);
             [
-                time * acceleration - R::splat(0.6) * (velocity - before),
-                time * slope + R::splat(0.4) * acceleration,
+                R::select(
+                    started,
+                    acceleration - R::splat(0.6) * mean,
+                    (R::splat(0.4) * acceleration).max(smallest),
+                ),
+                slope - R::splat(0.6) * R::select(started, bend, R::splat(0.5) * slope),
             ]
         };
         let tops = self.tops_along(humps, self.end, from_contact);
-        let mut seeds = self.seeds(humps);
+        let seeds = self.seeds(humps);
         for place in &tops.places {
             let held = humps & place.found & self.accepted;
             if held.any() {
                 let window = self.free_window(held, [zero, place.piece.zero()], held);
+                self.accepted = self.accepted & !(held & !(window.settled & window.concave));
                 self.offer(&mut best, held, &window);
             }
         }
-        for seed in &mut seeds {
+        for seed in &seeds {
             // One that is far below what is known already needs no steps.
-            let value = criterion(seed.rise, seed.ends[1] - seed.ends[0], length);
+            let value = seed.square.sqrt() / (length * length * length * length);
             let good = (value * R::splat(NEAR)).gt(full[0]);
             let mask = humps & seed.found & good & self.accepted;
             if mask.any() {
                 let window = self.free_window(mask, seed.ends, R::Mask::none());
-                self.offer(&mut best, mask, &window);
+                let [start, end] = window
+                    .ends
+                    .map_with(seed.ends, |end, guess| (end - guess).abs());
+                let far = start.gt(R::splat(FAR)) | end.gt(R::splat(FAR));
+                self.accepted = self.accepted & !(mask & (far | !window.settled));
+                let flat = mask & !window.concave;
+                self.offer(&mut best, mask & !flat, &window);
+                let rival = window.value.gt(R::splat(CLOSE) * best[0].min(best[1]));
+                self.accepted = self.accepted & !(flat & rival);
             }
         }
         for index in 0..2 {
@@ -184,80 +217,74 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }
     }
 
-    /// Windows between nodes that are not worse than their neighbors.
+    /// Pairs of cells in which a window is stationary: both derivatives of the criterion change
+    /// sign in them.
     #[inline(always)]
     fn seeds(&mut self, humps: R::Mask) -> [Seed<R>; SEEDS] {
         let zero = R::zero();
         let mut seeds = [Seed {
             found: R::Mask::none(),
             ends: [zero; 2],
-            rise: zero,
+            square: zero,
         }; SEEDS];
-        let nodes = self.nodes;
-        let last = self.motion.head[0].at(&self.at_end);
+        let last = [self.motion.head[0].at(&self.at_end), zero];
         let end = self.end;
         let node = |index: usize, head: &[[R; 2]]| {
             let time = R::splat(index as f64);
             let past = time.ge(end);
-            (
-                R::select(past, end, time),
-                R::select(past, last, head[index][0]),
-            )
+            let [velocity, acceleration] =
+                [0, 1].each(|order: usize| R::select(past, last[order], head[index][order]));
+            [R::select(past, end, time), velocity, acceleration]
         };
-        let rows = nodes + 1;
+        let share = R::splat(0.6);
+        let half = R::splat(0.5);
+        let rows = self.nodes + 1;
         self.space.windows.clear();
-        self.space.windows.resize(rows * rows, zero);
+        self.space.windows.resize(rows * rows, [zero; 2]);
         for i in 0..rows {
-            let (start, before) = node(i, &self.space.head);
-            for j in i + 1..rows {
-                let (stop, after) = node(j, &self.space.head);
-                let (rise, width) = (after - before, stop - start);
-                let square = rise * rise;
-                let value = square * square * rise / (width * width * width);
-                let real = humps & rise.gt(zero) & width.gt(zero);
-                self.space.windows[i * rows + j] = R::select(real, value, zero);
+            let [start, before, first] = node(i, &self.space.head);
+            for j in i..rows {
+                let [stop, after, last] = node(j, &self.space.head);
+                let (rise, width) = (share * (after - before), stop - start);
+                // As the width goes to zero only the sign is wanted.
+                let signs =
+                    [first, last].each(|at: R| R::select(width.gt(zero), at * width - rise, at));
+                self.space.windows[i * rows + j] = signs;
             }
         }
-        for i in 0..rows {
-            for j in i + 1..rows {
-                let value = self.space.windows[i * rows + j];
-                let mut top = value.gt(zero);
-                for (di, dj) in [
-                    (0, 1),
-                    (0, 2),
-                    (1, 0),
-                    (1, 2),
-                    (2, 0),
-                    (2, 1),
-                    (0, 0),
-                    (2, 2),
-                ] {
-                    let (row, column) = (i + di, j + dj);
-                    if row >= 1 && row <= rows && column >= 1 && column <= rows {
-                        let other = self.space.windows[(row - 1) * rows + column - 1];
-                        // Of two equal ones the first.
-                        let before = (di, dj) < (1, 1);
-                        top = top
-                            & if before {
-                                other.lt(value)
-                            } else {
-                                other.le(value)
-                            };
-                    }
+        for i in 0..rows - 1 {
+            let [start, before, _] = node(i, &self.space.head);
+            let [next_start, next_before, _] = node(i + 1, &self.space.head);
+            for j in i + 1..rows - 1 {
+                let [stop, after, _] = node(j, &self.space.head);
+                let corner = |di: usize, dj: usize| {
+                    self.space.windows[(i + di) * rows + j + dj].each(|sign| sign.gt(zero))
+                };
+                let corners = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
+                let mut here = humps & stop.lt(end);
+                for side in 0..2 {
+                    let [a, b, c, d] = corners.each(|corner| corner[side]);
+                    here = here & (a | b | c | d) & !(a & b & c & d);
                 }
-                if !top.any() {
+                if !here.any() {
                     continue;
                 }
-                let (start, before) = node(i, &self.space.head);
-                let (stop, after) = node(j, &self.space.head);
-                let mut left = top;
+                let [next_stop, next_after, _] = node(j + 1, &self.space.head);
+                let rise = half * (after + next_after - before - next_before);
+                let ends = [half * (start + next_start), half * (stop + next_stop)];
+                let width = ends[1] - ends[0];
+                let square = rise * rise;
+                let square = square * square * rise / (width * width * width);
+                let mut left = here;
                 for seed in &mut seeds {
-                    let here = left & !seed.found;
-                    seed.found = seed.found | here;
-                    seed.ends =
-                        [start, stop].map_with(seed.ends, |new, old| R::select(here, new, old));
-                    seed.rise = R::select(here, after - before, seed.rise);
-                    left = left & !here;
+                    let new = left & !seed.found;
+                    seed.found = seed.found | new;
+                    seed.ends = ends.map_with(seed.ends, |end, old| R::select(new, end, old));
+                    seed.square = R::select(new, square, seed.square);
+                    left = left & !new;
+                    if !left.any() {
+                        break;
+                    }
                 }
                 self.accepted = self.accepted & !left;
             }

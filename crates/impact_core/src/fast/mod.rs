@@ -33,8 +33,9 @@ const SETTLED_ZERO: f64 = 1e-5;
 pub struct Workspace<R> {
     /// Velocity of the head, up to a constant, and its acceleration.
     head: [[R; 2]; NODES],
-    /// Criteria of windows between nodes.
-    windows: Vec<R>,
+    /// Derivatives of the criterion of windows between nodes by their start and end, times
+    /// something positive.
+    windows: Vec<[R; 2]>,
 }
 
 impl<R: Real> Workspace<R> {
@@ -61,6 +62,16 @@ const STEEP: f64 = 0.02;
 /// motion is a sum exceed it by the inverse.
 const SLOWEST: f64 = 1e-2;
 
+/// Length of a cell times the fastest root.
+pub const CELL_ANGLE: f64 = 0.75;
+/// The same for impacts that are refused with longer cells: half as far between nodes, fewer
+/// shapes may hide something.
+pub const FINE_CELL_ANGLE: f64 = 0.3;
+
+/// A valley this near to zero, over the largest acceleration, may reach it: the fourth derivative
+/// of the response, over 384, is what the cubic over a cell is wrong by.
+const FLAT: f64 = 4e-3;
+
 /// A group of impacts.
 pub struct Group<R> {
     /// Their numbers.
@@ -71,6 +82,8 @@ pub struct Group<R> {
     pub manipulator_speed: R,
     /// Time until which a release counts, in s.
     pub horizon: f64,
+    /// Length of a cell times the fastest root.
+    pub cell_angle: f64,
 }
 
 /// Peaks and duration.
@@ -132,6 +145,8 @@ pub struct Solved<'a, S, R: Real> {
     nodes: usize,
     space: &'a mut Workspace<R>,
     acceleration: Tops<R>,
+    /// The largest acceleration at a node so far.
+    highest: R,
     /// A valley of the acceleration.
     valley: Place<R>,
     /// Lanes with more of them.
@@ -173,7 +188,7 @@ impl<R: Real> Group<R> {
         space: &'a mut Workspace<R>,
         valid: R::Mask,
     ) -> Solved<'a, S, R> {
-        let motion = Motion::new(simd, &self.plant, self.closing_speed);
+        let motion = Motion::new(simd, &self.plant, self.closing_speed, self.cell_angle);
         let (zero, one) = (R::zero(), R::splat(1.0));
         let mut solved = Solved {
             simd,
@@ -183,6 +198,7 @@ impl<R: Real> Group<R> {
             nodes: 0,
             space,
             acceleration: Tops::new(),
+            highest: zero,
             valley: Place::none(),
             ragged: R::Mask::none(),
             shelf: R::Mask::none(),
@@ -295,9 +311,11 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let zero = R::zero();
         let fall = step.piece(|node| [node.acceleration[0], node.acceleration[1]]);
         let bend = step.piece(|node| [node.acceleration[1], node.acceleration[2]]);
-        let ([dips, _], _) = touching(inside, &fall);
+        self.highest = self.highest.max(fall.values[0]);
+        let slack = R::splat(FLAT) * self.highest;
+        let ([dips, _], _) = touching(inside, &fall, slack);
         self.accepted = self.accepted & !dips;
-        let ([above, below], beyond) = touching(inside, &bend);
+        let ([above, below], beyond) = touching(inside, &bend, zero);
         let wavers = above | below;
         if wavers.any() {
             // A valley may hide there, this much below the lower end.
@@ -484,6 +502,7 @@ mod tests {
                 closing_speed: 1.25,
                 manipulator_speed: 1.25,
                 horizon: 0.2,
+                cell_angle: CELL_ANGLE,
             };
             let mut solved = group.solve::<_, true>(Scalar, &mut space, true);
             let peaks = solved.peaks();

@@ -18,8 +18,6 @@ use crate::series::Plant;
 use lanes::{Mask, Real};
 use pulp::Simd;
 
-/// Length of a cell times the fastest root.
-const CELL_ANGLE: f64 = 0.75;
 /// Newton steps for the sum of the squared moduli of both pairs.
 const RESOLVENT_STEPS: usize = 8;
 /// Newton steps for the factors.
@@ -275,16 +273,16 @@ pub struct Motion<S, R: Real> {
 impl<S: Simd, R: Real> Motion<S, R> {
     /// The motion of a plant with a closing speed, in m/s.
     #[inline(always)]
-    pub fn new(simd: S, plant: &Plant<R>, closing_speed: R) -> Self {
+    pub fn new(simd: S, plant: &Plant<R>, closing_speed: R, cell_angle: f64) -> Self {
         apart(
             simd,
             #[inline(always)]
-            || Self::new_here(simd, plant, closing_speed),
+            || Self::new_here(simd, plant, closing_speed, cell_angle),
         )
     }
 
     #[inline(always)]
-    fn new_here(simd: S, plant: &Plant<R>, closing_speed: R) -> Self {
+    fn new_here(simd: S, plant: &Plant<R>, closing_speed: R, cell_angle: f64) -> Self {
         let [arm_inverse, arm_damping, arm_stiffness] = plant.manipulator;
         let [head_inverse, head_damping, head_stiffness] = plant.head;
         let [foam_stiffness, foam_damping] = plant.foam;
@@ -308,7 +306,7 @@ impl<S: Simd, R: Real> Motion<S, R> {
             #[inline(always)]
             || factors(quartic),
         );
-        let (modes, split, accepted) = modes(simd, &split);
+        let (modes, split, accepted) = modes(simd, &split, cell_angle);
         let length = modes.length;
         let speed = closing_speed * length;
         let foam = [foam_stiffness, foam_damping / length];
@@ -380,7 +378,11 @@ impl<S: Simd, R: Real> Motion<S, R> {
 
 /// Roots of both factors in units of cells, the factors in these units, and lanes that hold.
 #[inline(always)]
-fn modes<S: Simd, R: Real>(simd: S, split: &Split<R>) -> (Modes<S, R>, Split<R>, R::Mask) {
+fn modes<S: Simd, R: Real>(
+    simd: S,
+    split: &Split<R>,
+    cell_angle: f64,
+) -> (Modes<S, R>, Split<R>, R::Mask) {
     let zero = R::zero();
     let half = R::splat(0.5);
     let mut fastest = zero;
@@ -390,7 +392,7 @@ fn modes<S: Simd, R: Real>(simd: S, split: &Split<R>) -> (Modes<S, R>, Split<R>,
         let real = alpha.ge(last.sqrt());
         fastest = fastest.max(R::select(real, alpha + spread, last.sqrt()));
     }
-    let length = R::splat(CELL_ANGLE) / fastest;
+    let length = R::splat(cell_angle) / fastest;
     let square_length = length * length;
     let scaled = split
         .factors

@@ -109,9 +109,9 @@ const CLEAR: f64 = 0.01;
 
 /// Lanes in which a function of one sign at both ends of a piece turns towards zero and back
 /// between them, so near to it that it may reach it, from above and from below, and how far it
-/// reaches beyond zero at most.
+/// reaches beyond zero at most. The cubic may be wrong by `slack` beside that.
 #[inline(always)]
-pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>) -> ([R::Mask; 2], R) {
+pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::Mask; 2], R) {
     let zero = R::zero();
     let [up, still_up] = piece.values.each(|value| value.gt(zero));
     let [bent_up, still_bent_up] = piece.slopes.each(|slope| slope.gt(zero));
@@ -121,7 +121,7 @@ pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>) -> ([R::Mask; 2], R)
         return ([R::Mask::none(); 2], zero);
     }
     let [turn, difference] = piece.turn();
-    let clear = R::splat(CLEAR) * difference;
+    let clear = R::splat(CLEAR) * difference + slack;
     let beyond = R::select(from_above, clear - turn, clear + turn);
     let may = beyond.ge(zero);
     ([from_above & may, from_below & may], beyond)
@@ -156,7 +156,7 @@ impl<R: Real> Tops<R> {
         let zero = R::zero();
         let [up, still_up] = piece.values.each(|value| value.gt(zero));
         let top = inside & up & !still_up;
-        let ([from_above, from_below], beyond) = touching(inside, piece);
+        let ([from_above, from_below], beyond) = touching(inside, piece, zero);
         let touches = from_above | from_below;
         if touches.any() {
             let (found, time, excess) = self.hidden;

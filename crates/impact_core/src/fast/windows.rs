@@ -129,7 +129,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         self.accepted = self.accepted & !self.ragged & !self.acceleration.hidden.0;
         let length = self.motion.modes.length;
         let humps = self.valley.found | self.shelf;
-        let free = self.free_window(self.accepted & !humps, self.half_level(), R::Mask::none());
+        let plain = self.accepted & !humps;
+        let free = self.free_window(plain, self.half_level(), R::Mask::none());
+        self.accepted = self.accepted & !(plain & !(free.settled & free.concave));
         let [start, end] = free.ends;
         let free_width = end - start;
         let mut values = INJURY_WINDOWS.each(|width| {
@@ -180,6 +182,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             ends: [zero; 2],
             slopes: [zero; 2],
             value: zero,
+            settled: R::Mask::none(),
+            concave: R::Mask::none(),
         };
         let mut best = R::Mask::none();
         for _ in 0..MAX_STEPS {
@@ -217,8 +221,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 break;
             }
         }
-        self.accepted = self.accepted & !(mask & (open | !best | !start.lt(end)));
         found.ends = [start, end];
+        found.settled = !open & start.lt(end);
+        found.concave = best;
         found
     }
 
@@ -249,12 +254,16 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
 /// A window with free ends.
 #[derive(Clone, Copy)]
-pub(super) struct FreeWindow<R> {
+pub(super) struct FreeWindow<R: Real> {
     pub(super) ends: [R; 2],
     /// Slopes of the acceleration there.
     slopes: [R; 2],
     /// Its criterion.
     pub(super) value: R,
+    /// Lanes in which the steps came to rest.
+    pub(super) settled: R::Mask,
+    /// Lanes in which the criterion is largest there.
+    pub(super) concave: R::Mask,
 }
 
 /// `T^-1.5 rise^2.5` from a rise in m per cell and a width in cells.
