@@ -80,19 +80,52 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
 ) {
     let rows = block.status.len();
     let mut space = Workspace::new();
+    // Rows whose response has two humps or a shelf, when others are beside them.
+    let mut put_off = Vec::new();
+    let walk = Walk {
+        cell_angle: CELL_ANGLE,
+        humps: R::WIDTH == 1,
+    };
     for place in (0..rows).step_by(R::WIDTH) {
         let count = R::WIDTH.min(rows - place);
         let first = block.first + place;
         // Lanes that are left over repeat the last row.
         let row = |lane: usize| first + lane.min(count - 1);
-        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, CELL_ANGLE, row);
+        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, walk, row);
         found.store(block, place, count, options.gravity);
         for lane in 0..count {
-            if !found.accepted.lane(lane) {
+            if found.is_put_off(lane) {
+                put_off.push(place + lane);
+            } else if !found.accepted.lane(lane) {
                 block.put(place + lane, &alone(columns, options, first + lane));
             }
         }
     }
+    let walk = Walk {
+        humps: true,
+        ..walk
+    };
+    for places in put_off.chunks(R::WIDTH) {
+        let row = |lane: usize| block.first + places[lane.min(places.len() - 1)];
+        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, walk, row);
+        for (lane, place) in places.iter().enumerate() {
+            let metrics = if found.accepted.lane(lane) {
+                found.lane(lane, options.gravity)
+            } else {
+                alone(columns, options, block.first + place)
+            };
+            block.put(*place, &metrics);
+        }
+    }
+}
+
+/// How the responses of rows side by side are walked along.
+#[derive(Clone, Copy)]
+struct Walk {
+    /// Length of a cell times the fastest root.
+    cell_angle: f64,
+    /// Whether rows with two humps or a shelf are followed.
+    humps: bool,
 }
 
 /// Metrics of rows side by side.
@@ -121,7 +154,7 @@ impl<R: Real> Side<R> {
         space: &mut Workspace<R>,
         columns: &Columns<'_>,
         options: &BatchOptions,
-        cell_angle: f64,
+        Walk { cell_angle, humps }: Walk,
         row: impl Fn(usize) -> usize,
     ) -> Self {
         let one = |column: &Column<'_>| gather::<R>(column, &row);
@@ -167,6 +200,7 @@ impl<R: Real> Side<R> {
             manipulator_speed,
             horizon: options.horizon.unwrap_or(FREE_HORIZON),
             cell_angle,
+            humps,
         };
         let mut solved = group.solve::<S, ALL>(simd, space, valid);
         let peaks = solved.peaks();
@@ -177,6 +211,14 @@ impl<R: Real> Side<R> {
             peaks,
             rest,
         }
+    }
+
+    /// Whether a lane is left for later.
+    #[inline(always)]
+    fn is_put_off(&self, lane: usize) -> bool {
+        self.rest
+            .as_ref()
+            .is_some_and(|rest| rest.put_off.lane(lane))
     }
 
     /// Metrics of a lane.
@@ -290,8 +332,11 @@ fn by_itself<const ALL: bool>(
     row: usize,
 ) -> Option<Metrics> {
     let mut space = Workspace::new();
-    let found =
-        Side::<f64>::of::<_, ALL>(Scalar, &mut space, columns, options, cell_angle, |_| row);
+    let walk = Walk {
+        cell_angle,
+        humps: true,
+    };
+    let found = Side::<f64>::of::<_, ALL>(Scalar, &mut space, columns, options, walk, |_| row);
     found.accepted.then(|| found.lane(0, options.gravity))
 }
 

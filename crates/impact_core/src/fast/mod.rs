@@ -84,6 +84,9 @@ pub struct Group<R> {
     pub horizon: f64,
     /// Length of a cell times the fastest root.
     pub cell_angle: f64,
+    /// Whether lanes with two humps or a shelf are followed; else they are put off: it takes so
+    /// many steps that they better share them with their like.
+    pub humps: bool,
 }
 
 /// Peaks and duration.
@@ -118,6 +121,8 @@ pub struct GroupRest<R: Real> {
     pub foam_power: R,
     /// Lanes whose numbers hold.
     pub accepted: R::Mask,
+    /// Lanes that are put off.
+    pub put_off: R::Mask,
 }
 
 /// Values and slopes at a node of all functions whose signs matter.
@@ -153,6 +158,8 @@ pub struct Solved<'a, S, R: Real> {
     ragged: R::Mask,
     /// Lanes whose acceleration has a flank that flattens and steepens again.
     shelf: R::Mask,
+    /// Whether such lanes are followed.
+    humps: bool,
     force: Tops<R>,
     compression: Tops<R>,
     manipulator_power: Tops<R>,
@@ -202,6 +209,7 @@ impl<R: Real> Group<R> {
             valley: Place::none(),
             ragged: R::Mask::none(),
             shelf: R::Mask::none(),
+            humps: self.humps,
             force: Tops::new(),
             compression: Tops::new(),
             manipulator_power: Tops::new(),
@@ -405,6 +413,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let length = self.motion.modes.length;
         let velocity = self.motion.head[0];
         let gained = velocity.at(&self.at_end) - velocity.at_contact();
+        let put_off = if self.humps {
+            R::Mask::none()
+        } else {
+            self.accepted & (self.valley.found | self.shelf)
+        };
+        self.accepted = self.accepted & !put_off;
         let powers = self.powers();
         let [average, clip] = self.held(&peaks.top);
         let injury = self.injuries();
@@ -416,6 +430,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             manipulator_power: powers[0] / length,
             foam_power: powers[1] / length,
             accepted: self.accepted,
+            put_off,
         }
     }
 }
@@ -503,6 +518,7 @@ mod tests {
                 manipulator_speed: 1.25,
                 horizon: 0.2,
                 cell_angle: CELL_ANGLE,
+                humps: true,
             };
             let mut solved = group.solve::<_, true>(Scalar, &mut space, true);
             let peaks = solved.peaks();
