@@ -2,6 +2,7 @@
 
 use super::{BatchOptions, Block, Column, Columns, FieldSet, HeadColumns, Width, code};
 use crate::criteria::{FREE_HORIZON, Impact, MetricOptions, Metrics, Status};
+use crate::fast::apart::apart;
 use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
 use crate::parameters::{System, Target};
 use crate::series::Plant;
@@ -65,9 +66,18 @@ fn by_width<S: Simd, R: Real>(
     options: &BatchOptions,
     block: &mut Block<'_>,
 ) {
+    // Bodies of their own: an unoptimized build keeps room on the stack for every call.
     match options.fields {
-        FieldSet::All => groups::<S, R, true>(simd, columns, options, block),
-        FieldSet::Peaks => groups::<S, R, false>(simd, columns, options, block),
+        FieldSet::All => apart(
+            simd,
+            #[inline(always)]
+            || groups::<S, R, true>(simd, columns, options, block),
+        ),
+        FieldSet::Peaks => apart(
+            simd,
+            #[inline(always)]
+            || groups::<S, R, false>(simd, columns, options, block),
+        ),
     }
 }
 
@@ -101,13 +111,32 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
             }
         }
     }
+    if !put_off.is_empty() {
+        apart(
+            simd,
+            #[inline(always)]
+            || followed::<S, R, ALL>(simd, &mut space, columns, options, block, &put_off),
+        );
+    }
+}
+
+/// Rows that were put off, side by side.
+#[inline(always)]
+fn followed<S: Simd, R: Real, const ALL: bool>(
+    simd: S,
+    space: &mut Workspace<R>,
+    columns: &Columns<'_>,
+    options: &BatchOptions,
+    block: &mut Block<'_>,
+    put_off: &[usize],
+) {
     let walk = Walk {
+        cell_angle: CELL_ANGLE,
         humps: true,
-        ..walk
     };
     for places in put_off.chunks(R::WIDTH) {
         let row = |lane: usize| block.first + places[lane.min(places.len() - 1)];
-        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, options, walk, row);
+        let found = Side::<R>::of::<S, ALL>(simd, space, columns, options, walk, row);
         for (lane, place) in places.iter().enumerate() {
             let metrics = if found.accepted.lane(lane) {
                 found.lane(lane, options.gravity)

@@ -7,7 +7,7 @@
 //! search for them. What a lane does depends on its own numbers only, so its bits are the same at
 //! any width.
 
-mod apart;
+pub(crate) mod apart;
 mod elementary;
 mod humps;
 mod maxima;
