@@ -21,12 +21,12 @@ __all__ = [
     "Head",
     "HolonomicRobot",
     "Joint",
+    "Law",
     "Manipulator",
     "Measurement",
     "Obstacle",
     "Scenario",
     "SetPoint",
-    "VirtualForceField",
     "contiguous_level",
     "drop_trajectory",
     "effective_one_joint",
@@ -54,6 +54,7 @@ __all__ = [
     "impact_point_speed",
     "impact_simulate",
     "impact_status_words",
+    "law_command",
     "lyapunov",
     "moving_average",
     "pd_gains",
@@ -267,19 +268,65 @@ class Scenario:
     ) -> Self: ...
 
 @final
-class VirtualForceField:
-    """Law."""
+class Law:
+    """A law of any kind."""
 
-    def __new__(
-        cls,
+    @staticmethod
+    def virtual_force_field(
         *,
-        gains: tuple[float, float, float, float],
+        gains: tuple[float, ...],
         stabilizing: str,
         stabilizing_force_cap: float | None,
         stabilizing_momentum_cap: float | None,
         pass_behind: bool,
         side_hysteresis: float,
-    ) -> Self: ...
+    ) -> Law:
+        """Return the virtual force field."""
+
+    @staticmethod
+    def masoud(*, attractive_gain: float, repulsive_gain: float, detour_gain: float) -> Law:
+        """Return the circulating repulsion."""
+
+    @staticmethod
+    def ge_cui(*, attractive_gain: float, repulsive_gain: float, gain_ratio: float) -> Law:
+        """Return the dynamic potential field."""
+
+    @staticmethod
+    def khatib(*, attractive_gain: float, repulsive_gain: float, gain_ratio: float, printed: bool) -> Law:
+        """Return the artificial potential field."""
+
+    @staticmethod
+    def borenstein_koren(*, attractive_gain: float, repulsive_gain: float, attracted_inside: bool) -> Law:
+        """Return the virtual force of Borenstein and Koren."""
+
+    @staticmethod
+    def velocity_obstacle(*, margin: float, horizon: float, risk_weight: float, sector: float, selection: str) -> Law:
+        """Return velocity obstacles."""
+
+    @staticmethod
+    def reciprocal(*, horizon: float, margin: float, turn: float, reach: float, share: float) -> Law:
+        """Return optimal reciprocal collision avoidance."""
+
+    @staticmethod
+    def field_d_star(*, resolution: float, margin: float, horizon: float, room: float, look_ahead: float) -> Law:
+        """Return the path of least cost over a grid."""
+
+    @staticmethod
+    def random_tree(
+        *,
+        step: float,
+        goal_probability: float,
+        waypoint_probability: float,
+        margin: float,
+        horizon: float,
+        room: float,
+        look_ahead: float,
+        waypoints: int,
+        draws: int,
+        keeps_path: bool,
+        safety_draws: int,
+    ) -> Law:
+        """Return the extended random tree."""
 
 def region_radii(
     robot: HolonomicRobot | DifferentialDriveRobot,
@@ -291,7 +338,7 @@ def region_radii(
 
 def simulate(
     scenario: Scenario,
-    law: VirtualForceField,
+    law: Law,
     integrator: str,
     step: float,
     hold: bool,
@@ -301,7 +348,7 @@ def simulate(
 
 def evaluate(
     scenario: Scenario,
-    law: VirtualForceField,
+    law: Law,
     weights: _Triple,
     integrator: str,
     step: float,
@@ -309,8 +356,11 @@ def evaluate(
 ) -> tuple[_ScoreFields, _TrajectoryFields, _TrajectoryFields]:
     """Return the parts of the score of a run, the run and the nominal run."""
 
+def law_command(law: Law, scenario: Scenario, position: _Pair, velocity: _Pair, time: float) -> tuple[float, float]:
+    """Return the force that a law asks for at one state."""
+
 def force_terms(
-    law: VirtualForceField,
+    law: Law,
     scenario: Scenario,
     position: _Pair,
     velocity: _Pair,
@@ -319,7 +369,7 @@ def force_terms(
     """Return every force term at one state."""
 
 def force_field(
-    law: VirtualForceField,
+    law: Law,
     scenario: Scenario,
     position: _Array,
     velocity: _Array,
@@ -328,7 +378,7 @@ def force_field(
     """Return forces and Lyapunov function at many states."""
 
 def lyapunov(
-    law: VirtualForceField,
+    law: Law,
     scenario: Scenario,
     position: _Pair,
     velocity: _Pair,
@@ -338,7 +388,7 @@ def lyapunov(
 
 def simulate_batch(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField,
+    law: Law,
     gains: _Array,
     weights: _Triple,
     *,
@@ -425,7 +475,7 @@ class GainProblem:
         cls,
         *,
         scenarios: Sequence[Scenario],
-        law: VirtualForceField,
+        law: Law,
         weights: _Triple,
         integrator: str,
         step: float,

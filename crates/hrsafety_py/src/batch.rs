@@ -3,13 +3,13 @@
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::gains::Gains;
 use vff_core::scenario;
 use vff_core::simulate::{BatchOptions, BatchTable, Instructions, Width, run_batch};
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
-use crate::parameters::{Scenario, VirtualForceField, gain_set};
+use crate::laws::Law;
+use crate::parameters::Scenario;
 use crate::run::{outcome_word, run_options, weights_of};
 use crate::watch::{Report, watched};
 
@@ -23,7 +23,7 @@ use crate::watch::{Report, watched};
 pub fn simulate_batch<'py>(
     py: Python<'py>,
     scenarios: Vec<PyRef<'py, Scenario>>,
-    law: &VirtualForceField,
+    law: &Law,
     gains: PyReadonlyArray2<'py, f64>,
     weights: (f64, f64, f64),
     integrator: &Bound<'py, PyAny>,
@@ -44,28 +44,26 @@ pub fn simulate_batch<'py>(
         width,
         instructions: Instructions::Widest,
     };
-    let sets: Vec<Gains> = gains
-        .as_slice()?
-        .chunks_exact(gains.shape()[1])
-        .map(|row| gain_set([row[0], row[1], row[2], row[3]]))
-        .collect();
+    let (count, dimension) = (gains.shape()[0], gains.shape()[1]);
+    let points = gains.as_slice()?.to_vec();
     let scenarios: Vec<scenario::Scenario> = scenarios
         .iter()
         .map(|scenario| scenario.0.clone())
         .collect();
-    let law = &law.0;
-    let report = Report::new(progress.as_ref(), sets.len() * scenarios.len());
+    let law = &law.any;
+    let report = Report::new(progress.as_ref(), count * scenarios.len());
     let table = watched(py, report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
-        run_batch(&scenarios, law, &sets, &options, &interrupted, &count)
+        run_batch(&scenarios, law, &points, &options, &interrupted, &count)
     })?;
-    columns(py, &sets, table)
+    columns(py, (&points, dimension), table)
 }
 
+/// Columns of a batch of gain sets, which follow each other with so many gains each.
 pub fn columns<'py>(
     py: Python<'py>,
-    sets: &[Gains],
+    sets: (&[f64], usize),
     table: BatchTable,
 ) -> PyResult<Bound<'py, PyDict>> {
     let fields = Fields::new(py);
@@ -91,17 +89,22 @@ pub fn columns<'py>(
 }
 
 /// Which gains and which scenario; the scenarios vary fastest.
-fn index_columns(fields: &Fields<'_>, sets: &[Gains], rows: usize) -> PyResult<()> {
+fn index_columns(
+    fields: &Fields<'_>,
+    (points, dimension): (&[f64], usize),
+    rows: usize,
+) -> PyResult<()> {
+    let sets: Vec<&[f64]> = points.chunks_exact(dimension).collect();
     let scenarios = rows / sets.len().max(1);
     let indices = || (0..rows).map(|row| (row / scenarios, row % scenarios));
     let gains = indices()
-        .flat_map(|(set, _)| sets[set].in_order())
+        .flat_map(|(set, _)| sets[set].iter().copied())
         .collect();
     let of_gains = indices().map(|(set, _)| signed(set)).collect();
     fields.vector("gain_index", of_gains)?;
     let of_scenarios = indices().map(|(_, index)| signed(index)).collect();
     fields.vector("scenario_index", of_scenarios)?;
-    fields.matrix("gains", gains, rows, 4)
+    fields.matrix("gains", gains, rows, dimension)
 }
 
 /// A count as Python's integer type of arrays.

@@ -6,6 +6,7 @@ mod batch;
 mod errors;
 mod gains;
 mod impact;
+mod laws;
 mod parameters;
 mod run;
 mod signals;
@@ -64,10 +65,11 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::impact::single::{impact_gradient_names, impact_gradients, impact_metrics};
     #[pymodule_export]
+    use crate::laws::Law;
+    #[pymodule_export]
     use crate::parameters::{
-        DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, VirtualForceField,
-        region_radii,
+        DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, region_radii,
     };
     #[pymodule_export]
-    use crate::run::{evaluate, force_field, force_terms, lyapunov, simulate};
+    use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, simulate};
 }

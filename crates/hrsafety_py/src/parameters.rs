@@ -2,15 +2,12 @@
 
 use pyo3::prelude::*;
 use vff_core::error::{Given, NavigationError};
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::gains::Gains;
 use vff_core::measurement::{self, Distribution, Noisy};
 use vff_core::motion::{Motion, Segment};
 use vff_core::obstacle::{self, Limits};
+use vff_core::region;
 use vff_core::robots::{self, Wheels};
 use vff_core::scenario::{self, Rules};
-use vff_core::{laws, region};
 
 use crate::errors::CoreResult;
 
@@ -286,49 +283,6 @@ impl Scenario {
             measurement.map(|measurement| measurement.0),
             seed,
         )))
-    }
-}
-
-/// Law.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct VirtualForceField(pub laws::VirtualForceField);
-
-#[pymethods]
-impl VirtualForceField {
-    #[new]
-    #[pyo3(signature = (*, gains, stabilizing, stabilizing_force_cap, stabilizing_momentum_cap,
-        pass_behind, side_hysteresis))]
-    fn new(
-        gains: [f64; 4],
-        stabilizing: &Bound<'_, PyAny>,
-        stabilizing_force_cap: Option<f64>,
-        stabilizing_momentum_cap: Option<f64>,
-        pass_behind: bool,
-        side_hysteresis: f64,
-    ) -> PyResult<Self> {
-        let mode = stabilizing
-            .extract::<String>()
-            .or_else(|_| stabilizing.repr().map(|shown| shown.to_string()))?;
-        let build = || {
-            let stabilizing =
-                Stabilizing::named(&mode, stabilizing_force_cap, stabilizing_momentum_cap)?;
-            let rules = SideRules {
-                pass_behind,
-                hysteresis: side_hysteresis,
-            };
-            laws::VirtualForceField::new(gain_set(gains), stabilizing, rules)
-        };
-        Ok(Self(build().map_err(crate::errors::CoreError::from)?))
-    }
-}
-
-/// A gain set in the order of Python's `GAIN_NAMES`.
-pub fn gain_set([attractive, repulsive, detour, ratio]: [f64; 4]) -> Gains {
-    Gains {
-        attractive,
-        repulsive,
-        detour,
-        ratio,
     }
 }
 

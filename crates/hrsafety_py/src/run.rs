@@ -8,12 +8,14 @@ use pyo3::types::PyDict;
 use vff_core::laws::FieldTerms;
 use vff_core::metrics::{self, Weights};
 use vff_core::simulate::{
-    Contact, Integrator, Options, Outcome, RunSummary, Trajectory, simulate as run_once, terms_at,
+    Contact, Integrator, Options, Outcome, RunSummary, Trajectory, command_at,
+    simulate as run_once, terms_at,
 };
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult, InvalidParameterError};
-use crate::parameters::{Scenario, VirtualForceField, word};
+use crate::laws::Law;
+use crate::parameters::{Scenario, word};
 
 /// The word for an outcome.
 pub fn outcome_word(outcome: Outcome) -> &'static str {
@@ -50,7 +52,7 @@ pub fn run_options(
 fn run(
     py: Python<'_>,
     scenario: &vff_core::scenario::Scenario,
-    law: &VirtualForceField,
+    law: &Law,
     options: &Options,
 ) -> PyResult<(RunSummary, Trajectory)> {
     let pending: Mutex<Option<PyErr>> = Mutex::new(None);
@@ -65,7 +67,7 @@ fn run(
             true
         }
     };
-    let result = py.detach(|| run_once(scenario, &law.0, options, &interrupted));
+    let result = py.detach(|| run_once(scenario, &law.any, options, &interrupted));
     if let Some(error) = pending.into_inner().ok().flatten() {
         return Err(error);
     }
@@ -118,7 +120,7 @@ fn trajectory_fields<'py>(
 pub fn simulate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
-    law: &VirtualForceField,
+    law: &Law,
     integrator: &Bound<'py, PyAny>,
     step: f64,
     hold: bool,
@@ -134,7 +136,7 @@ pub fn simulate<'py>(
 pub fn evaluate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
-    law: &VirtualForceField,
+    law: &Law,
     weights: (f64, f64, f64),
     integrator: &Bound<'py, PyAny>,
     step: f64,
@@ -168,19 +170,32 @@ pub fn weights_of((arrival_time, avoidance, energy_saving): (f64, f64, f64)) -> 
 
 fn terms(
     scenario: &Scenario,
-    law: &VirtualForceField,
+    law: &Law,
     position: [f64; 2],
     velocity: [f64; 2],
     time: f64,
-) -> CoreResult<FieldTerms> {
-    Ok(terms_at(&scenario.0, &law.0, position, velocity, time)?)
+) -> PyResult<FieldTerms> {
+    let terms = terms_at(&scenario.0, law.field()?, position, velocity, time);
+    Ok(terms.map_err(CoreError::from)?)
+}
+
+/// Force that a law asks for at one state.
+#[pyfunction]
+pub fn law_command(
+    law: &Law,
+    scenario: &Scenario,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    time: f64,
+) -> CoreResult<[f64; 2]> {
+    Ok(command_at(&scenario.0, &law.any, position, velocity, time)?)
 }
 
 /// Every force term at one state.
 #[pyfunction]
 pub fn force_terms<'py>(
     py: Python<'py>,
-    law: &VirtualForceField,
+    law: &Law,
     scenario: &Scenario,
     position: [f64; 2],
     velocity: [f64; 2],
@@ -223,7 +238,7 @@ pub fn force_terms<'py>(
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn force_field<'py>(
     py: Python<'py>,
-    law: &VirtualForceField,
+    law: &Law,
     scenario: &Scenario,
     position: PyReadonlyArray2<'py, f64>,
     velocity: PyReadonlyArray2<'py, f64>,
@@ -273,7 +288,7 @@ pub fn force_field<'py>(
 /// Lyapunov function, its derivative and Omega at one state.
 #[pyfunction]
 pub fn lyapunov(
-    law: &VirtualForceField,
+    law: &Law,
     scenario: &Scenario,
     position: [f64; 2],
     velocity: [f64; 2],

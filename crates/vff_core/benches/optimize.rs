@@ -7,6 +7,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use vff_core::gains::Gains;
 use vff_core::metrics::Weights;
 use vff_core::motion::Motion;
 use vff_core::obstacle::{Limits, Obstacle};
@@ -168,7 +169,15 @@ fn episodes(criterion: &mut Criterion) {
             instructions: Instructions::Widest,
         };
         let law = scenes::law("off");
-        run_batch(&scenario, &law, &sets, &options, &|| false, &|_| ()).unwrap()
+        run_batch(
+            &scenario,
+            law,
+            &Gains::one_after_another(&sets),
+            &options,
+            &|| false,
+            &|_| (),
+        )
+        .unwrap()
     };
     let table = batch(1);
     let arrived = table.outcome.iter().filter(|end| **end == Outcome::Arrived);

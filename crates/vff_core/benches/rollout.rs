@@ -6,6 +6,7 @@ mod scenes;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
 use vff_core::metrics::Weights;
 use vff_core::scenario::Scenario;
@@ -36,7 +37,7 @@ fn batch(
     run_batch(
         scenarios,
         law,
-        &scenes::sets(512),
+        &Gains::one_after_another(&scenes::sets(512)),
         &options,
         &|| false,
         &|_| (),
@@ -79,7 +80,7 @@ fn rollouts(criterion: &mut Criterion) {
     let scenario = scenes::configuration_4();
     let law = scenes::law("off");
     criterion.bench_function("one_recorded_run/c4", |bencher| {
-        bencher.iter(|| simulate(black_box(&scenario), &law, &Options::default(), &|| false));
+        bencher.iter(|| simulate(black_box(&scenario), law, &Options::default(), &|| false));
     });
 }
 

@@ -37,6 +37,12 @@ impl Gains {
         }
     }
 
+    /// Sets one after the other, as a batch takes them.
+    #[must_use]
+    pub fn one_after_another(sets: &[Self]) -> Vec<f64> {
+        sets.iter().flat_map(Self::in_order).collect()
+    }
+
     /// Passes a set whose gains are finite and not negative.
     ///
     /// # Errors

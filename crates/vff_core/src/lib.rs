@@ -17,6 +17,7 @@ pub mod metrics;
 pub mod motion;
 pub mod obstacle;
 pub mod optimize;
+pub mod planners;
 pub mod region;
 pub mod robots;
 pub mod scenario;

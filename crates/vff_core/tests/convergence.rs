@@ -42,7 +42,7 @@ fn run(scenario: &Scenario, integrator: Integrator, step: f64) -> Trajectory {
         hold: false,
         stop_on_contact: false,
     };
-    let (run, path) = simulate(scenario, &off(), &options, &|| false).unwrap();
+    let (run, path) = simulate(scenario, off(), &options, &|| false).unwrap();
     assert!((run.end_time - END).abs() < 1e-12);
     let robot = HolonomicRobot::default();
     for row in 0..path.time.len() {
@@ -137,7 +137,7 @@ fn run_inside_active_regions_keeps_the_order() {
 fn noisy_run(noisy: Noisy, distribution: Distribution, seed: u64) -> Trajectory {
     let measurement = Measurement::new(0.01, distribution, noisy).unwrap();
     let scenario = crossing(obstacles(4), Rules::default()).measured(Some(measurement), seed);
-    simulate(&scenario, &off(), &Options::default(), &|| false)
+    simulate(&scenario, off(), &Options::default(), &|| false)
         .unwrap()
         .1
 }
@@ -157,7 +157,7 @@ fn seed_decides_the_noise() {
 fn seed_changes_nothing_without_noise() {
     let run = |seed| {
         let scenario = crossing(obstacles(4), Rules::default()).measured(None, seed);
-        let (summary, path) = simulate(&scenario, &off(), &Options::default(), &|| false).unwrap();
+        let (summary, path) = simulate(&scenario, off(), &Options::default(), &|| false).unwrap();
         (summary.arrival_time, summary.energy, path.position)
     };
     assert_eq!(run(1), run(2));

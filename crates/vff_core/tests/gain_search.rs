@@ -119,7 +119,15 @@ fn shortcuts_change_no_score() {
     };
     let law = law(PUBLISHED, Stabilizing::Off);
     let all = scenarios(&numbers);
-    let table = run_batch(&all, &law, &sets, &options, &|| false, &|_| ()).unwrap();
+    let table = run_batch(
+        &all,
+        law,
+        &Gains::one_after_another(&sets),
+        &options,
+        &|| false,
+        &|_| (),
+    )
+    .unwrap();
     let mut failures = 0;
     for (set, value) in found.values.iter().enumerate() {
         let rows = 3 * set..3 * set + 3;
@@ -303,7 +311,15 @@ fn objectives_are_put_together_as_they_say() {
         instructions: Instructions::Widest,
     };
     let all = scenarios(&[1, 2]);
-    let table = run_batch(&all, &law, &[law.gains], &options, &|| false, &|_| ()).unwrap();
+    let table = run_batch(
+        &all,
+        law,
+        &law.gains.in_order(),
+        &options,
+        &|| false,
+        &|_| (),
+    )
+    .unwrap();
     let [first, second] = [table.arrival_time[0], table.arrival_time[1]];
     let slower = first.max(second);
     let expected = [-(first + second) / 2.0, -slower, -second, -table.energy[0]];

@@ -156,7 +156,7 @@ fn configurations_give_their_figures() {
     ] {
         let scenario = crossing(obstacles(number), Rules::default());
         let law = law(set, Stabilizing::Off);
-        let (run, _) = simulate(&scenario, &law, &Options::default(), &|| false).unwrap();
+        let (run, _) = simulate(&scenario, law, &Options::default(), &|| false).unwrap();
         assert_eq!(run.outcome, Outcome::Arrived);
         let arrival = run.arrival_time.unwrap();
         assert!(

@@ -335,7 +335,17 @@ fn assert_same_in_every_width(
             width: Some(Width::of(lanes).unwrap()),
             instructions,
         };
-        bits(&run_batch(scenarios, law, sets, &options, &|| false, &|_| ()).unwrap())
+        bits(
+            &run_batch(
+                scenarios,
+                law,
+                &Gains::one_after_another(sets),
+                &options,
+                &|| false,
+                &|_| (),
+            )
+            .unwrap(),
+        )
     };
     let first = table(1, 1, Instructions::Baseline);
     assert_eq!(first.len(), sets.len() * scenarios.len());
@@ -466,7 +476,15 @@ fn a_large_batch_has_the_rows_of_single_runs() {
         instructions: Instructions::Widest,
     };
     let law = law(NEW, Stabilizing::Off);
-    let table = run_batch(scenarios, &law, &sets, &options, &|| false, &|_| ()).unwrap();
+    let table = run_batch(
+        scenarios,
+        law,
+        &Gains::one_after_another(&sets),
+        &options,
+        &|| false,
+        &|_| (),
+    )
+    .unwrap();
     assert_eq!((table.len(), table.is_empty()), (4200, false));
     for set in [0, 63, 64, 149, 150, 2099] {
         for (index, scenario) in scenarios.iter().enumerate() {
@@ -475,7 +493,7 @@ fn a_large_batch_has_the_rows_of_single_runs() {
                 gains: sets[set],
                 ..law
             };
-            let (summary, _) = simulate(scenario, &one, &run, &|| false).unwrap();
+            let (summary, _) = simulate(scenario, one, &run, &|| false).unwrap();
             assert_eq!(table.outcome[row], summary.outcome);
             assert_eq!(
                 table.arrival_time[row],

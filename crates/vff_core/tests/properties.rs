@@ -263,7 +263,7 @@ proptest! {
             return Err(TestCaseError::reject("the goal is inside an active region"));
         };
         let options = options(rk4, hold);
-        let (run, path) = simulate(&scenario, &law, &options, &|| false).unwrap();
+        let (run, path) = simulate(&scenario, law, &options, &|| false).unwrap();
         let robot = HolonomicRobot::default();
         let velocities: Vec<_> = rows(&path.velocity).collect();
         for velocity in &velocities {
@@ -291,7 +291,7 @@ proptest! {
         let motion = vff_core::motion::Motion::moving([0.5, 0.6 + offset], [speed, 0.0], [0.0; 2], None);
         let person = Obstacle::disc(0.4, motion.unwrap(), limits(0.8, 1.0)).unwrap();
         let scenario = crossing(vec![person], Rules { time_limit: 4.0, ..Rules::default() });
-        let (_, path) = simulate(&scenario, &law, &options(false, true), &|| false).unwrap();
+        let (_, path) = simulate(&scenario, law, &options(false, true), &|| false).unwrap();
         let velocities: Vec<_> = rows(&path.velocity).collect();
         let mut braked = false;
         // Three steps a control period; the region is looked at when it begins.
@@ -388,7 +388,7 @@ proptest! {
         let Ok(scenario) = Scenario::new(robot, [ends[0], ends[1]], [ends[2], ends[3]], bodies, rules) else {
             return Ok(());
         };
-        match simulate(&scenario, &law, &options(rk4, hold), &|| false) {
+        match simulate(&scenario, law, &options(rk4, hold), &|| false) {
             Ok((run, path)) => {
                 prop_assert!(is_finite(&path));
                 prop_assert!(!run.energy.is_nan() && run.energy >= 0.0);
@@ -412,7 +412,7 @@ proptest! {
         let (value, derivative) = seen.lyapunov.unwrap();
         prop_assert!(value.is_finite() && value >= 0.0 && derivative.is_finite());
         if rk4 && state.velocity[0] > 0.6 {
-            let (_, path) = simulate(&scenario, &law, &options(rk4, false), &|| false).unwrap();
+            let (_, path) = simulate(&scenario, law, &options(rk4, false), &|| false).unwrap();
             prop_assert!(is_finite(&path));
         }
     }
@@ -430,7 +430,7 @@ fn a_full_turn_of_a_configuration_changes_nothing() {
     );
     let law = law([3.0, 20.0, 17.0, 0.25], Stabilizing::Off);
     let run =
-        |scenario: &Scenario| simulate(scenario, &law, &Options::default(), &|| false).unwrap();
+        |scenario: &Scenario| simulate(scenario, law, &Options::default(), &|| false).unwrap();
     let ((one, here), (other, there)) = (run(&scenario), run(&turned));
     assert_eq!(here.position, there.position);
     assert!((one.energy / other.energy - 1.0).abs() < ROUNDING);

@@ -11,7 +11,20 @@ from typing import Any, NoReturn
 from hrsafety import __version__
 from hrsafety.errors import HrsafetyError
 
-__all__ = ["main"]
+__all__ = ["LAW_NAMES", "main"]
+
+LAW_NAMES = (
+    "virtual-force-field",
+    "khatib",
+    "borenstein-koren",
+    "masoud",
+    "ge-cui",
+    "velocity-obstacle",
+    "rapidly-exploring-random-tree",
+    "field-d-star",
+    "optimal-reciprocal-collision-avoidance",
+)
+"""Laws of `hrsafety.scenarios.laws`, named here so that ``--help`` need not load them."""
 
 _REPRODUCE_EXAMPLE = """example:
   hrsafety reproduce --out reproduction
@@ -20,6 +33,7 @@ _REPRODUCE_EXAMPLE = """example:
 _SIMULATE_EXAMPLE = """examples:
   hrsafety simulate my_first_crossing.toml --out crossing --animate crossing/run.gif
   hrsafety simulate my_first_crossing.toml --gains 4.3 20.3 240.7 0.68 --stabilizing off
+  hrsafety simulate my_first_crossing.toml --law velocity-obstacle
   hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
 
 A people file has the columns frame, t_s, ped_id, x_m, y_m. The robot crosses the main flow
@@ -162,13 +176,14 @@ def _add_simulate(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", help="folder for tables (CSV) and pictures")
     parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
     law = parser.add_argument_group("law (what is not given comes from the scenario file, else from the defaults)")
-    law.add_argument("--law", choices=["virtual-force-field"], default="virtual-force-field", help="[%(default)s]")
+    law.add_argument("--law", metavar="NAME", choices=LAW_NAMES, help=", ".join(LAW_NAMES))
     law.add_argument(
         "--gains",
-        nargs=4,
+        nargs="+",
         type=float,
-        metavar=("K1", "K3", "K5", "B"),
-        help="N/m, N/m, N/m^2, s: attraction, repulsion, detour, and damping of each as a share of its gain",
+        metavar="K",
+        help="numbers of the law in its order; of the virtual force field K1 K3 K5 b in N/m, N/m, N/m^2, s: "
+        "attraction, repulsion, detour, and damping of each as a share of its gain",
     )
     law.add_argument("--stabilizing", choices=["off", "capped", "full"], help="stabilizing force")
     stepping = parser.add_argument_group("stepping")

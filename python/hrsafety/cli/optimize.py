@@ -253,7 +253,7 @@ def _alone(study: GainStudy, gains: Gains) -> nav.GainSearch:
     return nav.optimize_gains(study.scenarios, study.law, **arguments)
 
 
-def _sensitivity(study: GainStudy, law: nav.VirtualForceField, threads: int | None) -> nav.GainSensitivity:
+def _sensitivity(study: GainStudy, law: nav.Law, threads: int | None) -> nav.GainSensitivity:
     return nav.gain_sensitivity(study.scenarios, law, threads=threads, **_scoring(study))
 
 

@@ -11,13 +11,13 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.gain_metrics import METRICS
-from hrsafety.scenarios import files
+from hrsafety.scenarios import files, laws
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 
 __all__ = ["GainStudy", "load", "scenarios_of"]
 
-Gains = tuple[float, float, float, float]
+Gains = tuple[float, ...]
 GAIN_NAMES = nav.VirtualForceField.GAIN_NAMES
 
 
@@ -48,7 +48,9 @@ _TOP: Keys = MappingProxyType(
         "compare": kind.tables,
     }
 )
-_LAW: Keys = MappingProxyType({name: check for name, check in files.LAW.items() if name not in GAIN_NAMES})
+_LAW: Keys = MappingProxyType(
+    {name: check for name, check in laws.keys_of(nav.VirtualForceField).items() if name not in GAIN_NAMES}
+)
 _BOUNDS: Keys = MappingProxyType(dict.fromkeys(GAIN_NAMES, kind.pair))
 _SEARCH: Keys = MappingProxyType(
     {
@@ -158,7 +160,10 @@ def load(path: str) -> GainStudy:
 
 def _law(table: dict[str, Any]) -> nav.VirtualForceField:
     """Return the law, whose gains a study does not name: they are what is searched."""
-    return files.law_of(checked("law", table, _LAW))
+    law = laws.law_of(checked("law", table, _LAW))
+    if not isinstance(law, nav.VirtualForceField):
+        raise InvalidParameterError("law.type", "be virtual_force_field", table["type"])
+    return law
 
 
 def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple[nav.Scenario, ...]]:

@@ -51,7 +51,7 @@ class Scored:
     ----------
     name : str
         As in the file; ``"best"`` for the best set.
-    law : VirtualForceField
+    law : Law
         The law with these gains.
     value : float
         Objective in its own unit: not turned around where small is good.
@@ -62,7 +62,7 @@ class Scored:
     """
 
     name: str
-    law: nav.VirtualForceField
+    law: nav.Law
     value: float
     scores: nav.BatchSummary
     runs: tuple[nav.Trajectory, ...]

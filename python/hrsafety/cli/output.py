@@ -7,13 +7,13 @@ import csv
 import io
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hrsafety import navigation as nav
 from hrsafety._atomic import write_file
 from hrsafety.errors import InvalidParameterError
+from hrsafety.scenarios.laws import LAWS, name_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,20 +67,31 @@ def decimal(value: float, digits: int = 2) -> str:
     return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
-def with_options(law: nav.VirtualForceField, options: argparse.Namespace) -> nav.VirtualForceField:
+def with_options(law: nav.Law, options: argparse.Namespace) -> nav.Law:
     """Return the law with what the command line changes."""
+    if options.law is not None:
+        named = LAWS[options.law.replace("-", "_")]
+        law = law if type(law) is named else named()
     changes: dict[str, object] = {}
     if options.gains is not None:
-        changes |= dict(zip(law.GAIN_NAMES, options.gains, strict=True))
+        names = law.GAIN_NAMES
+        if len(options.gains) != len(names):
+            raise InvalidParameterError("--gains", f"be {len(names)} numbers: {', '.join(names)}", options.gains)
+        changes |= dict(zip(names, options.gains, strict=True))
     if options.stabilizing is not None:
+        if not isinstance(law, nav.VirtualForceField):
+            raise InvalidParameterError("--stabilizing", "come with the virtual force field", options.stabilizing)
         changes["stabilizing"] = options.stabilizing
         if options.stabilizing != "capped":
             changes |= {"stabilizing_force_cap": None, "stabilizing_momentum_cap": None}
-    return replace(law, **changes)  # type: ignore[arg-type]  # checked by the constructor
+    return law.replaced(**changes)
 
 
-def law_words(law: nav.VirtualForceField) -> str:
+def law_words(law: nav.Law) -> str:
     """Return the law in one line."""
+    if not isinstance(law, nav.VirtualForceField):
+        numbers = (f"{name} {value:g}" for name, value in zip(law.GAIN_NAMES, law.gains, strict=True))
+        return f"{name_of(law).replace('_', ' ')}, {', '.join(numbers)}"
     attraction, repulsion, detour, ratio = (f"{gain:g}" for gain in law.gains)
     return (
         f"virtual force field, K_1 {attraction} N/m, K_3 {repulsion} N/m, K_5 {detour} N/m^2, b {ratio} s, "

@@ -18,6 +18,7 @@ from hrsafety import navigation as nav
 from hrsafety.cli import output
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
+from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
 __all__ = ["simulate_people"]
@@ -103,7 +104,7 @@ def _heading(
     options: argparse.Namespace,
     recording: datasets.Recording,
     crossings: Sequence[scenarios.Crossing],
-    law: nav.VirtualForceField,
+    law: nav.Law,
 ) -> Iterator[str]:
     flow, scenario = recording.main_flow(), crossings[0].scenario
     way = [f"({x:.2f}, {y:.2f})" for x, y in (scenario.start, scenario.goal)]
@@ -221,10 +222,18 @@ def _person_records(crossings: Sequence[scenarios.Crossing], met: _Encounters) -
     return [dict(zip(PERSON_COLUMNS, row, strict=True)) for row in values]
 
 
+def _law(law: nav.Law) -> dict[str, Any]:
+    """Return name and numbers of a law; of the virtual force field also its stabilizing force."""
+    numbers = dict(zip(law.GAIN_NAMES, law.gains, strict=True))
+    if isinstance(law, nav.VirtualForceField):
+        return {"stabilizing": law.stabilizing, **numbers}
+    return {"type": name_of(law), **numbers}
+
+
 def _report(
     recording: datasets.Recording,
     crossings: Sequence[scenarios.Crossing],
-    law: nav.VirtualForceField,
+    law: nav.Law,
     summary: nav.BatchSummary,
     met: _Encounters,
 ) -> dict[str, Any]:
@@ -239,7 +248,7 @@ def _report(
             "spread_m": flow.spread,
         },
         "robot": {"start_m": scenario.start, "goal_m": scenario.goal, "radius_m": scenario.robot.radius},
-        "law": {"stabilizing": law.stabilizing, **dict(zip(law.GAIN_NAMES, law.gains, strict=True))},
+        "law": _law(law),
         "outcomes": dict(zip(words.tolist(), counts.tolist(), strict=True)),
         "contacts_moving": int(summary.contacts_moving.sum()),
         "contacts_standing": int(summary.contacts_standing.sum()),

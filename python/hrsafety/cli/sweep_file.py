@@ -11,7 +11,7 @@ from typing import Any
 from hrsafety import impact, sweep
 from hrsafety.cli import foam_file, optimize_file
 from hrsafety.errors import InvalidParameterError
-from hrsafety.scenarios import files
+from hrsafety.scenarios import files, laws
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 from hrsafety.sweep.impact_study import IMPACT_UNITS
@@ -191,7 +191,7 @@ def _design(table: dict[str, Any], axes: list[sweep.Axis]) -> sweep.Design:
 def _navigation(fields: dict[str, Any], folder: Path) -> sweep.NavigationStudy:
     names, scenes = optimize_file.scenarios_of(fields["scenarios"], folder)
     stepping = checked("run", fields.get("run", {}), _RUN)
-    law = files.law_of(fields["law"]) if "law" in fields else None
+    law = laws.law_of(fields["law"]) if "law" in fields else None
     options: dict[str, Any] = {"law": law, "outputs": fields.get("outputs"), **stepping}
     return sweep.NavigationStudy(scenarios=scenes, names=names, **options)
 

@@ -1,6 +1,7 @@
 """Mobile robots among people and things: laws, scenarios, runs, scores."""
 
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError, SimulationError
+from hrsafety.navigation.arena import ArenaResult, Standing, arena, step_cost
 from hrsafety.navigation.batch import BatchSummary, simulate_batch
 from hrsafety.navigation.gain_changes import GainSensitivity, gain_sensitivity
 from hrsafety.navigation.gain_confidence import Confidence
@@ -9,8 +10,14 @@ from hrsafety.navigation.gain_results import Flatness, GainSearch, LocalSearch, 
 from hrsafety.navigation.gain_search import optimize_gains
 from hrsafety.navigation.gain_settings import GainConstraint, SearchSettings
 from hrsafety.navigation.gain_slopes import GainGradient, gain_gradient
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.planners import (
+    FieldDStar,
+    OptimalReciprocalCollisionAvoidance,
+    RapidlyExploringRandomTree,
+    VelocityObstacle,
+)
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Measurement, Regions, Scenario, region_radii
 from hrsafety.navigation.simulation import (
@@ -19,6 +26,7 @@ from hrsafety.navigation.simulation import (
     Lyapunov,
     Performance,
     Trajectory,
+    command,
     evaluate,
     force_field,
     force_terms,
@@ -27,10 +35,13 @@ from hrsafety.navigation.simulation import (
 )
 
 __all__ = [
+    "ArenaResult",
     "BatchSummary",
+    "BorensteinKoren",
     "Confidence",
     "DifferentialDriveRobot",
     "Disc",
+    "FieldDStar",
     "Flatness",
     "ForceField",
     "ForceTerms",
@@ -38,17 +49,23 @@ __all__ = [
     "GainGradient",
     "GainSearch",
     "GainSensitivity",
+    "GeCui",
     "HolonomicRobot",
     "HrsafetyError",
     "Human",
     "InvalidParameterError",
+    "Khatib",
+    "Law",
     "LocalSearch",
     "Lyapunov",
+    "Masoud",
     "Measurement",
     "MovingDisc",
     "Obstacle",
+    "OptimalReciprocalCollisionAvoidance",
     "ParetoFront",
     "Performance",
+    "RapidlyExploringRandomTree",
     "Rectangle",
     "Regions",
     "Scenario",
@@ -56,8 +73,12 @@ __all__ = [
     "SearchSettings",
     "ShapeError",
     "SimulationError",
+    "Standing",
     "Trajectory",
+    "VelocityObstacle",
     "VirtualForceField",
+    "arena",
+    "command",
     "evaluate",
     "force_field",
     "force_terms",
@@ -69,4 +90,5 @@ __all__ = [
     "region_radii",
     "simulate",
     "simulate_batch",
+    "step_cost",
 ]

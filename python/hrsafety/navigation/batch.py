@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import callback, count, flag, number, numbers, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator, check_weights
 
@@ -32,7 +32,9 @@ class BatchSummary:
     ----------
     gain_index, scenario_index : ndarray of int, shape (rows,)
         Which gain set and which scenario.
-    gains : ndarray, shape (rows, 4)
+    gain_names : tuple of str
+        Names of the gains of the law, in their order.
+    gains : ndarray, shape (rows, g)
         K_1, K_3, K_5, b of the row.
     outcome : ndarray of str, shape (rows,)
         ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``.
@@ -63,6 +65,7 @@ class BatchSummary:
         Number of control periods.
     """
 
+    gain_names: tuple[str, ...]
     gain_index: npt.NDArray[np.int64]
     scenario_index: npt.NDArray[np.int64]
     gains: Array
@@ -105,8 +108,10 @@ class BatchSummary:
         table: dict[str, npt.NDArray[np.generic]] = {}
         for entry in fields(self):
             values = getattr(self, entry.name)
+            if entry.name == "gain_names":
+                continue
             if entry.name == "gains":
-                table |= {name: values[:, i] for i, name in enumerate(VirtualForceField.GAIN_NAMES)}
+                table |= {name: values[:, i] for i, name in enumerate(self.gain_names)}
             elif values.ndim == 2:
                 table |= {f"{entry.name}_{i}": values[:, i] for i in range(values.shape[1])}
             else:
@@ -116,7 +121,7 @@ class BatchSummary:
 
 def simulate_batch(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField,
+    law: Law,
     gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
     *,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
@@ -135,10 +140,10 @@ def simulate_batch(
     ----------
     scenarios : sequence of Scenario
         Where.
-    law : VirtualForceField
+    law : Law
         The law; its own gains are used when ``gains`` is ``None``.
-    gains : array_like of shape (n, 4), mapping, or None
-        Gain sets in the order of ``VirtualForceField.GAIN_NAMES``, or arrays by these names
+    gains : array_like of shape (n, g), mapping, or None
+        Gain sets in the order of ``GAIN_NAMES`` of the law, or arrays by these names
         that broadcast, the missing ones taken from the law.
     weights : sequence of float
         Weights of time, distance and energy in H.
@@ -165,7 +170,7 @@ def simulate_batch(
         If there is no scenario or no gain set, a gain is negative or not finite, or an option
         is out of range.
     ShapeError
-        If gains is not (n, 4).
+        If gains does not have a column for each gain of the law.
     SimulationError
         If the state of a run became non-finite.
     KeyboardInterrupt
@@ -182,7 +187,7 @@ def simulate_batch(
     (9, {'arrived'})
     """
     scenes = check_scenarios(scenarios)
-    _require("law", law, VirtualForceField)
+    _require("law", law, Law)
     check_threads(threads)
     if lanes is not None:
         count("lanes", lanes)
@@ -200,7 +205,7 @@ def simulate_batch(
         lanes=lanes,
         progress=callback("progress", progress),
     )
-    return BatchSummary(**columns)
+    return BatchSummary(gain_names=law.GAIN_NAMES, **columns)
 
 
 def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
@@ -219,8 +224,8 @@ def check_threads(threads: int | None) -> None:
         raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
 
 
-def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
-    """Return the gain sets as a contiguous (n, 4) array."""
+def _gain_sets(law: Law, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
+    """Return the gain sets as a contiguous array, one a row."""
     if gains is None:
         return np.array([law.gains])
     if isinstance(gains, Mapping):
@@ -236,6 +241,6 @@ def _gain_sets(law: VirtualForceField, gains: npt.ArrayLike | Mapping[str, npt.A
             raise ShapeError("gains", "arrays that broadcast", shapes) from None
         return np.ascontiguousarray(np.stack([column.ravel() for column in columns], axis=1))
     array = numbers("gains", gains, "be an array of numbers, a mapping or None")
-    if array.ndim != 2 or array.shape[1] != 4:
-        raise ShapeError("gains", "(n, 4)", array.shape)
+    if array.ndim != 2 or array.shape[1] != len(law.GAIN_NAMES):
+        raise ShapeError("gains", f"(n, {len(law.GAIN_NAMES)})", array.shape)
     return array

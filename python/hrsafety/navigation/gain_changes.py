@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator
 
@@ -30,7 +30,7 @@ class GainSensitivity:
 
     Attributes
     ----------
-    law : VirtualForceField
+    law : Law
         The law whose gains were changed.
     scenarios : tuple of Scenario
         Where.
@@ -61,7 +61,7 @@ class GainSensitivity:
         without change, and where a run touched an obstacle or did not arrive.
     """
 
-    law: VirtualForceField
+    law: Law
     scenarios: tuple[Scenario, ...]
     weights: tuple[float, float, float]
     gain_names: tuple[str, ...]
@@ -137,7 +137,7 @@ def _over_changes(statistic: Callable[[Array], np.floating], sensitivity: Array)
 
 def gain_sensitivity(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField | None = None,
+    law: Law | None = None,
     changes: npt.ArrayLike = CHANGES_PERCENT,
     *,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
@@ -153,7 +153,7 @@ def gain_sensitivity(
     ----------
     scenarios : sequence of Scenario
         Where.
-    law : VirtualForceField or None
+    law : Law or None
         The law and the gains that are changed; ``None``: the default law.
     changes : array_like, shape (c,)
         Changes of a gain in percent, -100 or more; the default is that of the source without
@@ -196,7 +196,7 @@ def gain_sensitivity(
     """
     scenes = check_scenarios(scenarios)
     law = VirtualForceField() if law is None else law
-    _require("law", law, VirtualForceField)
+    _require("law", law, Law)
     percent = _changes(changes)
     reference = np.array(law.gains)
     gains = np.tile(reference, (len(reference), len(percent), 1))
@@ -228,7 +228,7 @@ def _changes(changes: npt.ArrayLike) -> Array:
 
 def _collect(
     scenes: list[Scenario],
-    law: VirtualForceField,
+    law: Law,
     weights: Sequence[float],
     percent: Array,
     gains: Array,

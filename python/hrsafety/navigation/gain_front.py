@@ -27,7 +27,7 @@ from hrsafety.navigation.gain_settings import (
     SearchSettings,
     search_settings,
 )
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import Integrator
 
@@ -36,7 +36,7 @@ __all__ = ["pareto_front"]
 
 def pareto_front(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField | None = None,
+    law: Law | None = None,
     *,
     objectives: Sequence[Objective] = ("arrival_time", "min_clearance", "energy"),
     bounds: Bounds | None = None,
@@ -64,7 +64,7 @@ def pareto_front(
     ----------
     scenarios : sequence of Scenario
         Where.
-    law : VirtualForceField or None
+    law : Law or None
         As for `optimize_gains`.
     objectives : sequence of str or callable
         At least two, as the objective of `optimize_gains`; each metric counts in its own good

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import BatchSummary
 from hrsafety.navigation.gain_confidence import student_quantile
 from hrsafety.navigation.gain_settings import GainConstraint, Judge, SearchSettings
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law
 from hrsafety.navigation.simulation import Array
 
 __all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
@@ -47,16 +46,25 @@ class Scorer:
         errors.
     factor : float or None
         As `lower_bound_factor`.
+    gain_names : tuple of str
+        Names of the gains of the law.
     """
 
-    def __init__(self, objectives: Mapping[str, Judge], constraints: Mapping[str, Judge], factor: float | None) -> None:
+    def __init__(
+        self,
+        objectives: Mapping[str, Judge],
+        constraints: Mapping[str, Judge],
+        factor: float | None,
+        gain_names: tuple[str, ...],
+    ) -> None:
         self.objectives = objectives
         self.constraints = constraints
         self.factor = factor
+        self.gain_names = gain_names
 
     def __call__(self, tables: Sequence[Mapping[str, Any]]) -> tuple[Array, Array]:
         """Return values (n, objectives) and margins (n, constraints) of the batches of all seeds."""
-        batches = [BatchSummary(**columns) for columns in tables]
+        batches = [BatchSummary(gain_names=self.gain_names, **columns) for columns in tables]
         rows = int(batches[0].gain_index[-1]) + 1
         values, margins = np.empty((rows, len(self.objectives))), np.empty((rows, len(self.constraints)))
         for index, (name, objective) in enumerate(self.objectives.items()):
@@ -114,6 +122,7 @@ def gain_problem(
     }
     if settings.method != "front" and objectives:
         objectives = {"objective": next(iter(objectives.values()))}
+    called = Scorer(objectives, constraints, factor, settings.law.GAIN_NAMES)
     return _hrsafety.GainProblem(
         scenarios=[scenario._native for scenario in settings.scenarios],
         law=settings.law._native,
@@ -125,13 +134,13 @@ def gain_problem(
         lower_bound_factor=factor,
         objectives=metrics,
         constraints=[(entry.metric, entry.at_least, entry.at_most, entry.scenario) for entry in bounded],
-        scorer=Scorer(objectives, constraints, factor) if objectives or constraints else None,
+        scorer=called if objectives or constraints else None,
         scorer_constraints=len(constraints),
         lanes=lanes,
     )
 
 
-def with_gains(law: VirtualForceField, gains: Array) -> VirtualForceField:
+def with_gains(law: Law, gains: Array) -> Law:
     """Return the law with other gains, given in the order of ``GAIN_NAMES``."""
     fields: dict[str, Any] = dict(zip(law.GAIN_NAMES, gains.tolist(), strict=True))
-    return replace(law, **fields)
+    return law.replaced(**fields)

@@ -13,7 +13,7 @@ from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gain_confidence import Confidence
 from hrsafety.navigation.gain_problem import gain_problem, with_gains
 from hrsafety.navigation.gain_settings import SearchSettings
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law
 from hrsafety.navigation.simulation import Array
 
 __all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "ParetoFront", "SearchRound"]
@@ -134,7 +134,7 @@ class GainSearch:
 
     Attributes
     ----------
-    best : VirtualForceField
+    best : Law
         Law with the best gains; mode and side rules are those of the searched law.
     best_value : float
         Objective there, larger is better: a metric that is to be small enters with its sign
@@ -171,7 +171,7 @@ class GainSearch:
         Everything that is needed to run the same search again.
     """
 
-    best: VirtualForceField
+    best: Law
     best_value: float
     best_performance: Array
     violation: float
@@ -260,7 +260,7 @@ class ParetoFront:
         """Return the number of gain sets."""
         return len(self.gains)
 
-    def law(self, index: int) -> VirtualForceField:
+    def law(self, index: int) -> Law:
         """Return the law with the gains of one point of the front.
 
         Parameters
@@ -270,7 +270,7 @@ class ParetoFront:
 
         Returns
         -------
-        VirtualForceField
+        Law
             The searched law with these gains.
 
         Raises

@@ -27,7 +27,7 @@ from hrsafety.navigation.gain_settings import (
     SearchSettings,
     search_settings,
 )
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import Array, Integrator
 
@@ -45,7 +45,7 @@ Progress = Callable[[str, int, int, float], object]
 
 def optimize_gains(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField | None = None,
+    law: Law | None = None,
     *,
     bounds: Bounds | None = None,
     grid: Grid | None = None,
@@ -79,7 +79,7 @@ def optimize_gains(
     ----------
     scenarios : sequence of Scenario
         Where; the objective is the mean over them.
-    law : VirtualForceField or None
+    law : Law or None
         Mode of the stabilizing force and side rules; its gains are not used. ``None``: without
         stabilizing force, as the published tables were made.
     bounds : mapping, array_like of shape (4, 2), or None
@@ -111,9 +111,9 @@ def optimize_gains(
         is better than one that misses them by more, whatever the objective. One that is missed
         by no more than 1e-6 of its unit counts as kept.
     seeds : int or None
-        Number of noise seeds that every scenario is run with; a callable is called for each
-        seed, a constraint must hold for all. ``None``: the scenarios' own
-        seeds.
+        Number of seeds, of the noise and of a law that draws, that every scenario is run with;
+        a callable is called for each seed, a constraint must hold for all. ``None``: the
+        scenarios' own seeds.
     seed : int
         Seed that the noise seeds and the random numbers of a global search come from.
     robustness : {"mean", "lower_bound"}
@@ -300,7 +300,7 @@ def _convergence(found: dict[str, Any], rounds: Sequence[SearchRound], local: Se
     return np.column_stack([np.cumsum(counts), np.maximum.accumulate(feasible)])
 
 
-def _performance(settings: SearchSettings, law: VirtualForceField, threads: int | None) -> Array:
+def _performance(settings: SearchSettings, law: Law, threads: int | None) -> Array:
     """Return H in each scenario, the mean over the seeds of the search."""
     seeds = noise_seeds(settings, settings.seeds) if settings.seeds else [None]
     scenes = [scene if seed is None else replace(scene, seed=seed) for seed in seeds for scene in settings.scenarios]

@@ -14,7 +14,8 @@ from hrsafety._arguments import Parameters, count, flag, numbers, positive, sequ
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios
 from hrsafety.navigation.gain_metrics import METRICS, check_metric
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law, VirtualForceField
+from hrsafety.navigation.planners import RapidlyExploringRandomTree
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator, check_weights
 
@@ -27,14 +28,10 @@ Objective = str | Judge
 Bounds = Mapping[str, tuple[float, float]] | npt.ArrayLike
 Grid = Mapping[str, int] | Sequence[int]
 
-# Ranges and grid of Zeng (2011), appendix C.2, in N/m, N/m, N/m^2 and s.
-SOURCE_BOUNDS = {
-    "attractive_gain": (0.0, 50.0),
-    "repulsive_gain": (0.0, 200.0),
-    "detour_gain": (0.0, 500.0),
-    "gain_ratio": (0.0, 3.0),
-}
+# Grid of Zeng (2011), appendix C.2, for the law that it is about.
 SOURCE_GRID = {"attractive_gain": 11, "repulsive_gain": 21, "detour_gain": 21, "gain_ratio": 16}
+# About as many points for the other laws.
+USUAL_POINTS = math.prod(SOURCE_GRID.values())
 # A grid of more points than this would not fit into memory.
 MOST_POINTS = 10**8
 
@@ -99,7 +96,7 @@ class SearchSettings:
     ----------
     scenarios : tuple of Scenario
         Where; their time limits are already shortened.
-    law : VirtualForceField
+    law : Law
         Mode and side rules; its gains are not used.
     bounds : ndarray, shape (4, 2)
         Least and largest K_1, K_3, K_5, b.
@@ -128,7 +125,7 @@ class SearchSettings:
     """
 
     scenarios: tuple[Scenario, ...]
-    law: VirtualForceField
+    law: Law
     bounds: Array
     grid: tuple[int, ...]
     refinements: int
@@ -147,11 +144,11 @@ class SearchSettings:
     hold: bool
 
 
-def check_law(law: VirtualForceField | None) -> VirtualForceField:
+def check_law(law: Law | None) -> Law:
     """Return the law; without one the field of the published tables, without stabilizing force."""
     if law is None:
         return VirtualForceField(stabilizing="off")
-    _require("law", law, VirtualForceField)
+    _require("law", law, Law)
     return law
 
 
@@ -166,10 +163,11 @@ def limited_scenarios(scenarios: Sequence[Scenario], time_limit: float | None) -
     return tuple(scene if scene.time_limit <= limit else replace(scene, time_limit=limit) for scene in scenes)
 
 
-def check_bounds(bounds: Bounds | None, names: Sequence[str]) -> Array:
-    """Return least and largest value of each gain, (gains, 2); what is not given is that of the source."""
+def check_bounds(bounds: Bounds | None, law: Law) -> Array:
+    """Return least and largest value of each gain, (gains, 2); what is not given is that of the law."""
+    names = law.GAIN_NAMES
     if bounds is None or isinstance(bounds, Mapping):
-        given = named("bounds", bounds, SOURCE_BOUNDS, names)
+        given = named("bounds", bounds, law.GAIN_BOUNDS, names)
         rows = [numbers(f"bounds[{name!r}]", value, "be a pair of numbers") for name, value in given.items()]
         for name, row in zip(names, rows, strict=True):
             if row.shape != (2,):
@@ -185,10 +183,20 @@ def check_bounds(bounds: Bounds | None, names: Sequence[str]) -> Array:
     return array
 
 
-def check_grid(grid: Grid | None, names: Sequence[str]) -> tuple[int, ...]:
-    """Return the number of values of each gain; what is not given is that of the source."""
+def _usual_grid(law: Law) -> dict[str, int]:
+    """Return the grid of the source, or one of about as many points over the gains that may vary."""
+    if isinstance(law, VirtualForceField):
+        return SOURCE_GRID
+    varying = [name for name in law.GAIN_NAMES if law.GAIN_BOUNDS[name][0] < law.GAIN_BOUNDS[name][1]]
+    values = max(2, int(USUAL_POINTS ** (1.0 / len(varying))))
+    return {name: values if name in varying else 1 for name in law.GAIN_NAMES}
+
+
+def check_grid(grid: Grid | None, law: Law) -> tuple[int, ...]:
+    """Return the number of values of each gain; what is not given is the usual number."""
+    names = law.GAIN_NAMES
     if grid is None or isinstance(grid, Mapping):
-        given = list(named("grid", grid, SOURCE_GRID, names).values())
+        given = list(named("grid", grid, _usual_grid(law), names).values())
     else:
         given = sequence("grid", f"be a mapping or {len(names)} integers", grid)
         if len(given) != len(names):
@@ -251,7 +259,7 @@ def check_clearance(
             raise InvalidParameterError(f"constraints[{index}]", rule, entry)
 
 
-def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario]) -> int:
+def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario], law: Law) -> int:
     """Return the number of noise seeds; 0 for ``None``."""
     word("robustness", robustness, ("mean", "lower_bound"))
     if seeds is None:
@@ -260,8 +268,8 @@ def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario
         return 0
     # A lower bound needs a spread.
     number = count("seeds", seeds, least=2 if robustness == "lower_bound" else 1)
-    if all(scene.measurement is None for scene in scenarios):
-        raise InvalidParameterError("seeds", "be None where no scenario has a measurement", seeds)
+    if all(scene.measurement is None for scene in scenarios) and not isinstance(law, RapidlyExploringRandomTree):
+        raise InvalidParameterError("seeds", "be None where nothing is measured and the law draws nothing", seeds)
     return number
 
 
@@ -274,7 +282,7 @@ def check_seed(seed: int) -> int:
 
 def search_settings(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField | None,
+    law: Law | None,
     *,
     bounds: Bounds | None,
     grid: Grid | None,
@@ -303,8 +311,8 @@ def search_settings(
     return SearchSettings(
         scenarios=scenes,
         law=searched,
-        bounds=check_bounds(bounds, searched.GAIN_NAMES),
-        grid=check_grid(grid, searched.GAIN_NAMES),
+        bounds=check_bounds(bounds, searched),
+        grid=check_grid(grid, searched),
         refinements=count("refinements", refinements, least=0),
         survivors=count("survivors", survivors),
         local_starts=count("local_starts", local_starts, least=0),
@@ -312,7 +320,7 @@ def search_settings(
         objectives=tuple(wanted.values()),
         weights=check_weights(weights),
         constraints=limits,
-        seeds=check_seeds(seeds, robustness, scenes),
+        seeds=check_seeds(seeds, robustness, scenes, searched),
         seed=check_seed(seed),
         robustness=robustness,
         evaluations=evaluations,

@@ -12,8 +12,7 @@ from hrsafety._arguments import numbers, positive
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.gain_metrics import Metric, check_metric, metric_values
-from hrsafety.navigation.gain_settings import SOURCE_BOUNDS
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator
 
@@ -29,7 +28,7 @@ class GainGradient:
 
     Attributes
     ----------
-    law : VirtualForceField
+    law : Law
         The law at whose gains the slopes were taken.
     metric : str
         What the slopes are of.
@@ -54,7 +53,7 @@ class GainGradient:
         ``gradient * gain / value``: the limit of (C.3.1) to (C.3.4) for small changes.
     """
 
-    law: VirtualForceField
+    law: Law
     metric: str
     gain_names: tuple[str, ...]
     value: float
@@ -69,7 +68,7 @@ class GainGradient:
 
 def gain_gradient(
     scenarios: Sequence[Scenario],
-    law: VirtualForceField | None = None,
+    law: Law | None = None,
     *,
     metric: Metric = "performance",
     relative_step: float = 0.01,
@@ -92,7 +91,7 @@ def gain_gradient(
     ----------
     scenarios : sequence of Scenario
         Where.
-    law : VirtualForceField or None
+    law : Law or None
         The law and its gains; ``None``: the default law.
     metric : str
         ``"performance"`` (H), ``"performance_arrival_time"``, ``"performance_avoidance"``,
@@ -134,7 +133,7 @@ def gain_gradient(
     """
     scenes = check_scenarios(scenarios)
     law = VirtualForceField() if law is None else law
-    _require("law", law, VirtualForceField)
+    _require("law", law, Law)
     metric_name = check_metric("metric", metric)
     gains = np.array(law.gains)
     widths = _steps(law, relative_step, steps)
@@ -164,11 +163,11 @@ def _values(table: BatchSummary, metric: str) -> Array:
     return np.where(table.outcome == "arrived", metric_values(table, metric), np.nan)
 
 
-def _steps(law: VirtualForceField, relative_step: float, steps: npt.ArrayLike | None) -> Array:
+def _steps(law: Law, relative_step: float, steps: npt.ArrayLike | None) -> Array:
     gains = np.array(law.gains)
     if steps is None:
         # A gain that is zero has no scale of its own; one that the source does not search needs a step.
-        largest = np.array([SOURCE_BOUNDS.get(name, (0.0, np.nan))[1] for name in law.GAIN_NAMES])
+        largest = np.array([law.GAIN_BOUNDS[name][1] for name in law.GAIN_NAMES])
         widths = positive("relative_step", relative_step) * np.where(gains > 0.0, gains, largest)
     else:
         widths = numbers("steps", steps)
@@ -180,9 +179,7 @@ def _steps(law: VirtualForceField, relative_step: float, steps: npt.ArrayLike | 
     return widths
 
 
-def _slopes(
-    law: VirtualForceField, metric: str, widths: Array, one_sided: npt.NDArray[np.bool_], found: Array
-) -> GainGradient:
+def _slopes(law: Law, metric: str, widths: Array, one_sided: npt.NDArray[np.bool_], found: Array) -> GainGradient:
     """Return the slopes from the values at 0, h, h/2, h/4, and at minus these (or at half of them)."""
     shares = np.array(SHARES)[None, :, None]
     h = widths[:, None, None] * shares

@@ -3,20 +3,67 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import ClassVar, Literal, Self
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, flag, number
+from hrsafety._arguments import Parameters, flag, number, word
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["StabilizingMode", "VirtualForceField"]
+__all__ = ["BorensteinKoren", "GeCui", "Khatib", "Law", "Masoud", "StabilizingMode", "VirtualForceField"]
 
 StabilizingMode = Literal["off", "capped", "full"]
 
 
+class Law(Parameters):
+    """What all navigation laws share: numbers that a search may choose, by name.
+
+    Attributes
+    ----------
+    GAIN_NAMES : tuple of str
+        Names of those numbers, in the order in which batches and searches take them.
+    GAIN_BOUNDS : mapping of str to (float, float)
+        Where a search looks for them without bounds of its own.
+    GAIN_UNITS : mapping of str to str
+        Their units.
+    """
+
+    __slots__ = ()
+    GAIN_NAMES: ClassVar[tuple[str, ...]]
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]]
+    GAIN_UNITS: ClassVar[Mapping[str, str]]
+    _native: _hrsafety.Law
+
+    @property
+    def gains(self) -> tuple[float, ...]:
+        """The numbers in the order of `GAIN_NAMES`."""
+        return tuple(getattr(self, name) for name in self.GAIN_NAMES)
+
+    def replaced(self, **changes: object) -> Self:
+        """Return the law with some fields changed.
+
+        Parameters
+        ----------
+        **changes
+            New values by the names of the fields.
+
+        Returns
+        -------
+        Law
+            A law of the same kind.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a value is not allowed.
+        """
+        return replace(self, **changes)  # type: ignore[type-var]  # every law is a dataclass
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
-class VirtualForceField(Parameters):
+class VirtualForceField(Law):
     """Virtual force field with a stabilizing force, Zeng (2011), chapter 5.
 
     In the free region only the attraction ``F_a = K_1 (E - b V)`` acts. In the active region
@@ -70,6 +117,18 @@ class VirtualForceField(Parameters):
         "detour_gain",
         "gain_ratio",
     )
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {
+            # Zeng (2011), appendix C.2.
+            "attractive_gain": (0.0, 50.0),
+            "repulsive_gain": (0.0, 200.0),
+            "detour_gain": (0.0, 500.0),
+            "gain_ratio": (0.0, 3.0),
+        }
+    )
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"attractive_gain": "N/m", "repulsive_gain": "N/m", "detour_gain": "N/m^2", "gain_ratio": "s"}
+    )
 
     attractive_gain: float = 3.0
     repulsive_gain: float = 20.0
@@ -80,7 +139,7 @@ class VirtualForceField(Parameters):
     stabilizing_momentum_cap: float | None = None
     pass_behind: bool = True
     side_hysteresis: float | None = None
-    _native: _hrsafety.VirtualForceField = field(init=False, repr=False, compare=False)
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -92,7 +151,7 @@ class VirtualForceField(Parameters):
         self._set(pass_behind=flag("pass_behind", self.pass_behind))
         if self.side_hysteresis is not None and not math.isfinite(self.side_hysteresis):
             raise InvalidParameterError("side_hysteresis", "be None or an angle below pi", self.side_hysteresis)
-        native = _hrsafety.VirtualForceField(
+        native = _hrsafety.Law.virtual_force_field(
             gains=self.gains,
             stabilizing=self.stabilizing,
             stabilizing_force_cap=self.stabilizing_force_cap,
@@ -102,7 +161,190 @@ class VirtualForceField(Parameters):
         )
         self._set(_native=native)
 
-    @property
-    def gains(self) -> tuple[float, float, float, float]:
-        """The gains in the order of `GAIN_NAMES`."""
-        return (self.attractive_gain, self.repulsive_gain, self.detour_gain, self.gain_ratio)
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Masoud(Law):
+    """Circulating repulsion of Masoud (2007).
+
+    ``F = K_1 E + sum (K_3 D + K_5 d t)`` over the obstacles whose active region the robot is in,
+    (2.2.8)-(2.2.10) of Zeng (2011): a pull to the goal, a push that grows with the distance and
+    a circulation that is always counter-clockwise. Nothing is damped and nothing brakes; what
+    bounds the speed is the robot.
+
+    Parameters
+    ----------
+    attractive_gain : float
+        K_1 in N/m.
+    repulsive_gain : float
+        K_3 in N/m.
+    detour_gain : float
+        K_5 in N/m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a gain is negative or not finite.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> round(nav.simulate(scenarios.configuration("c1"), nav.Masoud()).arrival_time, 2)
+    6.34
+    """
+
+    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "detour_gain")
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 200.0), "detour_gain": (0.0, 500.0)}
+    )
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"attractive_gain": "N/m", "repulsive_gain": "N/m", "detour_gain": "N/m"}
+    )
+
+    attractive_gain: float = 5.0
+    repulsive_gain: float = 24.0
+    detour_gain: float = 36.0
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._set(_native=_hrsafety.Law.masoud(**self._as_numbers(*self.GAIN_NAMES)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GeCui(Law):
+    """Dynamic potential field of Ge and Cui (2002).
+
+    ``F_a = K_1 (E - b V)``, ``F_Lambda = K (1 - ddot/a_max)/(d - r)^2 u`` and
+    ``F_psi = -K ddot betadot d/(d - r)^2 t`` with the stopping distance
+    ``r = ddot^2/(2 a_max)``, (2.2.11)-(2.2.15) of Zeng (2011): the detour goes along the
+    tangential relative velocity while robot and obstacle approach, and against it afterwards.
+    Nothing brakes; the force does not know the critical region.
+
+    Parameters
+    ----------
+    attractive_gain : float
+        K_1 in N/m.
+    repulsive_gain : float
+        K in N m^2, of repulsion and detour.
+    gain_ratio : float
+        b = K_2/K_1 in s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a gain is negative or not finite.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> nav.simulate(scenarios.configuration("c2"), nav.GeCui()).outcome
+    'collided'
+    """
+
+    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "gain_ratio")
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 200.0), "gain_ratio": (0.0, 3.0)}
+    )
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"attractive_gain": "N/m", "repulsive_gain": "N m^2", "gain_ratio": "s"}
+    )
+
+    attractive_gain: float = 1.0
+    repulsive_gain: float = 14.2
+    gain_ratio: float = 0.75
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._set(_native=_hrsafety.Law.ge_cui(**self._as_numbers(*self.GAIN_NAMES)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Khatib(Law):
+    """Artificial potential field of Khatib (1986).
+
+    ``F_a = K_1 (E - b V)`` and ``F_Lambda = K (1/d_s - 1/d_k2)/d_s^2 u``, (2.2.2)-(2.2.3) of Zeng
+    (2011), with the distance ``d_s`` of the surfaces and its value ``d_k2`` where the active
+    region begins. Surfaces nearer than 1 mm push as at 1 mm. The gains are those that the search of
+    appendix C finds for c1, c2 and c4, where c2 fails; with them the robot gives up in c3.
+
+    Parameters
+    ----------
+    attractive_gain : float
+        K_1 in N/m.
+    repulsive_gain : float
+        K in N m^2; in N s for the printed form.
+    gain_ratio : float
+        b = K_2/K_1 in s.
+    form : {"gradient", "printed"}
+        Whether the repulsion goes along the gradient of the distance, as its author has it, or
+        against the relative velocity, ``-K (d_k2 - d_s)/d_s^3 Ddot``, as (2.2.3) is printed. The
+        printed form pulls at an obstacle that recedes.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a gain is negative or not finite, or the form is unknown.
+    """
+
+    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "gain_ratio")
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 20.0), "gain_ratio": (0.0, 3.0)}
+    )
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"attractive_gain": "N/m", "repulsive_gain": "N m^2", "gain_ratio": "s"}
+    )
+
+    attractive_gain: float = 23.2
+    repulsive_gain: float = 20.0
+    gain_ratio: float = 3.0
+    form: Literal["gradient", "printed"] = "gradient"
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        printed = word("form", self.form, ("gradient", "printed")) == "printed"
+        self._set(_native=_hrsafety.Law.khatib(**self._as_numbers(*self.GAIN_NAMES), printed=printed))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BorensteinKoren(Law):
+    """Virtual force of Borenstein and Koren (1989).
+
+    ``F_a = K_1 u_E`` and ``F_Lambda = K/d_s u``, (2.2.5)-(2.2.6) of Zeng (2011), with the
+    distance ``d_s`` of the surfaces. Surfaces nearer than 1 mm push as at 1 mm. The gains are those
+    that the search of appendix C finds for c1, c2 and c4, where c2 fails; with them the robot does
+    not come past the obstacles of c3.
+
+    Parameters
+    ----------
+    attractive_gain : float
+        K_1 in N.
+    repulsive_gain : float
+        K in N m.
+    attracted_inside : bool
+        Whether the goal attracts inside an active region too, as its authors have it; (2.2.6) is
+        printed without.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a gain is negative or not finite.
+    """
+
+    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain")
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
+        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 20.0)}
+    )
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType({"attractive_gain": "N", "repulsive_gain": "N m"})
+
+    attractive_gain: float = 16.93
+    repulsive_gain: float = 14.21
+    attracted_inside: bool = True
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._set(attracted_inside=flag("attracted_inside", self.attracted_inside))
+        numbers = self._as_numbers(*self.GAIN_NAMES)
+        self._set(_native=_hrsafety.Law.borenstein_koren(**numbers, attracted_inside=self.attracted_inside))

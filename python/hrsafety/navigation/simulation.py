@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import flag, number, numbers, pair, points
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation.laws import VirtualForceField
+from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 
 __all__ = [
@@ -115,7 +115,7 @@ class Trajectory:
     ----------
     scenario : Scenario
         What was simulated.
-    law : VirtualForceField
+    law : Law
         The law that drove the robot.
     time : ndarray, shape (n,)
         Instants in s.
@@ -153,7 +153,7 @@ class Trajectory:
     """
 
     scenario: Scenario
-    law: VirtualForceField
+    law: Law
     time: Array
     position: Array
     velocity: Array
@@ -200,9 +200,54 @@ class Performance:
     nominal: Trajectory
 
 
-def _check(scenario: Scenario, law: VirtualForceField) -> None:
+def _check(scenario: Scenario, law: Law, kind: type[Law] = VirtualForceField) -> None:
     _require("scenario", scenario, Scenario)
-    _require("law", law, VirtualForceField)
+    _require("law", law, kind)
+
+
+def command(
+    law: Law,
+    scenario: Scenario,
+    *,
+    position: Sequence[float] | Array,
+    velocity: Sequence[float] | Array,
+    time: float = 0.0,
+) -> Array:
+    """Return the force that any law asks for at one state, as at its first control step.
+
+    Parameters
+    ----------
+    law : Law
+        The law.
+    scenario : Scenario
+        Robot, goal and obstacles.
+    position, velocity : array_like, shape (2,)
+        State of the robot, in m and m/s.
+    time : float
+        When, in s; moving obstacles are where they are then.
+
+    Returns
+    -------
+    ndarray, shape (2,)
+        Force in N before the limits of the robot. A planner asks for ``m (v* - V)/T_s``, with
+        its velocity v* and the control period T_s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite, the time is negative, or the law cannot work in the scenario.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> nav.command(
+    ...     nav.Masoud(), scenarios.configuration("c1"), position=(3.5, 0.6), velocity=(0.0, 0.0)
+    ... ).round(3).tolist()
+    [-17.5, 0.0]
+    """
+    _check(scenario, law, Law)
+    state = pair("position", position), pair("velocity", velocity)
+    return np.array(_hrsafety.law_command(law._native, scenario._native, *state, number("time", time)))
 
 
 def force_terms(
@@ -364,7 +409,7 @@ def lyapunov(
 
 def simulate(
     scenario: Scenario,
-    law: VirtualForceField,
+    law: Law,
     *,
     integrator: Integrator = "semi_implicit_euler",
     step: float = 0.01,
@@ -377,7 +422,7 @@ def simulate(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles.
-    law : VirtualForceField
+    law : Law
         What drives the robot.
     integrator : {"semi_implicit_euler", "rk4"}
         Velocity first and position with the new velocity, or Runge-Kutta of order 4 with the
@@ -411,7 +456,7 @@ def simulate(
     >>> run.outcome, round(run.arrival_time, 2), round(float(run.min_distance[0]), 3)
     ('arrived', 6.63, 0.536)
     """
-    _check(scenario, law)
+    _check(scenario, law, Law)
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
@@ -435,7 +480,7 @@ def check_weights(weights: Sequence[float]) -> tuple[float, float, float]:
 
 def evaluate(
     scenario: Scenario,
-    law: VirtualForceField,
+    law: Law,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     *,
     integrator: Integrator = "semi_implicit_euler",
@@ -452,7 +497,7 @@ def evaluate(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles.
-    law : VirtualForceField
+    law : Law
         What drives the robot.
     weights : sequence of float
         Weights of time, distance and energy; not negative, sum 1.
@@ -477,7 +522,7 @@ def evaluate(
     >>> round(nav.evaluate(scenarios.configuration("c1"), nav.VirtualForceField()).total, 2)
     0.65
     """
-    _check(scenario, law)
+    _check(scenario, law, Law)
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)
     )

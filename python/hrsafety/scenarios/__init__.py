@@ -4,6 +4,7 @@ from hrsafety.scenarios.configurations import CONFIGURATIONS, configuration
 from hrsafety.scenarios.crowds import random_crowd
 from hrsafety.scenarios.files import ScenarioFile, load
 from hrsafety.scenarios.recorded_people import Crossing, crossings
+from hrsafety.scenarios.traffic import random_traffic
 
 __all__ = [
     "CONFIGURATIONS",
@@ -13,4 +14,5 @@ __all__ = [
     "crossings",
     "load",
     "random_crowd",
+    "random_traffic",
 ]

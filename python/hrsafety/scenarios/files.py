@@ -14,6 +14,7 @@ from hrsafety.datasets import load_track
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
+from hrsafety.scenarios.laws import law_of
 
 __all__ = ["ScenarioFile", "load"]
 
@@ -25,12 +26,12 @@ class ScenarioFile(NamedTuple):
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles, rules of the run.
-    law : VirtualForceField
+    law : Law
         The law of the table ``[law]``; the default law without that table.
     """
 
     scenario: nav.Scenario
-    law: nav.VirtualForceField
+    law: nav.Law
 
 
 _TOP: Keys = MappingProxyType(
@@ -64,20 +65,6 @@ _ROBOT: Keys = MappingProxyType(
     }
 )
 _MEASUREMENT: Keys = MappingProxyType({"scale": kind.number, "distribution": kind.word, "of": kind.word})
-LAW: Keys = MappingProxyType(
-    {
-        "type": kind.word,
-        "attractive_gain": kind.number,
-        "repulsive_gain": kind.number,
-        "detour_gain": kind.number,
-        "gain_ratio": kind.number,
-        "stabilizing": kind.word,
-        "stabilizing_force_cap": kind.number,
-        "stabilizing_momentum_cap": kind.number,
-        "pass_behind": kind.boolean,
-        "side_hysteresis": kind.number,
-    }
-)
 _REGIONS: dict[str, kind.Kind] = {
     "active_radius": kind.number,
     "critical_radius": kind.number,
@@ -113,7 +100,10 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
       arrays, or ``path``, a CSV file with the columns t_s, x_m, y_m, relative to the scenario
       file;
     - ``[measurement]`` with the fields of `Measurement`;
-    - ``[law]`` with ``type = "virtual_force_field"`` and the fields of `VirtualForceField`.
+    - ``[law]`` with ``type`` and the fields of its class: ``"virtual_force_field"``,
+      ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"velocity_obstacle"``,
+      ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
+      ``"optimal_reciprocal_collision_avoidance"``.
 
     Parameters
     ----------
@@ -171,14 +161,6 @@ def parsed(path: Path) -> dict[str, Any]:
         raise InvalidParameterError(path.name, "be a TOML file", "brackets nested too deeply") from None
     except ValueError as error:
         raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
-
-
-def law_of(table: dict[str, Any]) -> nav.VirtualForceField:
-    """Return the law that a table ``[law]`` describes."""
-    given = checked("law", table, LAW, required=("type",))
-    _one_of("law.type", given.pop("type"), ("virtual_force_field",))
-    with located("law"):
-        return nav.VirtualForceField(**given)
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot:

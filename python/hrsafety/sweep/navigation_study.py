@@ -25,9 +25,6 @@ Scenes = nav.Scenario | Sequence[nav.Scenario]
 # Scenes that exist at the same time: they are built block by block.
 BLOCK = 1024
 
-GAIN_UNITS: Mapping[str, str] = MappingProxyType(
-    dict(zip(nav.VirtualForceField.GAIN_NAMES, ("N/m", "N/m", "N/m^2", "s"), strict=True))
-)
 LAW_UNITS: Mapping[str, str] = MappingProxyType(
     {"stabilizing_force_cap": "N", "stabilizing_momentum_cap": "", "side_hysteresis": "rad"}
 )
@@ -74,8 +71,8 @@ class NavigationStudy(Study):
 
     Axes by name:
 
-    - the gains ``attractive_gain``, ``repulsive_gain``, ``detour_gain``, ``gain_ratio``, and
-      ``stabilizing_force_cap``, ``stabilizing_momentum_cap``, ``side_hysteresis`` of the law;
+    - the gains of the law by its ``GAIN_NAMES``; of the virtual force field also
+      ``stabilizing_force_cap``, ``stabilizing_momentum_cap``, ``side_hysteresis``;
     - ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
       ``seed`` of the scenarios; ``measurement_scale`` (the noise is that of `Measurement`
       where a scenario has none); ``robot_mass``, ``robot_radius``, ``robot_max_speed``,
@@ -91,7 +88,7 @@ class NavigationStudy(Study):
     ----------
     scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
         Where; with names that appear in the result if it is a mapping. Not with ``scenario``.
-    law : VirtualForceField or None
+    law : Law or None
         The law; the default one when ``None``.
     scenario : callable or None
         ``scenario(row) -> Scenario`` or a sequence of them, one for each of ``names``; row is a
@@ -124,7 +121,7 @@ class NavigationStudy(Study):
     """
 
     scenarios: tuple[nav.Scenario, ...] = ()
-    law: nav.VirtualForceField = field(default_factory=nav.VirtualForceField)
+    law: nav.Law = field(default_factory=nav.VirtualForceField)
     scenario: Callable[[dict[str, float]], Scenes] | None = None
     names: tuple[str, ...] | None = None
     axis_units: Mapping[str, str] = field(default_factory=dict)
@@ -138,8 +135,8 @@ class NavigationStudy(Study):
     def __post_init__(self) -> None:
         """Check the values."""
         law = nav.VirtualForceField() if self.law is None else self.law
-        if not isinstance(law, nav.VirtualForceField):
-            raise InvalidParameterError("law", "be a VirtualForceField or None", law)
+        if not isinstance(law, nav.Law):
+            raise InvalidParameterError("law", "be a Law or None", law)
         scenes, names = self._checked_scenarios()
         if not isinstance(self.axis_units, Mapping):
             raise InvalidParameterError("axis_units", "be a mapping", self.axis_units)
@@ -199,9 +196,14 @@ class NavigationStudy(Study):
         """Return what is found for each row, without axes and scenarios."""
         return tuple(each for each in self._possible() if self.outputs is None or each.name in self.outputs)
 
+    @property
+    def _law_units(self) -> Mapping[str, str]:
+        """Units of what else may vary of the law."""
+        return LAW_UNITS if isinstance(self.law, nav.VirtualForceField) else {}
+
     def units(self, names: Sequence[str]) -> dict[str, str]:
         """Return the units of axes with these names, see `Study.units`."""
-        known = {**GAIN_UNITS, **LAW_UNITS}
+        known = {**self.law.GAIN_UNITS, **self._law_units}
         if self.scenario is None:
             known |= SCENE_UNITS
             for name in names:
@@ -233,8 +235,8 @@ class NavigationStudy(Study):
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
         """Yield calls that cover all rows: those that share everything but the gains run together."""
-        gains = {name: rows[name] for name in rows if name in GAIN_UNITS} or None
-        others = [name for name in rows if name not in GAIN_UNITS]
+        gains = {name: rows[name] for name in rows if name in self.law.GAIN_UNITS} or None
+        others = [name for name in rows if name not in self.law.GAIN_UNITS]
         if not others:
             yield _Batch(slice(None), list(self.scenarios), self.law, gains, slice(None))
             return
@@ -242,7 +244,7 @@ class NavigationStudy(Study):
         distinct, inverse = np.unique(keys, axis=0, return_inverse=True)
         order = np.argsort(inverse.reshape(-1), kind="stable")
         starts = np.searchsorted(inverse.reshape(-1)[order], np.arange(len(distinct) + 1))
-        together = 1 if gains or set(others) & set(LAW_UNITS) else max(BLOCK // each, 1)
+        together = 1 if gains or set(others) & set(self._law_units) else max(BLOCK // each, 1)
         for first in range(0, len(distinct), together):
             last = min(first + together, len(distinct))
             members = order[starts[first] : starts[last]]
@@ -252,14 +254,14 @@ class NavigationStudy(Study):
             places = inverse.reshape(-1)[members] - first if gains is None else slice(None)
             yield _Batch(members, scenes, self._law(values[0]), own, places)
 
-    def _law(self, row: dict[str, float]) -> nav.VirtualForceField:
+    def _law(self, row: dict[str, float]) -> nav.Law:
         """Return the law of a row, its gains aside."""
-        changes: dict[str, Any] = {name: value for name, value in row.items() if name in LAW_UNITS}
-        return replace(self.law, **changes)
+        changes: dict[str, Any] = {name: value for name, value in row.items() if name in self._law_units}
+        return self.law.replaced(**changes)
 
     def _scenes(self, row: dict[str, float], each: int) -> list[nav.Scenario]:
         """Return the scenarios of a row."""
-        values = {name: value for name, value in row.items() if name not in LAW_UNITS}
+        values = {name: value for name, value in row.items() if name not in self._law_units}
         if self.scenario is None:
             return [_changed(scene, values) for scene in self.scenarios]
         made = self.scenario(values)
@@ -274,7 +276,7 @@ class _Batch(NamedTuple):
 
     rows: npt.NDArray[np.int64] | slice
     scenes: list[nav.Scenario]
-    law: nav.VirtualForceField
+    law: nav.Law
     gains: dict[str, Array] | None
     order: npt.NDArray[np.int64] | slice
 

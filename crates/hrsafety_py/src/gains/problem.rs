@@ -18,7 +18,8 @@ use vff_core::{optimize, scenario};
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::gains::scorer::Scorer;
-use crate::parameters::{Scenario, VirtualForceField};
+use crate::laws::Law;
+use crate::parameters::Scenario;
 use crate::run::{run_options, weights_of};
 use crate::signals::attended;
 
@@ -31,6 +32,8 @@ type Bounded = (String, Option<f64>, Option<f64>, Option<usize>);
 /// Function of the gains over scenarios: objectives to maximize and margins that must not be negative.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct GainProblem {
+    /// Number of gains of the law.
+    dimension: usize,
     /// Objectives and constraints on metrics.
     native: Option<optimize::GainProblem>,
     /// Those that are callables.
@@ -49,7 +52,7 @@ impl GainProblem {
     #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn new(
         scenarios: Vec<PyRef<'_, Scenario>>,
-        law: &VirtualForceField,
+        law: &Law,
         weights: (f64, f64, f64),
         integrator: &Bound<'_, PyAny>,
         step: f64,
@@ -71,7 +74,7 @@ impl GainProblem {
         let scorer = scorer.map(|call| Scorer {
             call,
             scenarios: seeded(&scenarios, &seeds),
-            law: law.0,
+            law: law.any.clone(),
             options: batch_options(run, weights_of(weights), width),
             raised: Mutex::new(None),
         });
@@ -95,10 +98,11 @@ impl GainProblem {
                 width,
                 instructions: Instructions::Widest,
             };
-            let built = optimize::GainProblem::new(scenarios, law.0, options);
+            let built = optimize::GainProblem::new(scenarios, &law.any, options);
             Some(built.map_err(CoreError::from)?)
         };
         Ok(Self {
+            dimension: law.any.gain_names().len(),
             native,
             scorer,
             is_metric,
@@ -201,7 +205,7 @@ impl GainProblem {
 
 impl Problem for GainProblem {
     fn dimension(&self) -> usize {
-        4
+        self.dimension
     }
 
     fn objectives(&self) -> usize {

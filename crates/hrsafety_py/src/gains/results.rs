@@ -78,7 +78,8 @@ fn best_fields<'py>(py: Python<'py>, best: Option<&Candidate>) -> PyResult<Bound
 
 fn candidates(fields: &Fields<'_>, found: &[Candidate]) -> PyResult<()> {
     let points = found.iter().flat_map(|entry| entry.point.iter().copied());
-    fields.matrix("top", points.collect(), found.len(), 4)?;
+    let dimension = found.first().map_or(0, |entry| entry.point.len());
+    fields.matrix("top", points.collect(), found.len(), dimension)?;
     let values = found.iter().map(|entry| entry.score.value);
     fields.vector("top_values", values.collect())?;
     let missed = found.iter().map(|entry| entry.score.violation);

@@ -6,14 +6,11 @@ use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use vff_core::error::{NavigationError, Result};
-use vff_core::gains::Gains;
-use vff_core::laws::VirtualForceField;
 use vff_core::optimize::Evaluation;
 use vff_core::scenario::Scenario;
-use vff_core::simulate::{BatchOptions, BatchTable, Outcome, run_batch};
+use vff_core::simulate::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
 
 use crate::batch::columns;
-use crate::parameters::gain_set;
 
 /// A callable that turns the columns of batches, one batch for each seed, into values and margins.
 pub struct Scorer {
@@ -22,7 +19,7 @@ pub struct Scorer {
     /// Scenarios of each seed.
     pub scenarios: Vec<Vec<Scenario>>,
     /// Law whose gains are replaced.
-    pub law: VirtualForceField,
+    pub law: AnyLaw,
     /// How the runs are made.
     pub options: BatchOptions,
     /// What the callable raised, until it is taken.
@@ -32,16 +29,12 @@ pub struct Scorer {
 impl Scorer {
     /// Runs the gain sets and has them scored; the interpreter is held for the second part only.
     pub fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
-        let sets: Vec<Gains> = points
-            .chunks_exact(4)
-            .map(|row| gain_set([row[0], row[1], row[2], row[3]]))
-            .collect();
         let mut tables = Vec::with_capacity(self.scenarios.len());
         for scenarios in &self.scenarios {
             let table = run_batch(
                 scenarios,
                 &self.law,
-                &sets,
+                points,
                 &self.options,
                 &|| false,
                 &|_| {},
@@ -52,7 +45,7 @@ impl Scorer {
             }
             tables.push(table);
         }
-        Python::attach(|py| self.score(py, &sets, tables, into)).map_err(|error| {
+        Python::attach(|py| self.score(py, points, tables, into)).map_err(|error| {
             if let Ok(mut slot) = self.raised.lock() {
                 slot.get_or_insert(error);
             }
@@ -63,13 +56,14 @@ impl Scorer {
     fn score(
         &self,
         py: Python<'_>,
-        sets: &[Gains],
+        points: &[f64],
         tables: Vec<BatchTable>,
         into: &mut Evaluation<'_>,
     ) -> PyResult<()> {
+        let dimension = self.law.gain_names().len();
         let list = PyList::empty(py);
         for table in tables {
-            list.append(columns(py, sets, table)?)?;
+            list.append(columns(py, (points, dimension), table)?)?;
         }
         let (values, margins): (PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>) =
             self.call.bind(py).call1((list,))?.extract()?;

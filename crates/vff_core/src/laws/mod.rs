@@ -1,5 +1,6 @@
 //! Navigation laws behind one interface.
 
+pub mod compared;
 mod virtual_force_field;
 
 pub use virtual_force_field::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};
@@ -33,6 +34,9 @@ pub struct Command<R> {
 
 /// A law for robots side by side; it may remember what it needs between two samples.
 pub trait Law<R: Real> {
+    /// Whether a command takes so long that the caller is asked at each of them whether to stop.
+    const THINKS: bool = false;
+
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R>;
 }
@@ -43,6 +47,8 @@ pub trait LawFamily: Sync {
     type Law<R: Real, const RECORD: bool>: Law<R>;
     /// Words for the gains, in their order.
     fn gain_names(&self) -> &'static [&'static str];
+    /// Its own gains, in that order.
+    fn gains(&self) -> Vec<f64>;
     /// Gains that act on a robot without obstacles, ascending.
     fn free_gains(&self) -> &'static [usize];
     /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
@@ -56,9 +62,12 @@ pub trait LawFamily: Sync {
     /// Names the gain that is not allowed.
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
     /// The law with gains in one scenario.
+    ///
+    /// # Errors
+    /// The law cannot work in the scenario with some of these gains.
     fn with_gains<R: Real, const RECORD: bool>(
         &self,
         gains: &[R],
         scenario: &Scenario,
-    ) -> Self::Law<R, RECORD>;
+    ) -> Result<Self::Law<R, RECORD>>;
 }

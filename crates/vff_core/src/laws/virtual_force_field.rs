@@ -60,6 +60,10 @@ impl LawFamily for VirtualForceField {
         ]
     }
 
+    fn gains(&self) -> Vec<f64> {
+        self.gains.in_order().to_vec()
+    }
+
     fn free_gains(&self) -> &'static [usize] {
         &[0, 3]
     }
@@ -81,14 +85,14 @@ impl LawFamily for VirtualForceField {
         &self,
         gains: &[R],
         scenario: &Scenario,
-    ) -> ForceFieldLaw<R, RECORD> {
+    ) -> Result<ForceFieldLaw<R, RECORD>> {
         let gains = GainLanes {
             attractive: gains[0],
             repulsive: gains[1],
             detour: gains[2],
             ratio: gains[3],
         };
-        ForceFieldLaw::new(self, gains, scenario)
+        Ok(ForceFieldLaw::new(self, gains, scenario))
     }
 }
 

@@ -3,12 +3,10 @@
 use rayon::prelude::*;
 
 use crate::error::{Given, NavigationError, Result};
-use crate::gains::Gains;
-use crate::laws::VirtualForceField;
 use crate::metrics::{Weights, score};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
-use crate::simulate::group::{Driven, Group, Plan};
+use crate::simulate::group::{AnyLaw, Group, Plan};
 use crate::simulate::nominal::{NominalRuns, Ways};
 use crate::simulate::options::Options;
 use crate::simulate::table::{BatchTable, Cell, Strip};
@@ -92,24 +90,25 @@ pub struct BatchOptions {
     pub instructions: Instructions,
 }
 
-/// Runs every gain set in every scenario; row `g * scenarios.len() + s`.
+/// Runs every gain set in every scenario; row `g * scenarios.len() + s`. The gain sets follow each
+/// other in `points`, each in the order of the law's names.
 ///
 /// # Errors
 /// An argument is out of range, a state became non-finite, or the caller asked to stop.
 pub fn run_batch(
     scenarios: &[Scenario],
-    law: &VirtualForceField,
-    gains: &[Gains],
+    law: impl Into<AnyLaw>,
+    points: &[f64],
     options: &BatchOptions,
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<BatchTable> {
-    check(scenarios, gains, &options.run)?;
-    let points: Vec<f64> = gains.iter().flat_map(Gains::in_order).collect();
+    let law = &law.into();
+    check(scenarios, law, points, &options.run)?;
     let batch = Batch {
         scenarios,
         law,
-        points: &points,
+        points,
         options,
         interrupted,
         progress,
@@ -135,7 +134,7 @@ pub(crate) fn on_threads<T: Send>(
     }
 }
 
-fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
+fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) -> Result<()> {
     let empty = |name: &str, rule| {
         Err(NavigationError::invalid(
             name,
@@ -146,11 +145,18 @@ fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
     if scenarios.is_empty() {
         return empty("scenarios", "hold at least one scenario");
     }
-    if gains.is_empty() {
+    if points.is_empty() {
         return empty("gains", "hold at least one gain set");
     }
-    for (index, set) in gains.iter().enumerate() {
-        set.checked()
+    let dimension = law.gain_names().len();
+    if !points.len().is_multiple_of(dimension) {
+        let rule = "hold a whole number of gain sets";
+        let given = Given::Count(points.len() as u64);
+        return Err(NavigationError::invalid("gains", rule, given));
+    }
+    for (index, set) in points.chunks_exact(dimension).enumerate() {
+        law.driven()
+            .check_gains(set)
             .map_err(|error| error.within(&format!("gains[{index}]")))?;
     }
     for (index, scenario) in scenarios.iter().enumerate() {
@@ -162,7 +168,7 @@ fn check(scenarios: &[Scenario], gains: &[Gains], run: &Options) -> Result<()> {
 
 struct Batch<'a> {
     scenarios: &'a [Scenario],
-    law: &'a VirtualForceField,
+    law: &'a AnyLaw,
     /// Gain sets in the order of their names.
     points: &'a [f64],
     options: &'a BatchOptions,
@@ -172,7 +178,8 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn run(&self) -> Result<BatchTable> {
-        let sets = self.points.len() / Gains::COUNT;
+        let law = self.law.driven();
+        let sets = self.points.len() / law.gain_names().len();
         let width = self.options.width.unwrap_or_else(|| Width::for_sets(sets));
         let plan = Plan {
             run: self.options.run,
@@ -183,7 +190,7 @@ impl Batch<'_> {
         };
         let count = self.scenarios.len();
         let ways = Ways::new(self.scenarios);
-        let nominal = NominalRuns::new(&ways, self.law, self.points, &plan, self.interrupted)
+        let nominal = NominalRuns::new(&ways, law, self.points, &plan, self.interrupted)
             .map_err(|error| error.of_run(|run| run * count))?;
         let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
         let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
@@ -208,28 +215,29 @@ impl Batch<'_> {
         let scenario = &self.scenarios[index];
         let obstacles = scenario.obstacle_count();
         let way = ways.of(index);
+        let law = self.law.driven();
+        let dimension = law.gain_names().len();
         let group = Group {
             scenario,
-            points: &self.points[first * Gains::COUNT..(first + cells.len()) * Gains::COUNT],
+            points: &self.points[first * dimension..(first + cells.len()) * dimension],
             plan,
             interrupted: self.interrupted,
         };
-        self.law
-            .run(&group, &mut |set, run, distance| {
-                let own = &mut distances[set * obstacles..(set + 1) * obstacles];
-                for (obstacle, slot) in own.iter_mut().enumerate() {
-                    *slot = distance(obstacle);
-                }
-                let free = nominal.of(way, first + set);
-                let own = own.iter().copied();
-                let weights = self.options.weights;
-                let performance = score(scenario, run.into(), own, free, weights);
-                cells[set] = Cell {
-                    run: *run,
-                    performance,
-                };
-            })
-            .map_err(|error| error.of_run(|run| (first + run) * self.scenarios.len() + index))?;
+        law.run(&group, &mut |set, run, distance| {
+            let own = &mut distances[set * obstacles..(set + 1) * obstacles];
+            for (obstacle, slot) in own.iter_mut().enumerate() {
+                *slot = distance(obstacle);
+            }
+            let free = nominal.of(way, first + set);
+            let own = own.iter().copied();
+            let weights = self.options.weights;
+            let performance = score(scenario, run.into(), own, free, weights);
+            cells[set] = Cell {
+                run: *run,
+                performance,
+            };
+        })
+        .map_err(|error| error.of_run(|run| (first + run) * self.scenarios.len() + index))?;
         (self.progress)(cells.len());
         Ok(())
     }

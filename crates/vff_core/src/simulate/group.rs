@@ -1,17 +1,24 @@
 //! Gain sets side by side in lanes, lane groups in step, through one scenario.
 
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use crate::error::{NavigationError, Result};
 use crate::lanes::{Lanes, Real};
-use crate::laws::{LawFamily, VirtualForceField};
+use crate::laws::compared::{BorensteinKoren, GeCui, Khatib, Masoud, Pairwise};
+use crate::laws::{Command, Law, LawFamily, Situation, VirtualForceField};
+use crate::planners::family::Planned;
+use crate::planners::field_d_star::FieldDStar;
+use crate::planners::reciprocal::ReciprocalAvoidance;
+use crate::planners::tree::RapidlyExploringRandomTree;
+use crate::planners::velocity_obstacle::VelocityObstacle;
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
 use crate::simulate::batch::{Instructions, Width};
 use crate::simulate::nominal::key_of;
 use crate::simulate::options::Options;
-use crate::simulate::outcome::RunTotals;
-use crate::simulate::record::{DescentCounter, Recorder};
+use crate::simulate::outcome::{RunSummary, RunTotals};
+use crate::simulate::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 use crate::simulate::rollout::{Member, run_team};
 
 /// Most gains of a law.
@@ -68,17 +75,62 @@ pub(crate) type Keep<'a> = &'a mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -
 /// A law of any kind up to its gains.
 ///
 /// The kernels of a law are compiled where it is turned into this, that is in this crate.
-pub struct AnyLaw(Box<dyn Driven>);
+#[derive(Clone)]
+pub struct AnyLaw(Arc<dyn Driven>);
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {
-        Self(Box::new(law))
+        Self::driven_by::<_, EveryWidth>(law)
     }
 }
 
+impl From<&VirtualForceField> for AnyLaw {
+    fn from(law: &VirtualForceField) -> Self {
+        (*law).into()
+    }
+}
+
+impl From<&AnyLaw> for AnyLaw {
+    fn from(law: &AnyLaw) -> Self {
+        law.clone()
+    }
+}
+
+macro_rules! any_law {
+    ($kernels:ty: $($law:ty),+) => {
+        $(impl From<$law> for AnyLaw {
+            fn from(law: $law) -> Self {
+                Self::driven_by::<_, $kernels>(law)
+            }
+        })+
+    };
+}
+any_law!(OneAndEight: Pairwise<Masoud>, Pairwise<GeCui>, Pairwise<Khatib>, Pairwise<BorensteinKoren>);
+any_law!(One: Planned<VelocityObstacle>, Planned<ReciprocalAvoidance>);
+any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>);
+
 impl AnyLaw {
+    fn driven_by<F: LawFamily + Send + 'static, K: Kernels>(law: F) -> Self {
+        Self(Arc::new(Driver::<F, K>(law, PhantomData)))
+    }
+
     pub(crate) fn driven(&self) -> &dyn Driven {
         &*self.0
+    }
+
+    /// Words for the gains, in their order.
+    #[must_use]
+    pub fn gain_names(&self) -> &'static [&'static str] {
+        self.0.gain_names()
+    }
+
+    /// Passes a law whose gains are allowed.
+    ///
+    /// # Errors
+    /// Names the gain that is not.
+    pub fn checked(self) -> Result<Self> {
+        self.0.check_gains(&self.0.gains())?;
+        Ok(self)
     }
 }
 
@@ -86,25 +138,89 @@ impl AnyLaw {
 pub(crate) trait Driven: Send + Sync {
     /// Words for the gains, in their order.
     fn gain_names(&self) -> &'static [&'static str];
+    /// Its own gains, in that order.
+    fn gains(&self) -> Vec<f64>;
     /// Gains that act on a robot without obstacles, ascending.
     fn free_gains(&self) -> &'static [usize];
     /// Passes a set of gains that the law allows.
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
     /// Runs gain sets and hands every run over.
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// What it asks for at first, with its own gains.
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
+    /// One run with its own gains and everything recorded.
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)>;
 }
 
-impl<F: LawFamily + Send> Driven for F {
+/// A law and the kernels that are compiled for it.
+struct Driver<F, K>(F, PhantomData<fn() -> K>);
+
+/// Kernels that are compiled for a law.
+pub(crate) trait Kernels: 'static {
+    /// Runs gain sets in the kernel that suits the plan.
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+}
+
+/// One, four and eight gain sets side by side, with and without the Lyapunov function.
+struct EveryWidth;
+
+impl Kernels for EveryWidth {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        // One job for each kind of run: in one body an unoptimized build would need more stack
+        // than a thread has.
+        match (group.plan.width, group.plan.descent) {
+            (Width::One, false) => group.dispatch::<F, f64, (), false>(law, keep),
+            (Width::One, true) => group.dispatch::<F, f64, DescentCounter<f64>, true>(law, keep),
+            (Width::Four, false) => group.dispatch::<F, Lanes<4>, (), false>(law, keep),
+            (Width::Eight | Width::Sixteen, false) => {
+                group.dispatch::<F, Lanes<8>, (), false>(law, keep)
+            }
+            (_, true) => group.dispatch::<F, Lanes<8>, DescentCounter<Lanes<8>>, true>(law, keep),
+        }
+    }
+}
+
+/// One and eight gain sets side by side, for laws without a Lyapunov function.
+struct OneAndEight;
+
+impl Kernels for OneAndEight {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        match group.plan.width {
+            Width::One => group.dispatch::<F, f64, (), false>(law, keep),
+            _ => group.dispatch::<F, Lanes<8>, (), false>(law, keep),
+        }
+    }
+}
+
+/// One after the other, for laws that think longer than a robot moves.
+struct One;
+
+impl Kernels for One {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch::<F, f64, (), false>(law, keep)
+    }
+}
+
+impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
     fn gain_names(&self) -> &'static [&'static str] {
-        LawFamily::gain_names(self)
+        self.0.gain_names()
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.0.gains()
     }
 
     fn free_gains(&self) -> &'static [usize] {
-        LawFamily::free_gains(self)
+        self.0.free_gains()
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {
-        LawFamily::check_gains(self, gains)
+        self.0.check_gains(gains)
     }
 
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
@@ -113,24 +229,42 @@ impl<F: LawFamily + Send> Driven for F {
         }
         let exact = group.scenario.measurement.is_none();
         let plan = Plan {
-            shortcuts: group.plan.shortcuts && exact && self.keeps_to_regions(),
+            shortcuts: group.plan.shortcuts && exact && self.0.keeps_to_regions(),
             ..*group.plan
         };
         let group = &Group {
             plan: &plan,
             ..*group
         };
-        // One job for each kind of run: in one body an unoptimized build would need more stack
-        // than a thread has.
-        match (group.plan.width, group.plan.descent) {
-            (Width::One, false) => group.dispatch::<F, f64, (), false>(self, keep),
-            (Width::One, true) => group.dispatch::<F, f64, DescentCounter<f64>, true>(self, keep),
-            (Width::Four, false) => group.dispatch::<F, Lanes<4>, (), false>(self, keep),
-            (Width::Eight | Width::Sixteen, false) => {
-                group.dispatch::<F, Lanes<8>, (), false>(self, keep)
-            }
-            (_, true) => group.dispatch::<F, Lanes<8>, DescentCounter<Lanes<8>>, true>(self, keep),
-        }
+        K::run(&self.0, group, keep)
+    }
+
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
+        let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
+        Ok(law.command(situation))
+    }
+
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)> {
+        let mut team = [Member {
+            law: self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?,
+            recorder: TrajectoryRecorder::new(scenario),
+        }];
+        let mut summary = None;
+        run_team(
+            scenario,
+            (&mut team, false),
+            &Plan::single(*options),
+            interrupted,
+            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
+        )?;
+        let [member] = team;
+        let summary = summary.ok_or(NavigationError::Interrupted)?;
+        Ok((summary, member.recorder.finish()))
     }
 }
 
@@ -168,7 +302,7 @@ fn law_of<F: LawFamily, R: Real, const RECORD: bool>(
     law: &F,
     sets: &[f64],
     scenario: &Scenario,
-) -> F::Law<R, RECORD> {
+) -> Result<F::Law<R, RECORD>> {
     let dimension = law.gain_names().len();
     let last = sets.len() / dimension - 1;
     let mut gains = [R::zero(); MAX_GAINS];
@@ -207,15 +341,17 @@ impl<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::
     fn call(self) -> Self::Output {
         let group = self.group;
         let dimension = LawFamily::gain_names(self.law).len();
-        let member = |sets: &[f64]| Member {
-            law: law_of::<F, R, RECORD>(self.law, sets, group.scenario),
-            recorder: C::default(),
+        let member = |sets: &[f64]| -> Result<_> {
+            Ok(Member {
+                law: law_of::<F, R, RECORD>(self.law, sets, group.scenario)?,
+                recorder: C::default(),
+            })
         };
         let mut team: Vec<_> = group
             .points
             .chunks(R::WIDTH * dimension)
             .map(member)
-            .collect();
+            .collect::<Result<_>>()?;
         let count = group.points.len() / dimension;
         let led = group.plan.shortcuts && shares_free_gains(self.law, group.points);
         run_team(

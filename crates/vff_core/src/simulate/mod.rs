@@ -23,13 +23,12 @@ pub(crate) use group::{Group, Plan};
 pub(crate) use nominal::{Key, Ways, key_of, nominal_runs};
 pub(crate) use table::min_clearance;
 
-use crate::error::{NavigationError, Result};
+use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
 use crate::gains::GainLanes;
 use crate::lanes::Vec2;
 use crate::laws::{FieldTerms, ForceFieldLaw, Situation, VirtualForceField};
 use crate::scenario::Scenario;
-use crate::simulate::rollout::{Member, run_team};
 
 /// Asked now and then whether to stop.
 pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
@@ -37,30 +36,60 @@ pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
 /// One run with everything recorded.
 ///
 /// # Errors
-/// An option is out of range, the state became non-finite, or the caller asked to stop.
+/// An option is out of range, the law cannot work in the scenario, the state became non-finite,
+/// or the caller asked to stop.
 pub fn simulate(
     scenario: &Scenario,
-    law: &VirtualForceField,
+    law: impl Into<AnyLaw>,
     options: &Options,
     interrupted: Interrupted<'_>,
 ) -> Result<(RunSummary, Trajectory)> {
-    let gains = GainLanes::<f64>::gather(law.gains, &[]);
-    let law = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    let mut team = [Member {
-        law,
-        recorder: TrajectoryRecorder::new(scenario),
-    }];
-    let mut summary = None;
-    run_team(
-        scenario,
-        (&mut team, false),
-        &Plan::single(*options),
-        interrupted,
-        |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
-    )?;
-    let [member] = team;
-    let summary = summary.ok_or(NavigationError::Interrupted)?;
-    Ok((summary, member.recorder.finish()))
+    let law: AnyLaw = law.into();
+    law.driven().record(scenario, options, interrupted)
+}
+
+/// Everything at one instant, for a law that is asked for the first time.
+fn at_state<T>(
+    scenario: &Scenario,
+    [position, velocity]: [[f64; 2]; 2],
+    time: f64,
+    answer: impl FnOnce(&Situation<'_, f64>) -> T,
+) -> Result<T> {
+    crate::error::finite_pair("position", position)?;
+    crate::error::finite_pair("velocity", velocity)?;
+    crate::error::not_negative("time", time)?;
+    let bodies: Vec<Body> = scenario
+        .obstacles
+        .iter()
+        .map(|placed| scene::body_at(placed, time, &mut 0))
+        .collect();
+    let robot = RobotState {
+        position: Vec2::splat(position),
+        velocity: Vec2::splat(velocity),
+    };
+    Ok(answer(&Situation {
+        bodies: &bodies,
+        robot,
+        interval: scenario.rules.control_period,
+    }))
+}
+
+/// Force that a law asks for at one state, as at its first control step, in N.
+///
+/// # Errors
+/// A value is not finite, the time is negative, or the law cannot work in the scenario.
+pub fn command_at(
+    scenario: &Scenario,
+    law: impl Into<AnyLaw>,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    time: f64,
+) -> Result<[f64; 2]> {
+    let law: AnyLaw = law.into();
+    let command = at_state(scenario, [position, velocity], time, |situation| {
+        law.driven().command(scenario, situation)
+    })??;
+    Ok(command.force.lane(0))
 }
 
 /// Every force term at one state.
@@ -74,24 +103,9 @@ pub fn terms_at(
     velocity: [f64; 2],
     time: f64,
 ) -> Result<FieldTerms> {
-    crate::error::finite_pair("position", position)?;
-    crate::error::finite_pair("velocity", velocity)?;
-    crate::error::not_negative("time", time)?;
-    let bodies: Vec<Body> = scenario
-        .obstacles
-        .iter()
-        .map(|placed| scene::body_at(placed, time, &mut 0))
-        .collect();
     let gains = GainLanes::<f64>::gather(law.gains, &[]);
     let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    let robot = RobotState {
-        position: Vec2::splat(position),
-        velocity: Vec2::splat(velocity),
-    };
-    let interval = scenario.rules.control_period;
-    Ok(field.terms(&Situation {
-        bodies: &bodies,
-        robot,
-        interval,
-    }))
+    at_state(scenario, [position, velocity], time, |situation| {
+        field.terms(situation)
+    })
 }

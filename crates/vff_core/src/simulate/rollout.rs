@@ -99,7 +99,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         }
         first += steps;
         until_question -= 1;
-        if until_question == 0 {
+        if L::THINKS || until_question == 0 {
             until_question = BLOCKS_PER_QUESTION;
             if interrupted() {
                 return Err(NavigationError::Interrupted);

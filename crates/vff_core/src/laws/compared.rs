@@ -1,0 +1,138 @@
+//! Virtual-force laws of other authors: an attraction, and a push from every obstacle whose
+//! active region the robot is in. They know no critical region and never brake.
+
+mod borenstein_koren;
+mod family;
+mod ge_cui;
+mod khatib;
+mod masoud;
+
+pub use borenstein_koren::BorensteinKoren;
+pub use family::{Pairwise, PairwiseFamily};
+pub use ge_cui::GeCui;
+pub use khatib::{Khatib, KhatibForm};
+pub use masoud::Masoud;
+
+use crate::forces::geometry::{Body, Offset, RobotState};
+use crate::lanes::{Mask, Real, Vec2};
+use crate::laws::{Command, Law, Situation};
+use crate::obstacle::Shape;
+use crate::scenario::Scenario;
+
+/// Surfaces closer than this push as if they were this far apart, in m; without it the laws that
+/// divide by the distance of the surfaces would pull the robot into an obstacle that it touches.
+const LEAST_GAP: f64 = 1e-3;
+
+/// What a law needs of one obstacle.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbor<'a, R> {
+    /// The obstacle.
+    pub body: &'a Body,
+    /// Offset of the robot from it.
+    pub offset: Offset<R>,
+    /// `d` in m.
+    pub distance: R,
+    /// `u = D/d`.
+    pub outward: Vec2<R>,
+    /// Distance of the surfaces in m, at least [`LEAST_GAP`].
+    pub gap: R,
+    /// `r2` measured between the surfaces, in m.
+    pub reach: f64,
+}
+
+/// Forces of one law, gains in lanes.
+pub trait PairwiseField<R: Real>: Copy {
+    /// Attraction in N; `inside`: lanes inside an active region.
+    fn attraction(&self, to_goal: Vec2<R>, velocity: Vec2<R>, inside: R::Mask) -> Vec2<R>;
+    /// Push of an obstacle on the robot inside its active region.
+    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R>;
+}
+
+/// Parts of the force of one obstacle, in N.
+#[derive(Clone, Copy, Debug)]
+pub struct Push<R> {
+    /// Away from the obstacle.
+    pub repulsive: Vec2<R>,
+    /// Around it.
+    pub detour: Vec2<R>,
+}
+
+impl<R: Real> Push<R> {
+    /// A push without a detour.
+    #[inline(always)]
+    #[must_use]
+    pub fn straight(repulsive: Vec2<R>) -> Self {
+        let detour = Vec2::zero();
+        Self { repulsive, detour }
+    }
+}
+
+/// A law of this kind at work in one scenario.
+#[derive(Clone, Copy, Debug)]
+pub struct PairwiseLaw<R, F> {
+    field: F,
+    goal: Vec2<R>,
+    robot_radius: f64,
+}
+
+impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
+    /// The law for one scenario.
+    #[must_use]
+    pub fn new(field: F, scenario: &Scenario) -> Self {
+        Self {
+            field,
+            goal: Vec2::splat(scenario.goal),
+            robot_radius: scenario.robot.radius,
+        }
+    }
+
+    #[inline(always)]
+    fn neighbor<'a>(&self, body: &'a Body, offset: Offset<R>) -> Neighbor<'a, R> {
+        let distance = offset.distance_squared.sqrt();
+        let apart = distance.gt(R::zero());
+        // A robot exactly on the centre, or inside a rectangle, is pushed nowhere.
+        let outward = offset.vector.scale(R::splat(1.0) / distance);
+        let touching = self.robot_radius
+            + match body.shape {
+                Shape::Disc { radius } => radius,
+                Shape::Rectangle { .. } => 0.0,
+            };
+        Neighbor {
+            body,
+            offset,
+            distance,
+            outward: Vec2::select(apart, outward, Vec2::zero()),
+            gap: (distance - R::splat(touching)).max(R::splat(LEAST_GAP)),
+            reach: body.regions.active_radius - touching,
+        }
+    }
+}
+
+impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
+    #[inline(always)]
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let robot = &situation.robot;
+        let mut force = Vec2::zero();
+        let mut inside = R::Mask::none();
+        for body in situation.bodies {
+            let offset = body.offset(robot.position);
+            let r2 = body.regions.active_radius;
+            let here = R::Mask::splat(body.state.present);
+            let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
+            if !active.any() {
+                continue;
+            }
+            inside = inside | active;
+            let push = self.field.push(&self.neighbor(body, offset), robot);
+            let both = force + (push.repulsive + push.detour);
+            force = Vec2::select(active, both, force);
+        }
+        let to_goal = self.goal - robot.position;
+        let attraction = self.field.attraction(to_goal, robot.velocity, inside);
+        Command {
+            force: attraction + force,
+            stabilizing: Vec2::zero(),
+            lyapunov: R::splat(f64::NAN),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Dynamic potential field of Ge and Cui (2002).
+
+use super::{Neighbor, PairwiseField, Push};
+use crate::forces::geometry::{Approach, RobotState};
+use crate::lanes::{Mask, Real, Vec2};
+
+/// Least `(d - r)^2` in m^2: where the stopping distance `r` equals `d` the law is singular.
+const LEAST_SQUARE: f64 = 1e-12;
+
+/// `F_a = K_1 (E - b V)` (2.2.11), `F_Lambda = K (1 - ddot/a_max)/(d - r)^2 u` and
+/// `F_psi = -K ddot betadot d/(d - r)^2 t` (2.2.12)-(2.2.13), `r = ddot^2/(2 a_max)` (2.2.15),
+/// `d` from the centre: the detour goes along the tangential relative velocity while the two
+/// approach and against it while they recede.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeCui<R = f64> {
+    /// `K_1` in N/m.
+    pub attractive: R,
+    /// `K_G3` in N m^2, of repulsion and detour.
+    pub repulsive: R,
+    /// `b = K_2/K_1` in s.
+    pub ratio: R,
+    /// `a_max` of the robot in m/s^2.
+    pub max_acceleration: f64,
+}
+
+impl<R: Real> PairwiseField<R> for GeCui<R> {
+    #[inline(always)]
+    fn attraction(&self, to_goal: Vec2<R>, velocity: Vec2<R>, _inside: R::Mask) -> Vec2<R> {
+        (to_goal - velocity.scale(self.ratio)).scale(self.attractive)
+    }
+
+    #[inline(always)]
+    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
+        // The goal enters the angles of an approach only, which are not used here.
+        let everywhere = R::Mask::splat(true);
+        let goal = Vec2::zero();
+        let approach = Approach::new(neighbor.body, neighbor.offset, everywhere, robot, goal);
+        let (rate, limit) = (approach.range_rate, R::splat(self.max_acceleration));
+        let stopping = rate * rate / (limit + limit);
+        let margin = neighbor.distance - stopping;
+        let square = (margin * margin).max(R::splat(LEAST_SQUARE));
+        let strength = self.repulsive / square;
+        let away = strength * (R::splat(1.0) - rate / limit);
+        let around = -(strength * rate * approach.bearing_rate * neighbor.distance);
+        // On the centre of an obstacle nothing has a direction.
+        let apart = neighbor.distance.gt(R::zero());
+        let (outward, zero) = (neighbor.outward, Vec2::zero());
+        Push {
+            repulsive: Vec2::select(apart, outward.scale(away), zero),
+            detour: Vec2::select(apart, outward.perp().scale(around), zero),
+        }
+    }
+}
