@@ -8,6 +8,11 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 """
 
 from hrsafety.plotting.animation import animate
+from hrsafety.plotting.arena import (
+    plot_arena_distances,
+    plot_arena_paths,
+    plot_arena_sequence,
+)
 from hrsafety.plotting.boundaries import foam_boundaries, foam_map
 from hrsafety.plotting.energies import energy
 from hrsafety.plotting.fields import force_field, potential_valley
@@ -18,6 +23,7 @@ from hrsafety.plotting.layouts import layout
 from hrsafety.plotting.scenes import paths
 from hrsafety.plotting.searches import pareto_front, search_history
 from hrsafety.plotting.sequences import time_sequence
+from hrsafety.plotting.standings import plot_arena_standings
 from hrsafety.plotting.studies import clearances, outcomes
 from hrsafety.plotting.style import MissingExtraError
 from hrsafety.plotting.sweep_overviews import sweep_parallel, sweep_scatter
@@ -42,6 +48,10 @@ __all__ = [
     "outcomes",
     "pareto_front",
     "paths",
+    "plot_arena_distances",
+    "plot_arena_paths",
+    "plot_arena_sequence",
+    "plot_arena_standings",
     "potential_valley",
     "search_history",
     "sweep_lines",

@@ -10,13 +10,26 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import figures, gain_figures, gain_tables, impact_part, page, study, tables, trends
+from hrsafety.reproduce import (
+    figures,
+    gain_figures,
+    gain_tables,
+    impact_part,
+    laws_claims,
+    laws_demonstrations,
+    laws_figures,
+    laws_study,
+    page,
+    study,
+    tables,
+    trends,
+)
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.published import published_tables
 
 __all__ = ["PARTS", "Cell", "published_tables", "run"]
 
-PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "impact", "stabilizing")
+PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "impact", "laws", "stabilizing")
 """What `run` can make, in the order in which it is made."""
 
 
@@ -41,8 +54,9 @@ def run(
     -------
     Path
         The summary page, ``summary.html``. Beside it lie ``tables.csv`` and ``tables.json``
-        with every value, ``stabilizing.csv`` and ``stabilizing.json`` with the comparison of
-        the stabilizing modes, and the pictures in ``figures``.
+        with every value, ``laws.csv`` and ``laws.json`` with the laws and the unpredictable
+        person, ``stabilizing.csv`` and ``stabilizing.json`` with the comparison of the
+        stabilizing modes, and the pictures in ``figures``.
 
     Raises
     ------
@@ -72,6 +86,10 @@ def run(
             report.impact_pictures.extend(impact_part.pictures())
         elif part == "figures-6":
             report.pictures.extend(figures.make())
+        elif part == "laws":
+            report.laws = laws_study.compare(say)
+            report.cells.extend(laws_claims.cells(report.laws))
+            report.laws_pictures.extend([*laws_demonstrations.make(report.laws), *laws_figures.make(report.laws)])
         elif part == "stabilizing":
             report.study = study.compare(say)
             report.study_pictures.extend(figures.of_study(report.study))
@@ -99,6 +117,7 @@ _TITLES = {
     "table-5.1": "Table 5.1",
     "tables-c": "Tables C.1 to C.9 and the search for the best gains",
     "figures-6": "Figures 6.3 to 6.18",
+    "laws": "nine laws: sections 2.2.5 and 5.7, Figures 2.5, 2.6, 5.11, 5.12, 6.19, 6.20",
     "stabilizing": "stabilizing force off, capped and full",
 }
 

@@ -10,9 +10,10 @@ from hrsafety.reproduce import gain_claims
 from hrsafety.reproduce.cells import SCORE, Cell, Tolerance, tolerance_of
 from hrsafety.reproduce.gain_runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns, gain_runs
 from hrsafety.reproduce.impact_cells import listed
+from hrsafety.reproduce.measured import measure_laws
 from hrsafety.reproduce.published import Row, printed_rows
-from hrsafety.reproduce.reasons import why_not_measured
-from hrsafety.reproduce.tables import GAIN_UNITS, UNITS, explained, numbers, printed_score
+from hrsafety.reproduce.reasons import note_of, why_not_judged
+from hrsafety.reproduce.tables import GAIN_UNITS, UNITS, explained, input_cell, numbers, printed_score
 
 __all__ = ["appendix_c"]
 
@@ -63,15 +64,31 @@ def _optimum(runs: GainRuns) -> Iterator[Cell]:
         method = row["method"]
         for column, printed in numbers(row):
             place: dict[str, Any] = {"table": "C.1", "row": method, "column": column, "printed": printed}
-            if why_not_measured(method):
-                unit = GAIN_UNITS.get(column, "1")
-                yield Cell.listed(**place, unit=unit, reason=why_not_measured(method))
+            if method in _SEARCHED_ON:
+                yield _of_compared_law(**place)
             elif column == "H_mean":
                 best = float(runs.search.best_value)
                 yield explained(Cell.compared(**place, measured=best, tolerance=SCORE, unit="1"))
             else:
                 reason = _why_another_gain(runs, list(GAIN_UNITS).index(column))
                 yield listed(**place, measured=found[column], unit=GAIN_UNITS[column], reason=reason)
+
+
+def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> Cell:
+    """Return a cell of a compared law: its printed gains are used, not searched anew."""
+    if column != "H_mean":
+        return input_cell(table, row, column, printed)
+    scores = [run.values["H"] for run in measure_laws(_SEARCHED_ON[row], [row])[row]]
+    place: dict[str, Any] = {"table": table, "row": row, "column": column, "printed": printed}
+    measured = sum(scores) / len(scores)
+    unjudged = why_not_judged(row, column)
+    if unjudged:
+        return listed(**place, measured=measured, unit="1", reason=f"{note_of(table, row, column)} {unjudged}")
+    return explained(Cell.compared(**place, measured=measured, tolerance=SCORE, unit="1"))
+
+
+# Section 6.2.4; section C.2 names configurations 1, 2 and 4 for both.
+_SEARCHED_ON = {"masoud": ("c1", "c2", "c3"), "ge_cui": ("c1", "c3", "c4")}
 
 
 def _why_another_gain(runs: GainRuns, index: int) -> str:

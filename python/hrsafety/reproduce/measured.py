@@ -1,4 +1,4 @@
-"""Runs of the force field under the published configurations, under the names of the tables."""
+"""Runs of the laws under the published configurations, under the names of the tables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 
-__all__ = ["GAIN_SETS", "Measured", "kind_of", "measure", "score_of_parts"]
+__all__ = ["GAIN_SETS", "LAWS", "Measured", "kind_of", "measure", "measure_laws", "score_of_parts"]
 
 Gains = tuple[float, float, float, float]
 
@@ -20,6 +20,25 @@ GAIN_SETS: Mapping[str, Gains] = {
     "new_vff_optimised": (4.3, 20.3, 240.7, 0.68),
 }
 """K_1, K_3, K_5, b of the rows "New VFF" and "New VFF*" of the tables."""
+
+
+def _field(gains: Gains) -> nav.VirtualForceField:
+    """Return the new field as the tables have it: without the stabilizing force."""
+    attractive, repulsive, detour, ratio = gains
+    return nav.VirtualForceField(
+        attractive_gain=attractive,
+        repulsive_gain=repulsive,
+        detour_gain=detour,
+        gain_ratio=ratio,
+        stabilizing="off",
+    )
+
+
+LAWS: Mapping[str, nav.Law] = {name: _field(gains) for name, gains in GAIN_SETS.items()} | {
+    "masoud": nav.Masoud(),
+    "ge_cui": nav.GeCui(),
+}
+"""Laws of the rows of the tables, with the printed gains."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,6 +93,29 @@ def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]
     summary = nav.simulate_batch(places, nav.VirtualForceField(stabilizing="off"), sets)
     rows = [_row(summary, index, places[index % len(places)]) for index in range(len(summary))]
     return [rows[begin : begin + len(places)] for begin in range(0, len(rows), len(places))]
+
+
+def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list[Measured]]:
+    """Run the law of each row of the tables in every configuration.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Configurations, see `hrsafety.scenarios.configuration`.
+    methods : iterable of str
+        Rows, among `LAWS`.
+
+    Returns
+    -------
+    dict of str to list of Measured
+        By row; indexed by configuration.
+    """
+    places = [scenarios.configuration(name) for name in names]
+    runs = {}
+    for method in methods:
+        summary = nav.simulate_batch(places, LAWS[method])
+        runs[method] = [_row(summary, index, place) for index, place in enumerate(places)]
+    return runs
 
 
 def _row(summary: nav.BatchSummary, index: int, scenario: nav.Scenario) -> Measured:

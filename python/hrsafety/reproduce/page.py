@@ -12,9 +12,10 @@ from importlib import resources
 from pathlib import Path
 
 from hrsafety._atomic import write_file
-from hrsafety.reproduce import evidence, gain_page, impact_page, markup, records
+from hrsafety.reproduce import evidence, gain_page, impact_page, laws_page, markup, records
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
+from hrsafety.reproduce.laws_study import LawsStudy
 from hrsafety.reproduce.study import Study
 
 __all__ = ["Report", "write"]
@@ -40,6 +41,10 @@ class Report:
         Comparison of the stabilizing modes.
     study_pictures : list of Picture
         Pictures of that comparison.
+    laws : LawsStudy or None
+        Every law with the unpredictable person.
+    laws_pictures : list of Picture
+        Pictures of that part.
     impact_cells : list of Cell
         Every printed value and claim of the impact part.
     impact_pictures : list of Picture
@@ -55,6 +60,8 @@ class Report:
     gain_pictures: list[Picture] = field(default_factory=list)
     study: Study | None = None
     study_pictures: list[Picture] = field(default_factory=list)
+    laws: LawsStudy | None = None
+    laws_pictures: list[Picture] = field(default_factory=list)
     impact_cells: list[Cell] = field(default_factory=list)
     impact_pictures: list[Picture] = field(default_factory=list)
     seconds: float = 0.0
@@ -67,7 +74,13 @@ class Report:
     @property
     def all_pictures(self) -> list[Picture]:
         """Pictures of all parts."""
-        return [*self.impact_pictures, *self.gain_pictures, *self.pictures, *self.study_pictures]
+        return [
+            *self.impact_pictures,
+            *self.laws_pictures,
+            *self.gain_pictures,
+            *self.pictures,
+            *self.study_pictures,
+        ]
 
 
 def write(report: Report, folder: Path) -> Path:
@@ -92,6 +105,9 @@ def write(report: Report, folder: Path) -> Path:
     if report.all_cells:
         write_file(folder / "tables.csv", records.cells_csv(report.all_cells))
         write_file(folder / "tables.json", records.cells_json(report.all_cells))
+    if report.laws is not None:
+        write_file(folder / "laws.csv", records.laws_csv(report.laws))
+        write_file(folder / "laws.json", records.laws_json(report.laws))
     if report.study is not None:
         write_file(folder / "stabilizing.csv", records.study_csv(report.study))
         write_file(folder / "stabilizing.json", records.study_json(report.study))
@@ -131,7 +147,8 @@ _PARTS = {
     "impact": "Impact",
     "tables-6": "Chapter 6",
     "tables-7": "Chapter 7",
-    "table-5.1": "Section 5.7",
+    "table-5.1": "Table 5.1",
+    "laws": "Compared laws",
     "tables-c": "Appendix C",
     "stabilizing": "Stabilizing force",
     "figures-6": "Pictures",
@@ -141,7 +158,8 @@ _PARTS = {
 def _head(report: Report) -> Iterator[str]:
     yield "<h1>Published tables and figures, measured again</h1>"
     yield (
-        "<p>Every printed value of the impact model and of the new virtual force field in L. Zeng, <cite>Design and "
+        "<p>Every printed value of the impact model, of the new virtual force field and of the laws that it is "
+        "compared with, in L. Zeng, <cite>Design and "
         "control of human-friendly robots</cite> (PhD thesis, McMaster University, 2011), beside the value measured "
         "here with the corrected equations. Nothing is tuned to the printed values; where a value differs, the reason "
         "stands beside it.</p>"
@@ -174,7 +192,7 @@ def _sections(report: Report) -> Iterator[str]:
     for part, words, prefix in (
         ("tables-6", "Chapter 6: holonomic robot, configurations c1 to c4", "6."),
         ("tables-7", "Chapter 7: holonomic rows, configurations n1 to n4", "7."),
-        ("table-5.1", "Section 5.7: a person who stops and turns", "5."),
+        ("table-5.1", "Table 5.1: a person who stops and turns", "5."),
     ):
         if part in report.parts:
             yield f'<section id="{part}"><h2>{escape(words)}</h2>'
@@ -182,6 +200,10 @@ def _sections(report: Report) -> Iterator[str]:
                 if table.startswith(prefix):
                     yield markup.table_of_cells(table, cells)
             yield "</section>"
+    if report.laws is not None:
+        yield '<section id="laws"><h2>Compared laws: nine laws in the same situations</h2>'
+        yield from laws_page.section(report.laws, report.cells, report.laws_pictures)
+        yield "</section>"
     if "tables-c" in report.parts:
         yield '<section id="tables-c"><h2>Appendix C: the best gains, and one gain at a time changed</h2>'
         yield from gain_page.section(report.cells, report.gain_pictures)
@@ -206,6 +228,7 @@ def _foot(report: Report) -> Iterator[str]:
     yield f"<p>Made {made}; simulations and pictures took {report.seconds:.1f} s.</p>"
     beside = ["<code>figures</code> (pictures)"] if report.all_pictures else []
     beside += ["<code>tables.csv</code>, <code>tables.json</code> (every value)"] if report.all_cells else []
+    beside += ["<code>laws.csv</code>, <code>laws.json</code>"] if report.laws is not None else []
     beside += ["<code>stabilizing.csv</code>, <code>stabilizing.json</code>"] if report.study is not None else []
     yield f"<p>Beside this page: {', '.join(beside)}.</p></section>"
 

@@ -11,9 +11,10 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.laws_study import LawsStudy, rows
 from hrsafety.reproduce.study import Aggregate, Study
 
-__all__ = ["cells_csv", "cells_json", "study_csv", "study_json"]
+__all__ = ["cells_csv", "cells_json", "laws_csv", "laws_json", "study_csv", "study_json"]
 
 
 def cells_csv(cells: Sequence[Cell]) -> str:
@@ -46,6 +47,39 @@ def cells_json(cells: Sequence[Cell]) -> str:
         JSON text.
     """
     return json.dumps([asdict(cell) for cell in cells], indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def laws_csv(study: LawsStudy) -> str:
+    """Return every law with the unpredictable person as CSV.
+
+    Parameters
+    ----------
+    study : LawsStudy
+        What to write.
+
+    Returns
+    -------
+    str
+        One line for each law.
+    """
+    table = rows(study)
+    return _csv(list(table[0]), table)
+
+
+def laws_json(study: LawsStudy) -> str:
+    """Return every law with the unpredictable person as a JSON list of objects.
+
+    Parameters
+    ----------
+    study : LawsStudy
+        What to write.
+
+    Returns
+    -------
+    str
+        JSON text.
+    """
+    return json.dumps(rows(study), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def study_csv(study: Study) -> str:

@@ -11,10 +11,10 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.navigation.statistics import Paired, Share, compare_paired, wilson
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank
-from hrsafety.reproduce.statistics import Paired, Share, compare_paired, wilson
 
 __all__ = ["MODES", "SIDES", "Aggregate", "Key", "Study", "compare"]
 

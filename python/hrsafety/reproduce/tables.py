@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from hrsafety.reproduce.cells import Cell, tolerance_of
-from hrsafety.reproduce.measured import GAIN_SETS, Measured, measure, score_of_parts
+from hrsafety.reproduce.impact_cells import listed
+from hrsafety.reproduce.measured import LAWS, Measured, measure_laws, score_of_parts
 from hrsafety.reproduce.published import Row, printed_rows
-from hrsafety.reproduce.reasons import cause_of, note_of, why_not_measured
+from hrsafety.reproduce.reasons import cause_of, note_of, why_not_judged, why_not_measured
 
 __all__ = [
     "GAIN_UNITS",
@@ -17,6 +18,7 @@ __all__ = [
     "chapter_6",
     "chapter_7",
     "explained",
+    "input_cell",
     "numbers",
     "printed_score",
     "unpredictable_human",
@@ -24,6 +26,19 @@ __all__ = [
 
 GAIN_UNITS = {"K_1": "N/m", "K_3": "N/m", "K_5": "N/m^2", "b": "s"}
 """Units of the gains, in the order of the gain sets."""
+_GAINS = {
+    "K_1": ("attractive_gain", "N/m"),
+    "K_3": ("repulsive_gain", "N/m"),
+    "K_5": ("detour_gain", "N/m^2"),
+    "b": ("gain_ratio", "s"),
+}
+# One gain for repulsion and detour; Table C.1 prints it twice.
+_GE_CUI_GAINS = {
+    "K_1": ("attractive_gain", "N/m"),
+    "K_3": ("repulsive_gain", "N m^2"),
+    "K_5": ("repulsive_gain", "N m^2"),
+    "b": ("gain_ratio", "s"),
+}
 UNITS = {"T": "s", "L": "J", "d": "m", "H": "1"}
 """Unit of a column by the letter that its name begins with."""
 
@@ -40,7 +55,7 @@ def chapter_6() -> list[Cell]:
         Every printed number once.
     """
     names = ("c1", "c2", "c3", "c4")
-    runs = dict(zip(GAIN_SETS, measure(names, GAIN_SETS.values()), strict=True))
+    runs = measure_laws(names, LAWS)
     cells = _gain_cells("6.1")
     for index in range(len(names)):
         cells += _method_cells(f"6.{index + 2}", {method: rows[index] for method, rows in runs.items()})
@@ -56,8 +71,12 @@ def chapter_7() -> list[Cell]:
         Every printed number once.
     """
     names = ("n1", "n2", "n3", "n4")
-    (runs,) = measure(names, [GAIN_SETS["new_vff"]])
-    return [cell for index, run in enumerate(runs) for cell in _method_cells(f"7.{index + 1}", {"holonomic": run})]
+    runs = measure_laws(names, ["new_vff"])
+    return [
+        cell
+        for index, run in enumerate(runs["new_vff"])
+        for cell in _method_cells(f"7.{index + 1}", {"holonomic": run})
+    ]
 
 
 def unpredictable_human() -> list[Cell]:
@@ -68,9 +87,12 @@ def unpredictable_human() -> list[Cell]:
     list of Cell
         Every printed number once.
     """
-    ((run,),) = measure(["unpredictable_human"], [GAIN_SETS["new_vff"]])
-    values = run.values | {"d_min": run.values["d_human_min"]}
-    return _method_cells("5.1", {"new_vff": replace(run, values=values)})
+    runs = measure_laws(["unpredictable_human"], ["masoud", "ge_cui", "new_vff"])
+    renamed = {
+        method: replace(run, values=run.values | {"d_min": run.values["d_human_min"]})
+        for method, (run,) in runs.items()
+    }
+    return _method_cells("5.1", renamed)
 
 
 def numbers(row: Row) -> Iterable[tuple[str, float]]:
@@ -82,21 +104,34 @@ def numbers(row: Row) -> Iterable[tuple[str, float]]:
 
 def _gain_cells(table: str) -> list[Cell]:
     """Return the printed gains: inputs, not results."""
-    cells = []
-    for row in printed_rows(table):
-        method = row["method"]
-        for column, printed in numbers(row):
-            reason = why_not_measured(method)
-            if not reason:
-                used = GAIN_SETS[method][list(GAIN_UNITS).index(column)]
-                rounded = ", printed with fewer digits" if used != printed else ""
-                reason = f"An input, not a result: the runs use {used:g}{rounded}."
-            cells.append(
-                Cell.listed(
-                    table=table, row=method, column=column, printed=printed, unit=GAIN_UNITS[column], reason=reason
-                )
-            )
-    return cells
+    return [
+        input_cell(table, row["method"], column, printed)
+        for row in printed_rows(table)
+        for column, printed in numbers(row)
+    ]
+
+
+def input_cell(table: str, method: str, column: str, printed: float) -> Cell:
+    """Return the cell of a printed gain that the runs use.
+
+    Parameters
+    ----------
+    table, method, column : str
+        Place.
+    printed : float
+        As printed.
+
+    Returns
+    -------
+    Cell
+        Without verdict; it says which value is used.
+    """
+    names = _GE_CUI_GAINS if method == "ge_cui" else _GAINS
+    field, unit = names[column]
+    used = getattr(LAWS[method], field)
+    rounded = ", printed with fewer digits" if used != printed else ""
+    reason = f"An input, not a result: the runs use {used:g}{rounded}."
+    return Cell.listed(table=table, row=method, column=column, printed=printed, unit=unit, reason=reason)
 
 
 def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
@@ -110,7 +145,10 @@ def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
             if method not in runs:
                 cells.append(Cell.listed(**place, unit=unit, reason=why_not_measured(method)))
                 continue
-            run = runs[method]
+            run, unjudged = runs[method], why_not_judged(method, column)
+            if unjudged:
+                cells.append(listed(**place, measured=run.values[column], unit=unit, reason=unjudged))
+                continue
             cell = Cell.compared(**place, measured=run.values[column], tolerance=tolerance_of(column), unit=unit)
             cells.append(explained(cell, printed_score(run, row) if column == "H" else None))
     return cells
