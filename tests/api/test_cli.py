@@ -85,9 +85,27 @@ def test_the_examples_of_the_help_are_understood() -> None:
 
     lines = [line.split() for line in (_REPRODUCE_EXAMPLE + _SIMULATE_EXAMPLE).splitlines()]
     commands = [words[1:] for words in lines if words[:1] == ["hrsafety"]]
-    assert len(commands) == 5
+    assert len(commands) == 6
     for words in commands:
         assert _parser().parse_args(words).command == words[0]
+
+
+def test_law_names_of_the_help_are_those_of_files() -> None:
+    from hrsafety.cli import LAW_NAMES
+    from hrsafety.scenarios.laws import LAWS
+
+    assert [name.replace("-", "_") for name in LAW_NAMES] == list(LAWS)
+
+
+@pytest.mark.parametrize("name", ["masoud", "velocity-obstacle", "field-d-star"])
+def test_another_law_drives_the_robot(name: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from hrsafety.scenarios.laws import LAWS
+
+    assert main(["simulate", str(scene), "--law", name]) == 0
+    text = capsys.readouterr().out
+    run = nav.simulate(scenarios.configuration("c1"), LAWS[name.replace("-", "_")]())
+    assert f"law       {name.replace('-', ' ')}, " in text
+    assert f"arrival time   {run.arrival_time:.2f} s" in text
 
 
 def test_simulate_prints_what_the_library_computes(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -228,7 +246,8 @@ BAD_COMMANDS = {
     "missing people": (["simulate", "--people", "nowhere.csv"], "path must name a readable file, got nowhere.csv"),
     "not a scenario": (["simulate", "PEOPLE"], "must be a TOML file"),
     "not people": (["simulate", "--people", "SCENE"], "line 1 must have one column frame"),
-    "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains: expected 4 arguments"),
+    "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains must be 4 numbers: attractive_gain"),
+    "mode of another law": (["simulate", "SCENE", "--law", "masoud", "--stabilizing", "off"], "--stabilizing must"),
     "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: invalid float value: 'x'"),
     "negative gain": (["simulate", "SCENE", "--gains", "1", "2", "-3", "0.1"], "detour_gain must"),
     "nan gain": (["simulate", "SCENE", "--gains", "1", "2", "nan", "0.1"], "detour_gain must"),

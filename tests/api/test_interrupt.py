@@ -35,6 +35,13 @@ gains = np.tile({gains}, (400_000, 1))
 LONG, SHORT = RUNS.format(gains=(0.0, 0.0, 0.0, 0.0)), RUNS.format(gains=(3.0, 20.0, 17.0, 0.25))
 SIMULATE = "nav.simulate_batch([scene], nav.VirtualForceField(), gains, {options})"
 
+# A planner that thinks for tens of milliseconds at every step.
+CROWDS = """
+from hrsafety import scenarios
+crowds = [scenarios.random_traffic(12, seed=seed) for seed in range(40)]
+"""
+PLANNED = "nav.simulate_batch(crowds, nav.FieldDStar(resolution=0.02), threads=2)"
+
 PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
 SPEEDS = "speeds = np.linspace(0.1, 2.0, 20_000_000)\n" + PARTS
 BATCH = (
@@ -60,6 +67,7 @@ JOBS = {
     "long runs, reported": (LONG, SIMULATE.format(options="threads=2, progress=lambda done, total: None")),
     "short runs": (SHORT, SIMULATE.format(options="threads=1, lanes=1")),
     "short runs, reported": (SHORT, SIMULATE.format(options="threads=1, lanes=1, progress=lambda done, total: None")),
+    "planned runs": (CROWDS, PLANNED),
     "impacts": (SPEEDS, BATCH.format(more="")),
     "impacts, reported": (SPEEDS, BATCH.format(more=", progress=lambda done, total: None")),
     "one impact, exact": (PARTS, RECORD.format(method="exact")),

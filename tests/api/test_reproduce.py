@@ -16,7 +16,8 @@ import pytest
 from hrsafety import _atomic as atomic
 from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, statistics, study, tables
+from hrsafety.navigation import statistics
+from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import Cell
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))

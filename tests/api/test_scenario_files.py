@@ -135,7 +135,10 @@ BAD_FILES = {
         ROOM + "[[obstacles]]\ntype = 1\n",
         OBSTACLE + r"\.type must be a text in quotes, got 1",
     ),
-    "unknown law": (ROOM + '[law]\ntype = "astar"\n', r"law\.type must be virtual_force_field, got 'astar'"),
+    "unknown law": (
+        ROOM + '[law]\ntype = "astar"\n',
+        r"law\.type must be virtual_force_field or khatib or .*, got 'astar'",
+    ),
     "no law type": (ROOM + "[law]\ngain_ratio = 1\n", r"law\.type must be given"),
     "unknown robot": (ROOM + '[robot]\ntype = "car"\n', r"robot\.type must be holonomic, got 'car'"),
     "no radius": (ROOM + '[[obstacles]]\ntype = "disc"\ncenter = [1, 1]\n', OBSTACLE + r"\.radius must be given"),
@@ -241,7 +244,7 @@ BAD_FILES = {
     "not utf-8": (b"start = [4.0, 0.0]\n# caf\xe9\n", r"scene\.toml must be UTF-8 text, got byte 0xe9"),
     "binary": (bytes(range(256)), r"scene\.toml must be"),
     "deep brackets": (ROOM + "heading = " + "[" * 100_000, r"scene\.toml must be a TOML file"),
-    "deep tables": (ROOM + "[law" + ".a" * 3000 + "]\nb = 1\n", r"law\.a must be one of the keys"),
+    "deep tables": (ROOM + "[law" + ".a" * 3000 + "]\nb = 1\n", r"law\.type must be given"),
     "huge array": (
         ROOM + "heading = [" + "[1, 2], " * 20_000 + "]\n",
         "heading must be a number, got an array of 20000",

@@ -257,7 +257,7 @@ BAD: list[tuple[type, dict[str, Any], str]] = [
     (sweep.NavigationStudy, {"scenarios": [3]}, r"scenarios\[0\] must be a Scenario"),
     (sweep.NavigationStudy, {"scenarios": C2, "scenario": sweep_functions.crossing}, "scenarios must be given, or"),
     (sweep.NavigationStudy, {"scenario": 3}, "scenario must be callable"),
-    (sweep.NavigationStudy, {"scenarios": C2, "law": 3}, "law must be a VirtualForceField"),
+    (sweep.NavigationStudy, {"scenarios": C2, "law": 3}, "law must be a Law or None"),
     (sweep.NavigationStudy, {"scenarios": [C2], "names": ["a", "b"]}, "names must be 1"),
     (sweep.NavigationStudy, {"scenarios": [C2, C2], "names": ["a", "a"]}, "names must be different"),
     (sweep.NavigationStudy, {"scenarios": {"a": C2}, "names": ["a"]}, "names must be None"),
@@ -366,3 +366,17 @@ def test_file_in_the_place_of_the_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("", encoding="utf-8")
     with pytest.raises(InvalidParameterError, match="out must be a folder or not exist"):
         sweep.run(sweep.Grid([SPEED]), IMPACT, out=tmp_path / "out")
+
+
+def test_any_law_is_swept_over_its_own_gains() -> None:
+    study = sweep.NavigationStudy(scenarios={"c1": scenarios.configuration("c1")}, law=nav.Masoud())
+    axes = [sweep.Axis(name="detour_gain", values=[20.0, 36.0]), sweep.Axis(name="attractive_gain", values=[4.0, 5.0])]
+    result = sweep.run(sweep.Grid(axes), study)
+    assert {axis.name: axis.unit for axis in result.axes} == {"detour_gain": "N/m", "attractive_gain": "N/m"}
+    for row, arrival in enumerate(result["arrival_time"].tolist()):
+        law = nav.Masoud(
+            detour_gain=float(result["detour_gain"][row]), attractive_gain=float(result["attractive_gain"][row])
+        )
+        assert arrival == nav.simulate(scenarios.configuration("c1"), law).arrival_time
+    with pytest.raises(InvalidParameterError, match="gain_ratio"):
+        sweep.run(sweep.Grid([sweep.Axis(name="gain_ratio", values=[0.1])]), study)

@@ -1,0 +1,289 @@
+"""Print the comparison of all laws, or write it into the page on validation.
+
+``python docs/measure_laws.py`` prints, ``--write`` replaces what stands between the two marks of
+docs/validation.md. Everything is computed anew, one to two minutes on two cores; only the cost of
+a control step depends on the machine. What is under way is told on the standard error.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.navigation.statistics import Mean, Share
+
+PAGE = Path(__file__).resolve().parent / "validation.md"
+MARKS = ("<!-- tables of measure_laws.py begin -->\n", "<!-- tables of measure_laws.py end -->\n")
+
+NEW = "New field"
+LAWS: dict[str, nav.Law] = {
+    NEW: nav.VirtualForceField(),
+    "Khatib": nav.Khatib(),
+    "Borenstein & Koren": nav.BorensteinKoren(),
+    "Masoud": nav.Masoud(),
+    "Ge & Cui": nav.GeCui(),
+    "Velocity obstacle": nav.VelocityObstacle(),
+    "ORCA": nav.OptimalReciprocalCollisionAvoidance(),
+    "Extended RRT": nav.RapidlyExploringRandomTree(),
+    "Field D*": nav.FieldDStar(),
+}
+ABLATIONS: dict[str, nav.Law] = {
+    f"{NEW}, without detour": nav.VirtualForceField(detour_gain=0.0),
+    f"{NEW}, without repulsive": nav.VirtualForceField(repulsive_gain=0.0),
+    f"{NEW}, without stabilizing": nav.VirtualForceField(stabilizing="off"),
+}
+# The source names no gains for these: the search of its appendix C over these configurations.
+WITHOUT_GAINS = ("Khatib", "Borenstein & Koren")
+CONFIGURATIONS = ("c1", "c2", "c4")
+# What does not act with the default selection of velocities is not searched.
+HELD: dict[str, dict[str, tuple[float, float]]] = {
+    "Velocity obstacle": {"risk_weight": (1.0, 1.0), "sector": (1.0, 1.0)}
+}
+EVALUATIONS = 200
+CROWDS = (3, 12)
+TRAINING = range(1_000_000, 1_000_004)
+TEST = range(1000)
+# Planners on trees and grids take some hundred times as long: the first of the test episodes.
+SLOW = ("Extended RRT", "Field D*")
+SLOW_TEST = TEST[:200]
+# Laws that keep their defaults; () tunes all, which takes a quarter of an hour more.
+UNTUNED = SLOW
+SCENES = ("c1", "c2", "c3", "c4", "parallel_human", "unpredictable_human")
+DRAWS = range(20)
+TIMED, REPEATS = 8, 3
+Tuned = tuple[nav.Law, float, float]
+Crowds = tuple[nav.ArenaResult, nav.ArenaResult]
+
+
+def say(*words: object) -> None:
+    """Tell what is under way."""
+    print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
+
+
+def line(*cells: object) -> str:
+    """Return a row of a table."""
+    return f"| {' | '.join(str(cell) for cell in cells)} |"
+
+
+def head(*cells: str) -> list[str]:
+    """Return the first two lines of a table."""
+    return [line(*cells), "|---" * len(cells) + "|"]
+
+
+def parameters(law: nav.Law, varied: Sequence[str]) -> str:
+    """Return parameters by name."""
+    return ", ".join(f"{name} {getattr(law, name):.4g}" for name in varied)
+
+
+def traffic(obstacles: int, seeds: range) -> list[nav.Scenario]:
+    """Return random crossing obstacles, one scene for each seed."""
+    return [scenarios.random_traffic(obstacles, seed=seed) for seed in seeds]
+
+
+def source_searches() -> dict[str, nav.GainSearch]:
+    """Return the search of appendix C for the laws whose gains the source does not give."""
+    scenes = [scenarios.configuration(name) for name in CONFIGURATIONS]
+    return {name: nav.optimize_gains(scenes, LAWS[name]) for name in WITHOUT_GAINS}
+
+
+def source_table(searches: dict[str, nav.GainSearch]) -> Iterator[str]:
+    """Yield what the search of appendix C finds for them."""
+    yield from head("", "grid", "gain sets", "best found", "H c1, c2, c4", "mean H", "each alone, at most 1 % less")
+    for name, search in searches.items():
+        flat, names = search.flatness(), search.best.GAIN_NAMES
+        ranges = (f"{gain} {a:.3g} to {b:.3g}" for gain, a, b in zip(names, flat.low, flat.high, strict=True))
+        yield line(
+            name,
+            f"{len(search.history)} of {' x '.join(map(str, search.settings.grid))}",
+            f"{search.evaluations:,}",
+            parameters(search.best, names),
+            ", ".join(f"{score:.3f}" for score in search.best_performance),
+            f"{search.best_value:.4f}",
+            ", ".join(ranges),
+        )
+    yield ""
+
+
+def tuned() -> dict[str, Tuned]:
+    """Return the laws tuned with the same budget, two at a time."""
+    names = [name for name in LAWS if name not in UNTUNED]
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(names, pool.map(tune, names), strict=True))
+
+
+def tune(name: str) -> Tuned:
+    """Return a law tuned, with its mean H in training before and after."""
+    scenes = [scene for obstacles in CROWDS for scene in traffic(obstacles, TRAINING)]
+    law = LAWS[name]
+    before = float(nav.simulate_batch(scenes, law, stop_on_contact=True, threads=1).performance_total.mean())
+    search = nav.optimize_gains(
+        scenes, law, method="cma_es", evaluations=EVALUATIONS, bounds=HELD.get(name), seed=0, threads=1
+    )
+    say("tuned", name)
+    # Nobody would give up defaults for something worse.
+    return (search.best, before, search.best_value) if search.best_value > before else (law, before, before)
+
+
+def tuned_table(found: dict[str, Tuned]) -> Iterator[str]:
+    """Yield the tuned parameters."""
+    yield from head("", "tuned", "mean H in training, default", "tuned")
+    for name, (law, before, after) in found.items():
+        bounds = dict(law.GAIN_BOUNDS) | HELD.get(name, {})
+        varied = [gain for gain in law.GAIN_NAMES if bounds[gain][0] < bounds[gain][1]]
+        yield line(name, parameters(law, varied), f"{before:.4f}", f"{after:.4f}")
+    yield ""
+
+
+def outcome(result: nav.ArenaResult, row: int, runs: np.ndarray) -> str:
+    """Return time, clearance and H of one law in one scene, or what went wrong."""
+    ends = result.outcome[row, runs]
+    arrived = ends == "arrived"
+    words = ""
+    for end, shown in (("collided", "contact"), ("timed_out", "timed out"), ("stopped", "stopped")):
+        count = int((ends == end).sum())
+        if count == len(ends):
+            return shown
+        words += f", {shown} in {count} of {len(ends)}" if count else ""
+    values = (each[row, runs] for each in (result.arrival_time, result.min_clearance, result.performance_total))
+    seconds, clearance, score = values
+    return f"{seconds[arrived].mean():.2f}; {clearance[arrived].mean():.3f}; {score.mean():.3f}{words}"
+
+
+def scene_table(laws: dict[str, nav.Law]) -> Iterator[str]:
+    """Yield every law in the scenes of the source."""
+    say("scenes of the source")
+    result = nav.arena(laws, {name: scenarios.configuration(name) for name in SCENES}, seeds=DRAWS)
+    yield from head("", *(name.replace("_human", " person") for name in SCENES))
+    for row, name in enumerate(laws):
+        yield line(name, *(outcome(result, row, result.scenario == index) for index in range(len(SCENES))))
+    yield ""
+
+
+def percent(share: Share) -> str:
+    """Return a share in percent with its interval."""
+    return f"{100 * share.value:.1f} ({100 * share.low:.1f} to {100 * share.high:.1f})"
+
+
+def shown(mean: Mean, digits: int) -> str:
+    """Return a mean with its interval."""
+    if math.isnan(mean.value):
+        return "-"
+    return f"{mean.value:.{digits}f} ({mean.low:.{digits}f} to {mean.high:.{digits}f})"
+
+
+def cost(law: nav.Law, scenes: Sequence[nav.Scenario]) -> float:
+    """Return microseconds of one core for a control step: the least of some timed batches."""
+    best = math.inf
+    for _ in range(REPEATS):
+        begin = time.process_time()
+        steps = int(nav.simulate_batch(scenes, law, threads=1).force_evaluations.sum())
+        best = min(best, (time.process_time() - begin) / steps)
+    return 1e6 * best
+
+
+def is_slow(name: str) -> bool:
+    """Return whether a law is run in the first test episodes only."""
+    return name.removesuffix(", tuned") in SLOW
+
+
+def crowd(laws: dict[str, nav.Law], obstacles: int, seeds: range) -> nav.ArenaResult:
+    """Return laws among the same random obstacles."""
+    names = list(laws)
+    scenes = {str(seed): scene for seed, scene in zip(seeds, traffic(obstacles, seeds), strict=True)}
+    return nav.arena(laws, scenes, progress=lambda done, _: say("crowds of", obstacles, "-", names[done - 1]))
+
+
+def crowds(laws: dict[str, nav.Law], obstacles: int) -> Crowds:
+    """Return the quick laws in all test episodes, and the slow ones with the new field in the first of them."""
+    quick = {name: law for name, law in laws.items() if not is_slow(name)}
+    beside = {name: law for name, law in laws.items() if is_slow(name) or name in (NEW, f"{NEW}, tuned")}
+    return crowd(quick, obstacles, TEST), crowd(beside, obstacles, SLOW_TEST)
+
+
+def crowd_table(laws: dict[str, nav.Law], both: Crowds, obstacles: int) -> Iterator[str]:
+    """Yield shares and means of every law among random obstacles."""
+    timed = traffic(obstacles, TEST[:TIMED])
+    titles = ("success (%)", "contact (%)", "while moving (%)", "T (s)", "clearance (m)", "E (J)", "H", "step (µs)")
+    yield from head("", "runs", *titles)
+    for name in laws:
+        each = both[is_slow(name)].standing(name)
+        yield line(
+            name,
+            each.success.runs,
+            *(percent(share) for share in (each.success, each.contact, each.moving_contact)),
+            shown(each.arrival_time, 2),
+            shown(each.min_clearance, 3),
+            shown(each.energy, 2),
+            shown(each.performance_total, 3),
+            f"{cost(laws[name], timed):.2f}",
+        )
+    yield ""
+
+
+def paired_table(laws: dict[str, nav.Law], results: Sequence[Crowds]) -> Iterator[str]:
+    """Yield each law beside the new field with its own kind of parameters, episode by episode."""
+    titles = [title for n in CROWDS for title in (f"contacts, {n}", f"p, {n}", f"difference of H, {n}")]
+    yield from head("", *titles)
+    for name in laws:
+        other = f"{NEW}, tuned" if name.endswith(", tuned") else NEW
+        if name == other:
+            continue
+        cells = []
+        for both in results:
+            result = both[is_slow(name)]
+            touched = result.contacts_compared(name, other)
+            chance = f"{touched.p_value:.1g}" if touched.p_value >= 1e-4 else "< 1e-4"
+            cells += [f"{touched.only_first} : {touched.only_second}", chance, shown(result.difference(name, other), 3)]
+        yield line(name, *cells)
+    yield ""
+
+
+def page() -> str:
+    """Return the tables."""
+    begin = time.monotonic()
+    say("search of appendix C")
+    searches = source_searches()
+    found = tuned()
+    laws = LAWS | ABLATIONS
+    laws |= {f"{name}, tuned": law for name, (law, _, _) in found.items()}
+    results = [crowds(laws, obstacles) for obstacles in CROWDS]
+    parts = [
+        (
+            "Search of appendix C for the laws whose gains the source does not give.",
+            source_table(searches),
+        ),
+        (f"Parameters after {EVALUATIONS} evaluations of CMA-ES, the same for every law.", tuned_table(found)),
+        ("Scenes of the source: T (s); least clearance of the surfaces (m); H.", scene_table(laws)),
+    ]
+    for obstacles, result in zip(CROWDS, results, strict=True):
+        words = f"Crowds of {obstacles}: shares and means with 95 % intervals."
+        parts.append((words, crowd_table(laws, result, obstacles)))
+    words = "Each law beside the new field, default beside default and tuned beside tuned, in the same episodes."
+    parts.append((words, paired_table(laws, results)))
+    lines = [entry for words, rows in parts for entry in (words, "", *rows)]
+    say(f"{(time.monotonic() - begin) / 60:.1f} minutes")
+    return "\n" + "\n".join(lines) + "\n"
+
+
+def written(text: str) -> str:
+    """Return the tables that the page holds."""
+    return text.split(MARKS[0])[1].split(MARKS[1])[0]
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] not in ([], ["--write"]):
+        sys.exit("usage: python docs/measure_laws.py [--write]")
+    tables = page()
+    if sys.argv[1:]:
+        before, _, rest = PAGE.read_text(encoding="utf-8").partition(MARKS[0])
+        PAGE.write_text(before + MARKS[0] + tables + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
+    else:
+        print(tables)

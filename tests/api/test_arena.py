@@ -1,0 +1,329 @@
+"""The arena: its table against the batch, standings, comparisons, costs and what it refuses."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from api.spoiled import names
+from hrsafety import InvalidParameterError, ShapeError, scenarios
+from hrsafety import navigation as nav
+from hrsafety.navigation.arena import Metric
+from hrsafety.navigation.statistics import Mean, compare_paired, mean_interval, wilson
+
+LAWS: dict[str, nav.Law] = {
+    "field": nav.VirtualForceField(),
+    "masoud": nav.Masoud(),
+    "borenstein_koren": nav.BorensteinKoren(attractive_gain=4.0, repulsive_gain=0.7),  # too weak
+    "reciprocal": nav.OptimalReciprocalCollisionAvoidance(),
+    "tree": nav.RapidlyExploringRandomTree(draws=200),
+}
+CROWDS = {f"crowd {seed}": scenarios.random_traffic(4, seed=seed) for seed in range(12)}
+SCENES = {"c1": scenarios.configuration("c1"), "c4": scenarios.configuration("c4"), **CROWDS}
+C1 = SCENES["c1"]
+SEEDS = (3, 2**64 - 1)
+COLUMNS = {
+    "outcome": "outcome",
+    "arrival_time": "arrival_time",
+    "energy": "energy",
+    "path_length": "path_length",
+    "min_clearance": "min_clearance",
+    "min_distance": "min_distance",
+    "moving_contacts": "contacts_moving",
+    "performance_total": "performance_total",
+}
+
+
+@pytest.fixture(scope="module")
+def result() -> nav.ArenaResult:
+    return nav.arena(LAWS, SCENES, seeds=SEEDS)
+
+
+def assert_same(one: nav.ArenaResult, other: nav.ArenaResult) -> None:
+    for field in fields(nav.ArenaResult):
+        first, second = getattr(one, field.name), getattr(other, field.name)
+        if isinstance(first, np.ndarray):
+            assert first.dtype == second.dtype, field.name
+            assert first.tobytes() == second.tobytes(), field.name
+        else:
+            assert first == second
+
+
+# ---- the table ------------------------------------------------------------------------------
+
+
+def test_rows_are_laws_and_columns_are_scenarios_with_seeds(result: nav.ArenaResult) -> None:
+    assert result.laws == tuple(LAWS)
+    assert result.scenario_names == tuple(SCENES)
+    assert result.scenario.tolist() == np.repeat(np.arange(len(SCENES)), 2).tolist()
+    assert result.seed.tolist() == list(SEEDS) * len(SCENES)
+    for name in COLUMNS:
+        assert getattr(result, name).shape[:2] == (len(LAWS), 2 * len(SCENES))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_column_has_the_bits_of_the_batch(result: nav.ArenaResult, law: str) -> None:
+    episodes = [replace(scene, seed=seed) for scene in SCENES.values() for seed in SEEDS]
+    table = nav.simulate_batch(episodes, LAWS[law])
+    for name, column in COLUMNS.items():
+        assert getattr(result, name)[result.laws.index(law)].tobytes() == getattr(table, column).tobytes(), name
+
+
+def test_episode_is_that_of_its_scenario_and_seed(result: nav.ArenaResult) -> None:
+    row, column = result.laws.index("tree"), 7
+    scene = SCENES[result.scenario_names[result.scenario[column]]]
+    run = nav.simulate(replace(scene, seed=int(result.seed[column])), LAWS["tree"])
+    assert run.outcome == result.outcome[row, column]
+    assert run.path_length == result.path_length[row, column]
+
+
+def test_without_seeds_each_scenario_keeps_its_own() -> None:
+    own = nav.arena({"tree": LAWS["tree"]}, list(CROWDS.values()))
+    assert own.scenario_names == tuple(str(index) for index in range(len(CROWDS)))
+    assert own.seed.tolist() == [scene.seed for scene in CROWDS.values()]
+    again = nav.arena({"tree": LAWS["tree"]}, [CROWDS["crowd 5"]], seeds=[5])
+    assert again.path_length[0, 0] == own.path_length[0, 5]
+
+
+def test_no_number_of_threads_changes_a_bit(result: nav.ArenaResult) -> None:
+    for threads in (1, 2):
+        assert_same(result, nav.arena(LAWS, SCENES, seeds=SEEDS, threads=threads))
+
+
+def test_options_are_those_of_the_batch() -> None:
+    options: dict[str, Any] = {"weights": (1.0, 0.0, 0.0), "integrator": "rk4", "step": 0.005}
+    table = nav.simulate_batch([C1], LAWS["masoud"], **options)
+    found = nav.arena({"masoud": LAWS["masoud"]}, [C1], **options)
+    assert found.performance_total[0].tobytes() == table.performance_total.tobytes()
+    assert found.arrival_time[0].tobytes() == table.arrival_time.tobytes()
+    assert found.arrival_time[0, 0] != nav.arena({"masoud": LAWS["masoud"]}, [C1]).arrival_time[0, 0]
+
+
+def test_progress_counts_the_laws() -> None:
+    calls: list[tuple[int, int]] = []
+    nav.arena(LAWS, [C1], progress=lambda *call: calls.append(call))
+    assert calls == [(done, len(LAWS)) for done in range(1, len(LAWS) + 1)]
+
+
+def test_scenarios_with_different_numbers_of_obstacles_share_a_table(result: nav.ArenaResult) -> None:
+    count = np.array([len(scene.obstacles) for scene in SCENES.values()])[result.scenario]
+    given = np.isfinite(result.min_distance).sum(axis=2)
+    assert (given == count).all()
+
+
+# ---- standings and differences --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_standing_counts_the_episodes(result: nav.ArenaResult, law: str) -> None:
+    row = result.laws.index(law)
+    standing = result.standing(law)
+    arrived, touched = result.outcome[row] == "arrived", result.outcome[row] == "collided"
+    assert standing.law == law
+    assert standing.success == wilson(int(arrived.sum()), len(arrived))
+    assert standing.contact == wilson(int(touched.sum()), len(arrived))
+    assert standing.moving_contact == wilson(int((result.moving_contacts[row] > 0).sum()), len(arrived))
+    assert standing.moving_contact.count <= standing.contact.count
+    for name in ("arrival_time", "energy", "path_length"):
+        assert getattr(standing, name) == mean_interval(getattr(result, name)[row, arrived])
+    for name in ("min_clearance", "performance_total"):
+        assert getattr(standing, name) == mean_interval(getattr(result, name)[row])
+        assert getattr(standing, name).runs == len(arrived)
+
+
+def test_standings_are_in_the_order_of_the_laws(result: nav.ArenaResult) -> None:
+    assert [standing.law for standing in result.standings()] == list(LAWS)
+    assert result.standings() == [result.standing(law) for law in LAWS]
+
+
+def test_laws_do_differ_here(result: nav.ArenaResult) -> None:
+    standings = {standing.law: standing for standing in result.standings()}
+    assert standings["borenstein_koren"].contact.count > standings["reciprocal"].contact.count
+    assert standings["reciprocal"].success.value > 0.5
+
+
+def test_difference_is_taken_episode_by_episode(result: nav.ArenaResult) -> None:
+    one, other = result.laws.index("field"), result.laws.index("borenstein_koren")
+    both = (result.outcome[[one, other]] == "arrived").all(axis=0)
+    assert 0 < both.sum() < len(both)
+    metrics: tuple[Metric, ...] = ("arrival_time", "energy", "path_length")
+    for metric in metrics:
+        values = getattr(result, metric)
+        expected = mean_interval(values[one, both] - values[other, both])
+        assert result.difference("field", "borenstein_koren", metric) == expected
+    others: tuple[Metric, ...] = ("min_clearance", "performance_total")
+    for metric in others:
+        values = getattr(result, metric)
+        assert result.difference("field", "borenstein_koren", metric) == mean_interval(values[one] - values[other])
+    there, back = result.difference("field", "borenstein_koren"), result.difference("borenstein_koren", "field")
+    assert there.value == -back.value
+    assert result.difference("field", "field").value == 0.0
+
+
+def test_contacts_are_compared_in_the_same_episodes(result: nav.ArenaResult) -> None:
+    touched = result.outcome == "collided"
+    one, other = result.laws.index("borenstein_koren"), result.laws.index("reciprocal")
+    found = result.contacts_compared("borenstein_koren", "reciprocal")
+    assert found.only_first == int((touched[one] & ~touched[other]).sum())
+    assert found.only_second == int((touched[other] & ~touched[one]).sum())
+    assert found == compare_paired(touched[one], touched[other])
+    back = result.contacts_compared("reciprocal", "borenstein_koren")
+    assert (back.only_first, back.only_second, back.p_value) == (found.only_second, found.only_first, found.p_value)
+
+
+def test_law_that_never_arrives_has_no_mean_time() -> None:
+    blocked = nav.Scenario(
+        start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=(nav.Disc(center=(2.0, 0.0), radius=0.3),), time_limit=3.0
+    )
+    standing = nav.arena({"field": LAWS["field"]}, [blocked]).standing("field")
+    assert standing.success.count == 0
+    assert standing.arrival_time.runs == 0
+    assert np.isnan([standing.arrival_time.value, standing.arrival_time.low, standing.energy.high]).all()
+    assert standing.min_clearance.runs == 1
+
+
+def test_scenarios_without_obstacles_have_no_clearance() -> None:
+    standing = nav.arena({"field": LAWS["field"]}, [nav.Scenario(start=(4, 0), goal=(0, 0))]).standing("field")
+    assert standing.success.count == 1
+    assert standing.min_clearance.runs == 0
+
+
+def test_cost_of_a_step_is_a_time() -> None:
+    for law in LAWS.values():
+        cost = nav.step_cost(law, SCENES["crowd 1"], repeats=2)
+        assert isinstance(cost, float)
+        assert 0.0 < cost < np.inf
+
+
+# ---- what is refused ------------------------------------------------------------------------
+
+FIELD: dict[str, Any] = {"field": nav.VirtualForceField()}
+BAD_CALLS: list[tuple[dict[str, Any], str]] = [
+    ({"laws": {}}, "laws"),
+    ({"laws": None}, "laws"),
+    ({"laws": [nav.Masoud()]}, "laws"),
+    ({"laws": nav.Masoud()}, "laws"),
+    ({"laws": {1: nav.Masoud()}}, "laws"),
+    ({"laws": {"a": None}}, "laws['a']"),
+    ({"laws": {"a": nav.Masoud}}, "laws['a']"),
+    ({"scenarios": []}, "scenarios"),
+    ({"scenarios": {}}, "scenarios"),
+    ({"scenarios": None}, "scenarios"),
+    ({"scenarios": C1}, "scenarios"),
+    ({"scenarios": "c1"}, "scenarios"),
+    ({"scenarios": [C1, None]}, "scenarios['1']"),
+    ({"scenarios": {"a": "c1"}}, "scenarios['a']"),
+    ({"seeds": []}, "seeds"),
+    ({"seeds": 5}, "seeds"),
+    ({"seeds": "12"}, "seeds"),
+    ({"seeds": [0, -1]}, "seeds[1]"),
+    ({"seeds": [1.0]}, "seeds[0]"),
+    ({"seeds": [True]}, "seeds[0]"),
+    ({"seeds": [2**64]}, "seed"),
+    ({"weights": (1, 1, 1)}, "weights"),
+    ({"integrator": "euler"}, "integrator"),
+    ({"step": 0.0}, "scenarios[0].step"),
+    ({"hold": 1}, "hold"),
+    ({"threads": 0}, "threads"),
+    ({"progress": 1}, "progress"),
+]
+
+
+@pytest.mark.parametrize(("change", "argument"), BAD_CALLS)
+def test_bad_call_is_refused_by_name(change: dict[str, Any], argument: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.arena(**({"laws": FIELD, "scenarios": [C1]} | change))
+    assert names(caught.value) == argument
+
+
+def test_unknown_laws_and_metrics_are_refused(result: nav.ArenaResult) -> None:
+    calls: list[tuple[Any, str]] = [
+        (lambda: result.standing("unknown"), "law"),
+        (lambda: result.difference("unknown", "field"), "first"),
+        (lambda: result.difference("field", "unknown"), "second"),
+        (lambda: result.difference("field", "masoud", "outcome"), "metric"),  # type: ignore[arg-type]  # refused
+        (lambda: result.contacts_compared("field", None), "second"),  # type: ignore[arg-type]  # refused
+    ]
+    for call, argument in calls:
+        with pytest.raises(InvalidParameterError) as caught:
+            call()
+        assert names(caught.value) == argument
+
+
+@pytest.mark.parametrize(
+    ("arguments", "argument"),
+    [((None, C1), "law"), ((nav.Masoud(), None), "scenario"), ((nav.Masoud(), C1, 0), "repeats")],
+)
+def test_cost_of_nothing_is_refused(arguments: Any, argument: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.step_cost(*arguments[:2], repeats=arguments[2] if len(arguments) > 2 else 1)
+    assert names(caught.value) == argument
+
+
+# ---- statistics -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("count", "runs"), [(0, 1), (1, 1), (0, 200), (200, 200), (7, 200), (131, 1000), (1, 3)])
+def test_share_has_the_interval_of_wilson(count: int, runs: int) -> None:
+    share = wilson(count, runs)
+    peer = stats.binomtest(count, runs).proportion_ci(0.95, method="wilson")
+    assert (share.count, share.runs, share.value) == (count, runs, count / runs)
+    assert (share.low, share.high) == pytest.approx((peer.low, peer.high), abs=1e-13)
+
+
+@pytest.mark.parametrize(("first", "second"), [(0, 0), (1, 0), (6, 0), (5, 5), (3, 12), (40, 61), (900, 1100)])
+def test_paired_outcomes_have_the_exact_p_value(first: int, second: int) -> None:
+    generator = np.random.default_rng(1)
+    order = generator.permutation(first + second + 50)
+    one = np.repeat([True, False, True, False], [first, second, 20, 30])[order]
+    other = np.repeat([False, True, True, False], [first, second, 20, 30])[order]
+    found = compare_paired(one, other)
+    assert (found.only_first, found.only_second) == (first, second)
+    peer = stats.binomtest(first, first + second).pvalue if first + second else 1.0
+    assert found.p_value == pytest.approx(peer, rel=1e-9)
+
+
+def test_interval_of_a_mean_is_a_bootstrap() -> None:
+    values = np.random.default_rng(2).gamma(2.0, 1.0, 60)
+    found = mean_interval(values)
+    assert found == mean_interval(values.tolist())
+    assert found.value == values.mean()
+    peer = stats.bootstrap(
+        (values,), np.mean, n_resamples=20000, method="percentile", rng=np.random.default_rng(3)
+    ).confidence_interval
+    # 2000 resamples know the ends of the interval to a few percent of its width.
+    assert (found.low, found.high) == pytest.approx((peer.low, peer.high), abs=0.06 * (peer.high - peer.low))
+    assert mean_interval(values, seed=1) != found
+    # More draws of the same kind: a narrower interval, by the root of their number.
+    longer = mean_interval(np.tile(values, 16))
+    assert longer.high - longer.low == pytest.approx((found.high - found.low) / 4.0, rel=0.1)
+
+
+def test_interval_of_a_mean_covers_it_as_often_as_it_says() -> None:
+    generator = np.random.default_rng(4)
+    found = [mean_interval(generator.normal(1.0, 2.0, 40), resamples=400) for _ in range(400)]
+    covered = sum(each.low <= 1.0 <= each.high for each in found)
+    # The percentile bootstrap of 40 values covers a little less than 95 %.
+    assert 0.90 * 400 < covered < 0.98 * 400
+
+
+def test_interval_of_one_value_is_the_value() -> None:
+    assert mean_interval([2.5]) == Mean(1, 2.5, 2.5, 2.5)
+    assert mean_interval([]).runs == 0
+
+
+def test_statistics_refuse_what_is_no_sample() -> None:
+    for count, runs, argument in ((0, 0, "runs"), (3, 2, "count"), (-1, 2, "count"), (1.0, 2, "count")):
+        with pytest.raises(InvalidParameterError) as caught:
+            wilson(count, runs)  # type: ignore[arg-type]  # refused
+        assert names(caught.value) == argument
+    with pytest.raises(ShapeError):
+        compare_paired(np.array([True]), np.array([True, False]))
+    with pytest.raises(ShapeError):
+        mean_interval(3.0)
+    with pytest.raises(InvalidParameterError):
+        mean_interval([1.0], resamples=0)
