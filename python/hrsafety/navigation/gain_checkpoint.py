@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import io
 import json
-import zipfile
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
@@ -72,6 +70,8 @@ class Checkpoint:
         """
         if not self.path.exists():
             return None
+        import zipfile
+
         try:
             with self.path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
                 about: dict[str, Any] = json.loads(archive["about"].tobytes())
@@ -118,5 +118,7 @@ def array_words(array: np.ndarray[Any, np.dtype[Any]]) -> str:
     """Return the values of a small array, shape and digest of a large one."""
     if array.size <= SHOWN:
         return repr(array.tolist())
+    import hashlib
+
     digest = hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
     return f"array of shape {array.shape}, digest {digest[:16]}"
