@@ -1,7 +1,7 @@
 """Print the comparison of all laws, or write it into the page on validation.
 
 ``python docs/measure_laws.py`` prints, ``--write`` replaces what stands between the two marks of
-docs/validation.md. Everything is computed anew, one to two minutes on two cores; only the cost of
+docs/validation.md. Everything is computed anew, two to three minutes on two cores; only the cost of
 a control step depends on the machine. What is under way is told on the standard error.
 """
 
@@ -51,16 +51,12 @@ EVALUATIONS = 200
 CROWDS = (3, 12)
 TRAINING = range(1_000_000, 1_000_004)
 TEST = range(1000)
-# Planners on trees and grids take some hundred times as long: the first of the test episodes.
-SLOW = ("Extended RRT", "Field D*")
-SLOW_TEST = TEST[:200]
-# Laws that keep their defaults; () tunes all, which takes a quarter of an hour more.
-UNTUNED = SLOW
+# Planners on trees and grids keep their defaults; () tunes them too, which takes a quarter of an hour more.
+UNTUNED = ("Extended RRT", "Field D*")
 SCENES = ("c1", "c2", "c3", "c4", "parallel_human", "unpredictable_human")
 DRAWS = range(20)
 TIMED, REPEATS = 8, 3
 Tuned = tuple[nav.Law, float, float]
-Crowds = tuple[nav.ArenaResult, nav.ArenaResult]
 
 
 def say(*words: object) -> None:
@@ -189,32 +185,20 @@ def cost(law: nav.Law, scenes: Sequence[nav.Scenario]) -> float:
     return 1e6 * best
 
 
-def is_slow(name: str) -> bool:
-    """Return whether a law is run in the first test episodes only."""
-    return name.removesuffix(", tuned") in SLOW
-
-
-def crowd(laws: dict[str, nav.Law], obstacles: int, seeds: range) -> nav.ArenaResult:
-    """Return laws among the same random obstacles."""
+def crowds(laws: dict[str, nav.Law], obstacles: int) -> nav.ArenaResult:
+    """Return all laws among the same random obstacles."""
     names = list(laws)
-    scenes = {str(seed): scene for seed, scene in zip(seeds, traffic(obstacles, seeds), strict=True)}
+    scenes = {str(seed): scene for seed, scene in zip(TEST, traffic(obstacles, TEST), strict=True)}
     return nav.arena(laws, scenes, progress=lambda done, _: say("crowds of", obstacles, "-", names[done - 1]))
 
 
-def crowds(laws: dict[str, nav.Law], obstacles: int) -> Crowds:
-    """Return the quick laws in all test episodes, and the slow ones with the new field in the first of them."""
-    quick = {name: law for name, law in laws.items() if not is_slow(name)}
-    beside = {name: law for name, law in laws.items() if is_slow(name) or name in (NEW, f"{NEW}, tuned")}
-    return crowd(quick, obstacles, TEST), crowd(beside, obstacles, SLOW_TEST)
-
-
-def crowd_table(laws: dict[str, nav.Law], both: Crowds, obstacles: int) -> Iterator[str]:
+def crowd_table(laws: dict[str, nav.Law], result: nav.ArenaResult, obstacles: int) -> Iterator[str]:
     """Yield shares and means of every law among random obstacles."""
     timed = traffic(obstacles, TEST[:TIMED])
     titles = ("success (%)", "contact (%)", "while moving (%)", "T (s)", "clearance (m)", "E (J)", "H", "step (µs)")
     yield from head("", "runs", *titles)
     for name in laws:
-        each = both[is_slow(name)].standing(name)
+        each = result.standing(name)
         yield line(
             name,
             each.success.runs,
@@ -228,7 +212,7 @@ def crowd_table(laws: dict[str, nav.Law], both: Crowds, obstacles: int) -> Itera
     yield ""
 
 
-def paired_table(laws: dict[str, nav.Law], results: Sequence[Crowds]) -> Iterator[str]:
+def paired_table(laws: dict[str, nav.Law], results: Sequence[nav.ArenaResult]) -> Iterator[str]:
     """Yield each law beside the new field with its own kind of parameters, episode by episode."""
     titles = [title for n in CROWDS for title in (f"contacts, {n}", f"p, {n}", f"difference of H, {n}")]
     yield from head("", *titles)
@@ -237,8 +221,7 @@ def paired_table(laws: dict[str, nav.Law], results: Sequence[Crowds]) -> Iterato
         if name == other:
             continue
         cells = []
-        for both in results:
-            result = both[is_slow(name)]
+        for result in results:
             touched = result.contacts_compared(name, other)
             chance = f"{touched.p_value:.1g}" if touched.p_value >= 1e-4 else "< 1e-4"
             cells += [f"{touched.only_first} : {touched.only_second}", chance, shown(result.difference(name, other), 3)]
