@@ -1,6 +1,6 @@
 //! Scenes that the benches share; no bench uses all of them.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each bench uses its part")]
 
 use vff_core::forces::side::SideRules;
 use vff_core::forces::stabilizing::{Cap, Stabilizing};

@@ -42,10 +42,15 @@ impl Strip {
             },
         };
         Self {
-            cells: vec![cell; sets],
-            distances: vec![f64::NAN; sets * obstacles],
+            cells: filled(cell, sets),
+            distances: filled(f64::NAN, sets * obstacles),
         }
     }
+}
+
+/// A vector of one value, written by all cores: for many runs it is tens of megabytes.
+fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
+    rayon::iter::repeat_n(value, count).collect()
 }
 
 /// Columns of a batch; row `g * scenarios + s` is gain set `g` in scenario `s`.
@@ -174,7 +179,7 @@ impl Source<'_> {
         if width == 0 {
             return Vec::new();
         }
-        let mut matrix = vec![f64::NAN; self.rows * width];
+        let mut matrix = filled(f64::NAN, self.rows * width);
         let rows = matrix.par_chunks_exact_mut(width).enumerate();
         rows.for_each(|(row, target)| {
             let (_, distances) = self.of_row(row);
