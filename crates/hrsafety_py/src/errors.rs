@@ -3,6 +3,7 @@
 use impact_core::error::{self as impact, ImpactError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
+use reactive_core::error::{self as reactive, ReactiveError};
 use vff_core::error::{Given, NavigationError};
 
 pyo3::import_exception!(hrsafety.errors, InvalidParameterError);
@@ -14,6 +15,8 @@ pub enum CoreError {
     Navigation(NavigationError),
     /// From the impact core.
     Impact(ImpactError),
+    /// From the reactive core.
+    Reactive(ReactiveError),
 }
 
 /// Result of a binding function.
@@ -31,11 +34,18 @@ impl From<ImpactError> for CoreError {
     }
 }
 
+impl From<ReactiveError> for CoreError {
+    fn from(error: ReactiveError) -> Self {
+        Self::Reactive(error)
+    }
+}
+
 impl From<CoreError> for PyErr {
     fn from(error: CoreError) -> Self {
         match error {
             CoreError::Navigation(error) => navigation_exception(error),
             CoreError::Impact(error) => impact_exception(error),
+            CoreError::Reactive(error) => reactive_exception(error),
         }
     }
 }
@@ -74,5 +84,30 @@ fn impact_exception(error: ImpactError) -> PyErr {
         },
         ImpactError::Interrupted => PyKeyboardInterrupt::new_err(()),
         other @ ImpactError::Threads { .. } => SimulationError::new_err(other.to_string()),
+    }
+}
+
+fn reactive_exception(error: ReactiveError) -> PyErr {
+    match error {
+        ReactiveError::InvalidParameter {
+            name,
+            requirement,
+            value,
+        } => match value {
+            reactive::Given::Number(number) => {
+                InvalidParameterError::new_err((name, requirement, number))
+            }
+            reactive::Given::Pair([x, y]) => {
+                InvalidParameterError::new_err((name, requirement, (x, y)))
+            }
+            reactive::Given::Count(count) => {
+                InvalidParameterError::new_err((name, requirement, count))
+            }
+            reactive::Given::Word(word) => {
+                InvalidParameterError::new_err((name, requirement, word))
+            }
+        },
+        ReactiveError::Interrupted => PyKeyboardInterrupt::new_err(()),
+        other => SimulationError::new_err(other.to_string()),
     }
 }

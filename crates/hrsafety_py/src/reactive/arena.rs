@@ -1,0 +1,210 @@
+//! Virtual impedance as a navigation law with ideal sensing: the place where both cores meet.
+
+use reactive_core::error::{Given as ReactiveGiven, ReactiveError};
+use reactive_core::impedance::attraction::Attraction;
+use reactive_core::impedance::law::{Impedance, Prepared};
+use vff_core::error::{Given, NavigationError, Result};
+use vff_core::forces::geometry::RobotState;
+use vff_core::lanes::{Real, Vec2};
+use vff_core::laws::{Command, Law, LawFamily, Situation};
+use vff_core::scenario::Scenario;
+
+/// Numbers that a search may choose, in their order.
+const GAIN_NAMES: [&str; 6] = [
+    "attraction_stiffness",
+    "attraction_damping",
+    "stiffness",
+    "damping",
+    "safe_distance",
+    "speed_limit",
+];
+
+/// A robot slower than this has no direction of motion, in m/s; that of the source's follower.
+const STANDING: f64 = 0.02;
+
+/// Distance of surfaces that touch or overlap, in m: the force needs a direction.
+const TOUCHING: f64 = 1e-9;
+
+/// The law: attraction to the goal and a collision vector from the robot's surface to the nearest
+/// point of every obstacle within reach and view.
+#[derive(Clone, Copy, Debug)]
+pub struct ImpedanceFamily {
+    /// Repulsion.
+    pub impedance: Impedance,
+    /// Attraction; the target is the goal itself.
+    pub attraction: Attraction,
+    /// Obstacles whose surface is farther away are not sensed, in m.
+    pub reach: f64,
+    /// Half of the sector around the direction of motion that is sensed, in rad.
+    pub view: f64,
+}
+
+impl ImpedanceFamily {
+    /// The same law with other gains; ratios of the reference coefficients stay.
+    fn with(&self, gains: &[f64]) -> Result<Self> {
+        let own = &self.impedance;
+        let impedance = Impedance {
+            stiffness: gains[2],
+            damping: gains[3],
+            safe_distance: gains[4],
+            speed_limit: gains[5],
+            reference_stiffness: own.reference_stiffness / own.stiffness * gains[2],
+            reference_damping: own.reference_damping / own.damping * gains[3],
+            ..*own
+        };
+        let attraction = Attraction {
+            stiffness: gains[0],
+            damping: gains[1],
+            standoff: 0.0,
+        };
+        Ok(Self {
+            impedance: impedance.checked().map_err(navigation)?,
+            attraction: attraction.checked().map_err(navigation)?,
+            ..*self
+        })
+    }
+}
+
+/// The same error of the other core.
+fn navigation(error: ReactiveError) -> NavigationError {
+    match error {
+        ReactiveError::InvalidParameter {
+            name,
+            requirement,
+            value,
+        } => {
+            let value = match value {
+                ReactiveGiven::Number(number) => Given::Number(number),
+                ReactiveGiven::Pair(pair) => Given::Pair(pair),
+                ReactiveGiven::Count(count) => Given::Count(count),
+                ReactiveGiven::Word(word) => Given::Word(word),
+            };
+            NavigationError::invalid(name, requirement, value)
+        }
+        other => NavigationError::invalid("law", "work", Given::Word(other.to_string())),
+    }
+}
+
+impl LawFamily for ImpedanceFamily {
+    type Law<R: Real, const RECORD: bool> = Impeded;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        &GAIN_NAMES
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        let law = &self.impedance;
+        vec![
+            self.attraction.stiffness,
+            self.attraction.damping,
+            law.stiffness,
+            law.damping,
+            law.safe_distance,
+            law.speed_limit,
+        ]
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        &[0, 1]
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        self.with(gains).map(|_| ())
+    }
+
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<Impeded> {
+        let lane = |lane: usize| -> Result<_> {
+            let gains: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
+            let law = self.with(&gains)?;
+            Ok((law.impedance.prepared(), law.attraction))
+        };
+        let contacts = scenario.obstacles().iter();
+        Ok(Impeded {
+            lanes: (0..R::WIDTH).map(lane).collect::<Result<_>>()?,
+            goal: scenario.goal(),
+            contacts: contacts.map(|placed| placed.contact_distance).collect(),
+            reach: self.reach,
+            least_cosine: self.view.cos(),
+        })
+    }
+}
+
+/// The law at work in one scenario.
+pub struct Impeded {
+    /// Repulsion and attraction of every lane.
+    lanes: Vec<(Prepared, Attraction)>,
+    goal: [f64; 2],
+    /// Distances at which robot and obstacles touch, in m.
+    contacts: Vec<f64>,
+    reach: f64,
+    /// Cosine of half the sector that is sensed.
+    least_cosine: f64,
+}
+
+impl Impeded {
+    /// Force of one lane in N.
+    fn force(&self, lane: usize, situation: &Situation<'_, f64>) -> [f64; 2] {
+        let (law, attraction) = &self.lanes[lane];
+        let [position, velocity] =
+            [situation.robot.position, situation.robot.velocity].map(|vector| vector.lane(0));
+        let offset = [self.goal[0] - position[0], self.goal[1] - position[1]];
+        let pull = attraction.force(offset, velocity);
+        // A robot that stands looks to where it is going.
+        let speed = velocity[0].hypot(velocity[1]);
+        let ahead = if speed > STANDING { velocity } else { offset };
+        let ahead = (ahead, ahead[0].hypot(ahead[1]));
+        let bodies = situation.bodies.iter().zip(&self.contacts);
+        let push = law.force_of_points(bodies.filter_map(|(body, contact)| {
+            let from_obstacle = body.offset(situation.robot.position);
+            let distance = from_obstacle.distance_squared.sqrt();
+            let gap = (distance - contact).max(TOUCHING);
+            if !body.state.present || gap > self.reach || distance == 0.0 {
+                return None;
+            }
+            let [x, y] = from_obstacle.vector.lane(0);
+            let cosine = -(x * ahead.0[0] + y * ahead.0[1]);
+            if cosine < self.least_cosine * distance * ahead.1 {
+                return None;
+            }
+            let moving = body.state.velocity;
+            Some((
+                [-x * (gap / distance), -y * (gap / distance)],
+                [moving[0] - velocity[0], moving[1] - velocity[1]],
+            ))
+        }));
+        [pull[0] + push[0], pull[1] + push[1]]
+    }
+}
+
+impl<R: Real> Law<R> for Impeded {
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let mut force = Vec2::<R>::zero();
+        for lane in 0..R::WIDTH {
+            let robot = RobotState {
+                position: Vec2::splat(situation.robot.position.lane(lane)),
+                velocity: Vec2::splat(situation.robot.velocity.lane(lane)),
+            };
+            let [x, y] = self.force(
+                lane,
+                &Situation {
+                    bodies: situation.bodies,
+                    robot,
+                    interval: situation.interval,
+                },
+            );
+            force = Vec2 {
+                x: force.x.replace(lane, x),
+                y: force.y.replace(lane, y),
+            };
+        }
+        Command {
+            force,
+            stabilizing: Vec2::zero(),
+            lyapunov: R::splat(f64::NAN),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Virtual impedance and follower: conversion of arguments and results.
+
+pub mod echoes;
+pub mod runs;
+
+use numpy::PyReadonlyArray1;
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use reactive_core::error::{Given, ReactiveError};
+use reactive_core::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
+use reactive_core::impedance::collision::Pairing;
+use reactive_core::impedance::{
+    Attraction, BankOptions, Form, Impedance, RateFilter, Rotation, Speed, clamped_foot, foot,
+};
+
+use crate::arrays::Fields;
+use crate::errors::CoreResult;
+use echoes::{EchoShape, Sonar};
+
+type Column<'py> = PyReadonlyArray1<'py, f64>;
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+
+/// Meaning of a word.
+fn word<T: Copy>(
+    name: &str,
+    rule: &'static str,
+    given: &str,
+    kinds: &[(&str, T)],
+) -> CoreResult<T> {
+    let known = kinds.iter().find(|(kind, _)| *kind == given);
+    known.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        ReactiveError::invalid(name, rule, Given::Word(format!("\"{given}\""))).into()
+    })
+}
+
+/// Pairs of a contiguous array of two columns.
+fn pairs(values: &[f64]) -> impl Iterator<Item = [f64; 2]> + '_ {
+    values.chunks_exact(2).map(|pair| [pair[0], pair[1]])
+}
+
+/// Obstacle that moves or stands.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Mover(pub scene::Mover);
+
+#[pymethods]
+impl Mover {
+    #[new]
+    #[pyo3(signature = (*, shape, velocity, start, stop))]
+    fn new(shape: &EchoShape, velocity: [f64; 2], start: f64, stop: f64) -> CoreResult<Self> {
+        let mover = scene::Mover {
+            shape: shape.0,
+            velocity,
+            start,
+            stop,
+        };
+        Ok(Self(mover.checked()?))
+    }
+}
+
+/// Repulsion from collision vectors.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct VirtualImpedance {
+    /// The law.
+    pub law: Impedance,
+    /// From readings to forces.
+    pub bank: BankOptions,
+}
+
+#[pymethods]
+impl VirtualImpedance {
+    #[new]
+    #[pyo3(signature = (*, form, stiffness, damping, safe_distance, speed_limit,
+        reference_stiffness, reference_damping, clamp, speed, filter_time, largest_rate,
+        outlives_gaps, pairing_gap, pairing_share, rotation, translated_by))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        form: &str,
+        stiffness: f64,
+        damping: f64,
+        safe_distance: f64,
+        speed_limit: f64,
+        reference_stiffness: f64,
+        reference_damping: f64,
+        clamp: bool,
+        speed: &str,
+        filter_time: f64,
+        largest_rate: f64,
+        outlives_gaps: bool,
+        pairing_gap: f64,
+        pairing_share: f64,
+        rotation: &str,
+        translated_by: Option<[f64; 2]>,
+    ) -> CoreResult<Self> {
+        let law = Impedance {
+            form: form_of(form)?,
+            stiffness,
+            damping,
+            safe_distance,
+            speed_limit,
+            reference_stiffness,
+            reference_damping,
+            clamp,
+        };
+        let speeds = [("closing", Speed::Closing), ("norm", Speed::Norm)];
+        let turns = [
+            ("heading", Rotation::ByHeading),
+            ("printed", Rotation::Printed),
+        ];
+        let bank = BankOptions {
+            pairing: Pairing {
+                gap: pairing_gap,
+                share: pairing_share,
+            },
+            rate: RateFilter {
+                speed: word("speed", "be \"closing\" or \"norm\"", speed, &speeds)?,
+                time_constant: filter_time,
+                largest: largest_rate,
+                outlives_gaps,
+            },
+            rotation: word(
+                "rotation",
+                "be \"heading\" or \"printed\"",
+                rotation,
+                &turns,
+            )?,
+            translated_by,
+        };
+        Ok(Self {
+            law: law.checked()?,
+            bank: bank.checked()?,
+        })
+    }
+}
+
+/// Form of the law by its word.
+pub fn form_of(form: &str) -> CoreResult<Form> {
+    let kinds = [
+        ("off", Form::Off),
+        ("conventional", Form::Conventional),
+        ("active", Form::Active),
+        ("twice_scaled", Form::ActiveTwiceScaled),
+    ];
+    let rule = "be one of \"off\", \"conventional\", \"active\", \"twice_scaled\"";
+    word("form", rule, form, &kinds)
+}
+
+/// Spring and damper parts (N) at distances (m) and speeds (m/s), and the two scales.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn impedance_forces<'py>(
+    py: Python<'py>,
+    law: &VirtualImpedance,
+    distance: Column<'py>,
+    speed: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let prepared = law.law.prepared();
+    let both = distance.as_slice()?.iter().zip(speed.as_slice()?);
+    let parts = both.map(|(d, v)| (prepared.spring(*d), prepared.damper(*d, *v)));
+    let (spring, damper) = parts.unzip();
+    let fields = Fields::new(py);
+    fields.vector::<f64>("spring", spring)?;
+    fields.vector::<f64>("damper", damper)?;
+    fields.value("distance_scale", law.law.distance_scale())?;
+    fields.value("speed_scale", law.law.speed_scale())?;
+    Ok(fields.finish())
+}
+
+/// Feet of perpendiculars from the origin on the lines, or segments, between points.
+#[pyfunction]
+#[pyo3(signature = (one, other, *, clamp))]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn collision_feet<'py>(
+    py: Python<'py>,
+    one: Rows<'py>,
+    other: Rows<'py>,
+    clamp: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let ends = pairs(one.as_slice()?).zip(pairs(other.as_slice()?));
+    let of = if clamp { clamped_foot } else { foot };
+    let feet: Vec<f64> = ends.flat_map(|(one, other)| of(one, other)).collect();
+    let fields = Fields::new(py);
+    let count = feet.len() / 2;
+    fields.matrix("foot", feet, count, 2)?;
+    Ok(fields.finish())
+}
+
+/// The robot and its ear.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Follower(pub Settings);
+
+#[pymethods]
+impl Follower {
+    #[new]
+    #[pyo3(signature = (*, sonar, drive, attraction, fix_interval, fix_noise, mirrored_fixes,
+        velocity_rule, step))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        sonar: &Sonar,
+        drive: [f64; 6],
+        attraction: [f64; 3],
+        fix_interval: f64,
+        fix_noise: bool,
+        mirrored_fixes: bool,
+        velocity_rule: &str,
+        step: f64,
+    ) -> CoreResult<Self> {
+        let [
+            mass,
+            body_radius,
+            wheel_base,
+            wheel_speed,
+            heading_gain,
+            least_speed,
+        ] = drive;
+        let [stiffness, damping, standoff] = attraction;
+        let rules = [
+            ("integrated", VelocityRule::Integrated),
+            ("reset", VelocityRule::Reset),
+        ];
+        let rule = "be \"integrated\" or \"reset\"";
+        let settings = Settings {
+            drive: Drive {
+                mass,
+                body_radius,
+                wheel_base,
+                wheel_speed,
+                heading_gain,
+                least_speed,
+            },
+            sensors: sonar.0.clone(),
+            fixes: Fixes {
+                interval: fix_interval,
+                noise: if fix_noise {
+                    FixNoise::default()
+                } else {
+                    FixNoise::none()
+                },
+                mirrored: mirrored_fixes,
+            },
+            attraction: Attraction {
+                stiffness,
+                damping,
+                standoff,
+            },
+            velocity: word("velocity_rule", rule, velocity_rule, &rules)?,
+            step,
+            ..Settings::default()
+        };
+        Ok(Self(settings.checked()?))
+    }
+}
+
+impl Follower {
+    /// The robot with a law.
+    pub fn with(&self, law: &VirtualImpedance) -> Settings {
+        Settings {
+            impedance: law.law,
+            bank: law.bank,
+            ..self.0.clone()
+        }
+    }
+}
+
+/// Standard deviations of range (m) and bearing (rad) of a fix, by Table 2.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn fix_deviations<'py>(
+    py: Python<'py>,
+    range: Column<'py>,
+    bearing: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let noise = FixNoise::default();
+    let both = range.as_slice()?.iter().zip(bearing.as_slice()?);
+    let parts = both.map(|(range, bearing)| noise.at(*range, *bearing));
+    let (range, bearing) = parts.map(|[range, bearing]| (range, bearing)).unzip();
+    let fields = Fields::new(py);
+    fields.vector::<f64>("range", range)?;
+    fields.vector::<f64>("bearing", bearing)?;
+    Ok(fields.finish())
+}

@@ -1,0 +1,174 @@
+//! Shapes and sonar: conversion of arguments and results.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use reactive_core::follower::Sensors;
+use reactive_core::random::Stream;
+use reactive_core::sonar::ranging::Normals;
+use reactive_core::sonar::{self, Firing, Pose, Ranging, Rectangle, Shape};
+
+use super::{Column, Rows, pairs, word};
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+
+/// Stream of a seed for readings outside a run.
+const READINGS: u64 = 3;
+
+/// Shape that echoes.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct EchoShape(pub Shape);
+
+#[pymethods]
+impl EchoShape {
+    #[staticmethod]
+    #[pyo3(signature = (*, center, size, angle))]
+    fn rectangle(center: [f64; 2], size: [f64; 2], angle: f64) -> CoreResult<Self> {
+        let shape = if angle == 0.0 {
+            Rectangle::upright(center, size)
+        } else {
+            Rectangle::turned(center, size, angle)
+        };
+        Ok(Self(Shape::Rectangle(shape).checked()?))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, center, radius))]
+    fn disc(center: [f64; 2], radius: f64) -> CoreResult<Self> {
+        Ok(Self(Shape::Disc(sonar::Disc { center, radius }).checked()?))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, start, end))]
+    fn wall(start: [f64; 2], end: [f64; 2]) -> CoreResult<Self> {
+        Ok(Self(Shape::Wall(sonar::Wall { start, end }).checked()?))
+    }
+}
+
+/// Shapes of a list.
+fn shapes_of(shapes: &[PyRef<'_, EchoShape>]) -> Vec<Shape> {
+    shapes.iter().map(|shape| shape.0).collect()
+}
+
+/// Ultrasonic sensors of the follower.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Sonar(pub Sensors);
+
+#[pymethods]
+impl Sonar {
+    #[new]
+    #[pyo3(signature = (*, forward, spacing, fan, beam_width, rays, least_range, most_range,
+        range_noise, temperature, assumed_temperature, firing, rear))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        forward: f64,
+        spacing: f64,
+        fan: f64,
+        beam_width: f64,
+        rays: usize,
+        least_range: f64,
+        most_range: f64,
+        range_noise: f64,
+        temperature: f64,
+        assumed_temperature: f64,
+        firing: &str,
+        rear: bool,
+    ) -> CoreResult<Self> {
+        let kinds = [
+            ("together", Firing::Together),
+            ("cross_talk", Firing::TogetherWithCrossTalk),
+            ("in_turn", Firing::InTurn),
+        ];
+        let rule = "be one of \"together\", \"cross_talk\", \"in_turn\"";
+        let sensors = Sensors {
+            forward,
+            spacing,
+            fan,
+            beam_width,
+            rays,
+            ranging: Ranging {
+                least: least_range,
+                most: most_range,
+                noise: range_noise,
+                temperature,
+                assumed_temperature,
+            },
+            firing: word("firing", rule, firing, &kinds)?,
+            rear,
+        };
+        sensors.array()?;
+        Ok(Self(sensors))
+    }
+}
+
+/// Positions (m) and axes (rad) of the sensors on the robot.
+#[pyfunction]
+pub fn sonar_mounts<'py>(py: Python<'py>, sonar: &Sonar) -> PyResult<Bound<'py, PyDict>> {
+    let array = sonar.0.array().map_err(CoreError::from)?;
+    let mounts = array.mounts();
+    let fields = Fields::new(py);
+    let places = mounts.iter().flat_map(|mount| mount.position).collect();
+    fields.matrix("position", places, mounts.len(), 2)?;
+    let angle = |mount: &Pose| mount.direction[1].atan2(mount.direction[0]);
+    fields.vector("axis", mounts.iter().map(angle).collect())?;
+    Ok(fields.finish())
+}
+
+/// Readings (m) of all sensors at poses (x, y, heading), one after the other.
+#[pyfunction]
+#[pyo3(signature = (sonar, shapes, poses, *, seed, noise))]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn sonar_readings<'py>(
+    py: Python<'py>,
+    sonar: &Sonar,
+    shapes: Vec<PyRef<'py, EchoShape>>,
+    poses: Rows<'py>,
+    seed: u64,
+    noise: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mut sensors = sonar.0.clone();
+    if !noise {
+        sensors.ranging.noise = 0.0;
+    }
+    let array = sensors.array().map_err(CoreError::from)?;
+    let shapes = shapes_of(&shapes);
+    let count = array.mounts().len();
+    let mut normals = Normals::new(Stream::new(seed, READINGS));
+    let mut readings = vec![f64::INFINITY; count];
+    let mut rows = Vec::new();
+    for (step, pose) in poses.as_slice()?.chunks_exact(3).enumerate() {
+        let body = Pose::at([pose[0], pose[1]], pose[2]);
+        array.measure(&body, &shapes, step, &mut readings, &mut normals);
+        rows.extend_from_slice(&readings);
+    }
+    let fields = Fields::new(py);
+    let samples = rows.len() / count;
+    fields.matrix("readings", rows, samples, count)?;
+    Ok(fields.finish())
+}
+
+/// Distances (m) along rays to the first shape; infinite without one.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn cast_rays<'py>(
+    py: Python<'py>,
+    shapes: Vec<PyRef<'py, EchoShape>>,
+    origins: Rows<'py>,
+    angles: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let shapes = shapes_of(&shapes);
+    let rays = pairs(origins.as_slice()?).zip(angles.as_slice()?);
+    let distance = rays.map(|(origin, angle)| {
+        let direction = Pose::at(origin, *angle).direction;
+        let along = shapes.iter().map(|shape| shape.cast(origin, direction));
+        along.fold(f64::INFINITY, f64::min)
+    });
+    let fields = Fields::new(py);
+    fields.vector("distance", distance.collect())?;
+    Ok(fields.finish())
+}
+
+/// Speed of sound in m/s at a temperature in degrees Celsius.
+#[pyfunction]
+pub fn speed_of_sound(temperature: f64) -> f64 {
+    sonar::speed_of_sound(temperature)
+}

@@ -1,0 +1,146 @@
+//! Localization: conversion of arguments and results. Here microphones and fixes.
+
+pub mod bursts;
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use reactive_core::error::{Given, ReactiveError};
+use reactive_core::localization::batch::{FixColumns, locate_many};
+use reactive_core::localization::fix::{self, Covariance, FixStatus};
+use reactive_core::localization::microphones::{self, Pair};
+use reactive_core::parallel::Work;
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::watch::{Report, watched};
+
+type Column<'py> = PyReadonlyArray1<'py, f64>;
+/// Row of three microphones.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct MicrophoneArray(pub microphones::MicrophoneArray);
+
+#[pymethods]
+impl MicrophoneArray {
+    #[new]
+    #[pyo3(signature = (*, spacing, speed_of_sound))]
+    fn new(spacing: f64, speed_of_sound: f64) -> CoreResult<Self> {
+        let array = microphones::MicrophoneArray {
+            spacing,
+            speed_of_sound,
+        };
+        Ok(Self(array.checked()?))
+    }
+}
+
+/// Words of the codes of fixes.
+#[pyfunction]
+pub fn fix_status_words() -> Vec<&'static str> {
+    FixStatus::ALL.map(FixStatus::word).to_vec()
+}
+
+/// Exact delays of M2 and M3 against M1.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn microphone_delays<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    range: Column<'py>,
+    bearing: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sources = range.as_slice()?.iter().zip(bearing.as_slice()?);
+    let pairs = sources.map(|(range, bearing)| array.0.delays(*range, *bearing));
+    let (first, second) = pairs.map(|[a, b]| (a, b)).unzip();
+    let fields = Fields::new(py);
+    fields.vector::<f64>("delay_12", first)?;
+    fields.vector::<f64>("delay_13", second)?;
+    Ok(fields.finish())
+}
+
+/// Bearings by parallel rays from the delays of one pair.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn parallel_ray_bearings<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    pair: &str,
+    delay_12: Column<'py>,
+    delay_13: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let pair = match pair {
+        "12" => Pair::First,
+        "23" => Pair::Second,
+        "13" => Pair::Outer,
+        _ => {
+            let rule = "be one of \"12\", \"23\", \"13\"";
+            let error = ReactiveError::invalid("pair", rule, Given::Word(pair.into()));
+            return Err(CoreError::from(error).into());
+        }
+    };
+    let delays = delay_12.as_slice()?.iter().zip(delay_13.as_slice()?);
+    let bearings = delays.map(|(a, b)| array.0.parallel_ray_bearing(pair, pair.delay([*a, *b])));
+    let fields = Fields::new(py);
+    fields.vector::<f64>("bearing", bearings.collect())?;
+    Ok(fields.finish())
+}
+
+/// Ranges by the printed formula.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn printed_ranges<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    delay_12: Column<'py>,
+    delay_13: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let delays = delay_12.as_slice()?.iter().zip(delay_13.as_slice()?);
+    let ranges = delays.map(|(a, b)| fix::printed_range(&array.0, [*a, *b]));
+    let fields = Fields::new(py);
+    fields.vector::<f64>("range", ranges.collect())?;
+    Ok(fields.finish())
+}
+
+/// Fixes from delays; the covariance of the delays is variance, covariance, variance.
+#[pyfunction]
+#[pyo3(signature = (array, delay_12, delay_13, *, covariance, threads, progress))]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn locate_sounds<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    delay_12: Column<'py>,
+    delay_13: Column<'py>,
+    covariance: [f64; 3],
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (first, second) = (delay_12.as_slice()?, delay_13.as_slice()?);
+    let [variance_12, mixed, variance_13] = covariance;
+    let covariance = Covariance {
+        first: variance_12,
+        mixed,
+        second: variance_13,
+    };
+    let report = Report::new(progress.as_ref(), first.len());
+    let array = array.0;
+    let found = watched(py, report, |control| {
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|rows| control.count(rows),
+        };
+        locate_many(&array, first, second, &covariance, work)
+    })?;
+    fix_columns(py, found)
+}
+
+fn fix_columns(py: Python<'_>, found: FixColumns) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    fields.vector("range", found.range)?;
+    fields.vector("bearing", found.bearing)?;
+    fields.vector("range_variance", found.range_variance)?;
+    fields.vector("covariance", found.covariance)?;
+    fields.vector("bearing_variance", found.bearing_variance)?;
+    fields.vector("curvature", found.curvature)?;
+    fields.vector("status_code", found.status)?;
+    Ok(fields.finish())
+}

@@ -1,0 +1,303 @@
+//! Bursts, delays from samples, repeated measurements.
+
+use std::sync::OnceLock;
+
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use reactive_core::error::{Given, ReactiveError};
+use reactive_core::localization::burst::{self, Signal, Sound};
+use reactive_core::localization::correlation::Method;
+use reactive_core::localization::delays::{DelayFinder, DelayOptions};
+use reactive_core::localization::recording::{self, Hearing};
+use reactive_core::localization::trials::{
+    Equipment, Repetition, TrialDelays, burst_delays, jittered_delays,
+};
+use reactive_core::parallel::Work;
+
+use crate::arrays::Fields;
+use crate::errors::CoreResult;
+use crate::reactive::localization::MicrophoneArray;
+use crate::watch::{Report, watched};
+
+/// Method, band in Hz, interpolation, window, start.
+type Options = (String, Option<[f64; 2]>, bool, Option<usize>, Option<usize>);
+
+/// A sound of limited length; its waveform is made when it is heard first.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Burst {
+    burst: burst::Burst,
+    signal: OnceLock<Signal>,
+}
+
+#[pymethods]
+impl Burst {
+    #[new]
+    #[pyo3(signature = (*, kind, low, high, duration, level, ramp, seed))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        kind: &str,
+        low: f64,
+        high: f64,
+        duration: f64,
+        level: f64,
+        ramp: f64,
+        seed: u64,
+    ) -> CoreResult<Self> {
+        let sound = match kind {
+            "noise" => Sound::Noise { low, high, seed },
+            "sweep" => Sound::Sweep { low, high },
+            "tone" if low == high => Sound::Tone { frequency: low },
+            "tone" => {
+                let rule = "equal low for a tone";
+                return Err(ReactiveError::invalid("high", rule, Given::Number(high)).into());
+            }
+            _ => {
+                let rule = "be one of \"noise\", \"sweep\", \"tone\"";
+                return Err(ReactiveError::invalid("kind", rule, Given::Word(kind.into())).into());
+            }
+        };
+        let burst = burst::Burst {
+            sound,
+            duration,
+            level,
+            ramp,
+        };
+        Ok(Self {
+            burst: burst.checked()?,
+            signal: OnceLock::new(),
+        })
+    }
+}
+
+impl Burst {
+    fn signal(&self) -> CoreResult<&Signal> {
+        if let Some(signal) = self.signal.get() {
+            return Ok(signal);
+        }
+        let made = Signal::new(self.burst)?;
+        Ok(self.signal.get_or_init(|| made))
+    }
+}
+
+/// Analog-to-digital converter.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Converter(recording::Converter);
+
+#[pymethods]
+impl Converter {
+    #[new]
+    #[pyo3(signature = (*, sample_rate, bits))]
+    fn new(sample_rate: f64, bits: Option<u32>) -> CoreResult<Self> {
+        Ok(Self(recording::Converter { sample_rate, bits }.checked()?))
+    }
+}
+
+/// Frequency that is heard by and from something that moves.
+#[pyfunction]
+#[pyo3(signature = (frequency, *, speed_of_sound, observer_speed, source_speed))]
+pub fn doppler_frequency(
+    frequency: f64,
+    speed_of_sound: f64,
+    observer_speed: f64,
+    source_speed: f64,
+) -> CoreResult<f64> {
+    Ok(burst::doppler_frequency(
+        frequency,
+        speed_of_sound,
+        observer_speed,
+        source_speed,
+    )?)
+}
+
+/// Range, bearing, speeds of observer and source, noise, lead, samples.
+type Place = (f64, f64, f64, f64, f64, f64, Option<usize>);
+
+fn hearing(place: Place) -> Hearing {
+    let (range, bearing, observer_speed, source_speed, noise, lead, samples) = place;
+    Hearing {
+        range,
+        bearing,
+        observer_speed,
+        source_speed,
+        noise,
+        lead,
+        samples,
+    }
+}
+
+/// Samples of three microphones that hear a burst.
+#[pyfunction]
+#[pyo3(signature = (burst, array, converter, place, *, seed, run))]
+pub fn record_burst<'py>(
+    py: Python<'py>,
+    burst: &Burst,
+    array: &MicrophoneArray,
+    converter: &Converter,
+    place: Place,
+    seed: u64,
+    run: u64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (array, converter, place) = (array.0, converter.0, hearing(place));
+    let signal = burst.signal()?;
+    let heard = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        recording::record(signal, &array, &converter, &place, seed, run, &interrupted)
+    })?;
+    let fields = Fields::new(py);
+    let count = heard.samples.len() / 3;
+    fields.matrix("samples", heard.samples, 3, count)?;
+    fields.value("clipped", heard.clipped.to_vec())?;
+    Ok(fields.finish())
+}
+
+fn delay_options(options: Options, sample_rate: f64) -> CoreResult<DelayOptions> {
+    let (method, band, between_samples, window, start) = options;
+    let method = match method.as_str() {
+        "mean_square" => Method::MeanSquare,
+        "cross_correlation" => Method::CrossCorrelation,
+        "phase" => Method::Phase {
+            band: band.unwrap_or([0.0, 0.5 * sample_rate]),
+        },
+        _ => {
+            let rule = "be one of \"mean_square\", \"cross_correlation\", \"phase\"";
+            return Err(ReactiveError::invalid("method", rule, Given::Word(method)).into());
+        }
+    };
+    Ok(DelayOptions {
+        method,
+        between_samples,
+        window,
+        start,
+    })
+}
+
+/// Rows of a matrix of three channels.
+fn channels<'a>(samples: &'a PyReadonlyArray2<'_, f64>) -> PyResult<[&'a [f64]; 3]> {
+    let count = samples.shape()[1];
+    let (first, rest) = samples.as_slice()?.split_at(count);
+    let (second, third) = rest.split_at(count);
+    Ok([first, second, third])
+}
+
+/// Delays of M2 and M3 against M1 from samples.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn sound_delays<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    samples: PyReadonlyArray2<'py, f64>,
+    sample_rate: f64,
+    options: Options,
+) -> PyResult<Bound<'py, PyDict>> {
+    let channels = channels(&samples)?;
+    let options = delay_options(options, sample_rate)?;
+    let (array, count) = (array.0, channels[0].len());
+    let found = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        DelayFinder::new(&array, sample_rate, count, options)?.delays(channels, &interrupted)
+    })?;
+    let fields = Fields::new(py);
+    fields.value("delays", found.delays.to_vec())?;
+    fields.value("lags", found.lags.to_vec())?;
+    fields.value("likeness", found.likeness.to_vec())?;
+    fields.value("start", found.start)?;
+    Ok(fields.finish())
+}
+
+/// Likeness over lag from samples.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn likeness_curves<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    samples: PyReadonlyArray2<'py, f64>,
+    sample_rate: f64,
+    options: Options,
+) -> PyResult<Bound<'py, PyDict>> {
+    let channels = channels(&samples)?;
+    let options = delay_options(options, sample_rate)?;
+    let (array, count) = (array.0, channels[0].len());
+    let found = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        DelayFinder::new(&array, sample_rate, count, options)?.curves(channels, &interrupted)
+    })?;
+    let fields = Fields::new(py);
+    let [first, second] = found.values;
+    fields.vector("values_12", first)?;
+    fields.vector("values_13", second)?;
+    Ok(fields.finish())
+}
+
+fn trial_columns(py: Python<'_>, found: TrialDelays) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    fields.vector("delay_12", found.delay_12)?;
+    fields.vector("delay_13", found.delay_13)?;
+    Ok(fields.finish())
+}
+
+/// Delays with jitter of the arrivals, the runs of a source side by side.
+#[pyfunction]
+#[pyo3(signature = (array, sources, *, arrival_deviation, runs, seed, threads, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+pub fn jittered_sound_delays<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    sources: Vec<[f64; 2]>,
+    arrival_deviation: f64,
+    runs: usize,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let array = array.0;
+    let repetition = Repetition { runs, seed };
+    let report = Report::new(progress.as_ref(), sources.len().saturating_mul(runs));
+    let found = watched(py, report, |control| {
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|runs| control.count(runs),
+        };
+        jittered_delays(&array, &sources, arrival_deviation, &repetition, work)
+    })?;
+    trial_columns(py, found)
+}
+
+/// Delays from full waveforms, the runs of a source side by side.
+#[pyfunction]
+#[pyo3(signature = (burst, array, converter, places, options, *, runs, seed, threads, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+pub fn burst_trial_delays<'py>(
+    py: Python<'py>,
+    burst: &Burst,
+    array: &MicrophoneArray,
+    converter: &Converter,
+    places: Vec<Place>,
+    options: Options,
+    runs: usize,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let equipment = Equipment {
+        array: array.0,
+        converter: converter.0,
+        options: delay_options(options, converter.0.sample_rate)?,
+    };
+    let repetition = Repetition { runs, seed };
+    let signal = burst.signal()?;
+    let report = Report::new(progress.as_ref(), places.len().saturating_mul(runs));
+    let hearings: Vec<Hearing> = places.into_iter().map(hearing).collect();
+    let found = watched(py, report, |control| {
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|runs| control.count(runs),
+        };
+        burst_delays(signal, &equipment, &hearings, &repetition, work)
+    })?;
+    trial_columns(py, found)
+}

@@ -1,0 +1,6 @@
+//! Reactive avoidance: conversions only, everything is computed by the core.
+
+pub mod arena;
+pub mod follower;
+pub mod localization;
+pub mod skirt;

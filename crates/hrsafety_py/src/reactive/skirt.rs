@@ -1,0 +1,438 @@
+//! Skirt: conversion of arguments and results.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use reactive_core::error::{Given, ReactiveError};
+use reactive_core::parallel::Work;
+use reactive_core::skirt::ring::{
+    Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
+};
+use reactive_core::skirt::states::TABLE_1;
+use reactive_core::skirt::{
+    Action, Direction, Motion, Policy, Ring, Rule, SceneOptions, Skirt, SkirtOptions, TestPlan,
+    TriOmni, test_batch,
+};
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::watch::{Report, watched};
+
+/// Word of an action.
+fn action_word(action: Action) -> &'static str {
+    match action {
+        Action::Keep => "keep",
+        Action::Spin => "spin",
+        Action::Move(direction) => direction.word(),
+    }
+}
+
+/// Words and angles in rad of the motion directions.
+#[pyfunction]
+pub fn skirt_directions() -> Vec<(&'static str, f64)> {
+    let entry = |direction: Direction| (direction.word(), direction.angle());
+    Direction::ALL.into_iter().map(entry).collect()
+}
+
+/// Rows of the state table: sensors that see an obstacle, and the action.
+#[pyfunction]
+pub fn skirt_states() -> Vec<(Vec<usize>, &'static str)> {
+    let row = |(sensors, action): &(&[usize], Action)| (sensors.to_vec(), action_word(*action));
+    TABLE_1.iter().map(row).collect()
+}
+
+/// Gap between sensors of a ring that closes, in rad.
+#[pyfunction]
+#[pyo3(signature = (*, sensors, wheel_gap))]
+pub fn skirt_closing_gap(sensors: usize, wheel_gap: f64) -> CoreResult<f64> {
+    Ok(closing_gap(sensors, wheel_gap)?)
+}
+
+/// Gaps by the printed (3) and (5) in rad, and the factor with which (3) closes the ring.
+#[pyfunction]
+#[pyo3(signature = (*, sensors, wheel_gap, chassis_radius, sensor_radius, wheel_sensor_radius,
+    sensor_length, correction))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+pub fn skirt_printed_gaps(
+    sensors: usize,
+    wheel_gap: f64,
+    chassis_radius: f64,
+    sensor_radius: f64,
+    wheel_sensor_radius: f64,
+    sensor_length: f64,
+    correction: f64,
+) -> CoreResult<(f64, f64, f64)> {
+    let lengths = Circumference {
+        chassis_radius,
+        sensor_radius,
+        wheel_sensor_radius,
+        sensor_length,
+        correction,
+    }
+    .checked()?;
+    Ok((
+        lengths.printed_gap(sensors, wheel_gap)?,
+        lengths.printed_gap_closed(sensors)?,
+        lengths.closing_correction(sensors, wheel_gap)?,
+    ))
+}
+
+/// Least number of sensors by (6), and the next multiple of three.
+#[pyfunction]
+#[pyo3(signature = (*, wheel_sensor_radius, sensor_radius))]
+pub fn skirt_least_sensors(wheel_sensor_radius: f64, sensor_radius: f64) -> CoreResult<(f64, f64)> {
+    let [least, multiple] = least_sensors(wheel_sensor_radius, sensor_radius)?;
+    Ok((least, multiple))
+}
+
+/// Distance from the center at which the beams beside a gap in rad meet, in m.
+#[pyfunction]
+#[pyo3(signature = (*, sensor_radius, gap))]
+pub fn skirt_safe_distance(sensor_radius: f64, gap: f64) -> f64 {
+    meeting_distance(sensor_radius, gap)
+}
+
+/// Velocities and yaw rates.
+type Movement<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Platform with three omni-wheels.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct TriOmniKinematics(TriOmni);
+
+#[pymethods]
+impl TriOmniKinematics {
+    #[new]
+    #[pyo3(signature = (*, wheel_radius, wheel_width, chassis_radius))]
+    fn new(wheel_radius: f64, wheel_width: f64, chassis_radius: f64) -> CoreResult<Self> {
+        let platform = TriOmni {
+            wheel_radius,
+            wheel_width,
+            chassis_radius,
+        };
+        Ok(Self(platform.checked()?))
+    }
+
+    /// Wheel speeds of velocities and yaw rates, row by row.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn wheel_speeds<'py>(
+        &self,
+        py: Python<'py>,
+        velocity: PyReadonlyArray2<'py, f64>,
+        yaw_rate: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = velocity.as_slice()?.chunks_exact(2);
+        let speeds: Vec<f64> = rows
+            .zip(yaw_rate.as_slice()?)
+            .flat_map(|(row, rate)| self.0.wheel_speeds([row[0], row[1]], *rate))
+            .collect();
+        let count = speeds.len() / 3;
+        speeds.to_pyarray(py).reshape([count, 3])
+    }
+
+    /// Velocities and yaw rates of wheel speeds, row by row.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn body_velocity<'py>(
+        &self,
+        py: Python<'py>,
+        wheel_speeds: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Movement<'py>> {
+        let (mut velocity, mut yaw_rate) = (Vec::new(), Vec::new());
+        for row in wheel_speeds.as_slice()?.chunks_exact(3) {
+            let (linear, rate) = self.0.body_velocity([row[0], row[1], row[2]]);
+            velocity.extend(linear);
+            yaw_rate.push(rate);
+        }
+        let velocity = velocity.to_pyarray(py).reshape([yaw_rate.len(), 2])?;
+        Ok((velocity, yaw_rate.to_pyarray(py)))
+    }
+}
+
+/// Ring of sensors with its decisions.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct UltrasonicSkirt(Skirt);
+
+#[pymethods]
+impl UltrasonicSkirt {
+    #[new]
+    #[pyo3(signature = (*, chassis_radius, sensor_inset, sensors, layout, wheel_gap, safe_distance,
+        triggering, policy, beam_width, rays, least_range, most_range, range_noise, firing_period))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        chassis_radius: f64,
+        sensor_inset: f64,
+        sensors: usize,
+        layout: &str,
+        wheel_gap: f64,
+        safe_distance: Option<f64>,
+        triggering: &str,
+        policy: &str,
+        beam_width: f64,
+        rays: usize,
+        least_range: f64,
+        most_range: f64,
+        range_noise: f64,
+        firing_period: f64,
+    ) -> CoreResult<Self> {
+        let bearings = match layout {
+            "wheels" => Ring::beside_wheels(sensors, wheel_gap)?,
+            "even" => Ring::even(sensors)?,
+            other => return Err(unknown("layout", "be \"wheels\" or \"even\"", other)),
+        };
+        let ring = Ring::new(chassis_radius, sensor_inset, bearings)?;
+        let safe_distance = safe_distance.unwrap_or_else(|| ring.safe_distance());
+        let options = SkirtOptions {
+            safe_distance,
+            rule: rule_of(triggering)?,
+            policy: policy_of(policy)?,
+            beam_width,
+            rays,
+            least_range,
+            most_range,
+            range_noise,
+            firing_period,
+        };
+        Ok(Self(Skirt::new(ring, options)?))
+    }
+
+    /// Bearings of the sensors, in rad.
+    fn bearings(&self) -> Vec<f64> {
+        self.0.ring().bearings().to_vec()
+    }
+
+    /// Gaps between sensors counterclockwise, in rad.
+    fn gaps(&self) -> Vec<f64> {
+        self.0.ring().gaps()
+    }
+
+    /// Triggering distances, in m.
+    fn trigger_distances(&self) -> Vec<f64> {
+        self.0.thresholds().to_vec()
+    }
+
+    /// Distance from the center at which the beams beside the largest gap meet, in m.
+    fn meeting_distance(&self) -> f64 {
+        self.0.ring().safe_distance()
+    }
+
+    /// Bits of the sensors that are triggered.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn pattern(&self, readings: PyReadonlyArray1<'_, f64>) -> PyResult<u64> {
+        Ok(self.0.decider().pattern(readings.as_slice()?))
+    }
+
+    /// What is done.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn action(&self, readings: PyReadonlyArray1<'_, f64>) -> PyResult<&'static str> {
+        Ok(action_word(self.0.decider().action(readings.as_slice()?)))
+    }
+}
+
+fn unknown(name: &str, requirement: &'static str, word: &str) -> CoreError {
+    ReactiveError::invalid(name, requirement, Given::Word(word.into())).into()
+}
+
+fn rule_of(word: &str) -> CoreResult<Rule> {
+    match word {
+        "consistent" => Ok(Rule::Consistent),
+        "printed" => Ok(Rule::Printed),
+        other => Err(unknown(
+            "triggering",
+            "be \"consistent\" or \"printed\"",
+            other,
+        )),
+    }
+}
+
+fn policy_of(word: &str) -> CoreResult<Policy> {
+    match word {
+        "nearest" => Ok(Policy::Nearest),
+        "best_direction" => Ok(Policy::BestDirection),
+        "table_only" => Ok(Policy::TableOnly),
+        other => {
+            let rule = "be \"nearest\", \"best_direction\" or \"table_only\"";
+            Err(unknown("policy", rule, other))
+        }
+    }
+}
+
+/// How discs are laid out.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct SkirtScene(SceneOptions);
+
+#[pymethods]
+impl SkirtScene {
+    #[new]
+    #[pyo3(signature = (*, obstacles, disc_radius, course_distance, course_offset, half_size,
+        start_clearance, spacing, unseen_share))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        obstacles: usize,
+        disc_radius: [f64; 2],
+        course_distance: [f64; 2],
+        course_offset: f64,
+        half_size: f64,
+        start_clearance: f64,
+        spacing: f64,
+        unseen_share: f64,
+    ) -> CoreResult<Self> {
+        let options = SceneOptions {
+            obstacles,
+            radius: disc_radius,
+            course_distance,
+            course_offset,
+            half_size,
+            start_clearance,
+            spacing,
+            unseen_share,
+        };
+        // With a robot of no size: that of the test is checked there.
+        Ok(Self(options.checked(0.0)?))
+    }
+}
+
+/// How the robot moves.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct SkirtMotion(Motion);
+
+#[pymethods]
+impl SkirtMotion {
+    #[new]
+    #[pyo3(signature = (*, speed, acceleration, spin_rate, duration))]
+    fn new(speed: f64, acceleration: f64, spin_rate: f64, duration: f64) -> CoreResult<Self> {
+        let motion = Motion {
+            speed,
+            acceleration,
+            spin_rate,
+            duration,
+        };
+        Ok(Self(motion.checked()?))
+    }
+}
+
+/// Rows of the avoidance test.
+#[pyfunction]
+#[pyo3(signature = (skirt, scene, motion, *, layouts, repeats, seed, threads, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn skirt_test<'py>(
+    py: Python<'py>,
+    skirt: &UltrasonicSkirt,
+    scene: &SkirtScene,
+    motion: &SkirtMotion,
+    layouts: usize,
+    repeats: usize,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let plan = TestPlan {
+        layouts,
+        repeats,
+        scene: scene.0,
+        motion: motion.0,
+        seed,
+    }
+    .checked(&skirt.0)
+    .map_err(CoreError::from)?;
+    let report = Report::new(progress.as_ref(), plan.runs());
+    let rows = watched(py, report, |control| {
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|runs| control.count(runs),
+        };
+        test_batch(&skirt.0, &plan, work)
+    })?;
+    let fields = Fields::new(py);
+    let directions = (0..rows.len()).map(|index| plan.direction(index).word());
+    fields.words("direction", directions)?;
+    let clearances = rows.iter().map(|row| row.course.min_clearance).collect();
+    fields.vector("min_clearance", clearances)?;
+    let times = rows
+        .iter()
+        .map(|row| row.course.contact_time.unwrap_or(f64::NAN));
+    fields.vector("contact_time", times.collect())?;
+    fields.vector(
+        "nearest_seen",
+        rows.iter().map(|row| row.nearest_seen).collect(),
+    )?;
+    Ok(fields.finish())
+}
+
+/// One test of the avoidance test, step by step.
+#[pyfunction]
+#[pyo3(signature = (skirt, scene, motion, *, index, repeats, seed))]
+pub fn skirt_run<'py>(
+    py: Python<'py>,
+    skirt: &UltrasonicSkirt,
+    scene: &SkirtScene,
+    motion: &SkirtMotion,
+    index: usize,
+    repeats: usize,
+    seed: u64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let plan = TestPlan {
+        layouts: 1,
+        repeats,
+        scene: scene.0,
+        motion: motion.0,
+        seed,
+    }
+    .checked(&skirt.0)
+    .map_err(CoreError::from)?;
+    let mut record = Record::default();
+    let (row, drawn) = plan
+        .run(&skirt.0, index, |moment| record.push(moment))
+        .map_err(CoreError::from)?;
+    let fields = Fields::new(py);
+    record.fill(&fields)?;
+    let discs = drawn.discs.len();
+    let centers = drawn.discs.iter().flat_map(|disc| disc.center).collect();
+    fields.matrix("disc_center", centers, discs, 2)?;
+    fields.vector(
+        "disc_radius",
+        drawn.discs.iter().map(|disc| disc.radius).collect(),
+    )?;
+    fields.vector("disc_seen", drawn.seen)?;
+    fields.value("min_clearance", row.course.min_clearance)?;
+    let contact_time = row.course.contact_time.unwrap_or(f64::NAN);
+    fields.value("contact_time", contact_time)?;
+    Ok(fields.finish())
+}
+
+/// Columns of a run.
+#[derive(Default)]
+struct Record {
+    time: Vec<f64>,
+    position: Vec<f64>,
+    heading: Vec<f64>,
+    velocity: Vec<f64>,
+    yaw_rate: Vec<f64>,
+    readings: Vec<f64>,
+    action: Vec<&'static str>,
+}
+
+impl Record {
+    fn push(&mut self, moment: &reactive_core::skirt::robot::Moment<'_>) {
+        let [cos, sin] = moment.pose.direction;
+        self.time.push(moment.time);
+        self.position.extend(moment.pose.position);
+        self.heading.push(sin.atan2(cos));
+        self.velocity.extend(moment.velocity);
+        self.yaw_rate.push(moment.yaw_rate);
+        self.readings.extend(moment.readings);
+        self.action.push(action_word(moment.action));
+    }
+
+    fn fill(self, fields: &Fields<'_>) -> PyResult<()> {
+        let rows = self.time.len();
+        let sensors = self.readings.len() / rows.max(1);
+        fields.vector("time", self.time)?;
+        fields.matrix("position", self.position, rows, 2)?;
+        fields.vector("heading", self.heading)?;
+        fields.matrix("velocity", self.velocity, rows, 2)?;
+        fields.vector("yaw_rate", self.yaw_rate)?;
+        fields.matrix("readings", self.readings, rows, sensors)?;
+        fields.words("action", self.action.into_iter())
+    }
+}

@@ -1,0 +1,168 @@
+//! Errors, with the data needed to act on them.
+
+use std::fmt;
+
+/// A value as it was given, for an error message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Given {
+    /// A number.
+    Number(f64),
+    /// Two numbers.
+    Pair([f64; 2]),
+    /// A count or an index.
+    Count(u64),
+    /// A word.
+    Word(String),
+}
+
+impl fmt::Display for Given {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(value) => write!(formatter, "{value:?}"),
+            Self::Pair([x, y]) => write!(formatter, "({x:?}, {y:?})"),
+            Self::Count(count) => write!(formatter, "{count}"),
+            Self::Word(word) => formatter.write_str(word),
+        }
+    }
+}
+
+/// What can go wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReactiveError {
+    /// An argument breaks a rule.
+    #[error("{name} must {requirement}, got {value}")]
+    InvalidParameter {
+        /// Name of the argument.
+        name: String,
+        /// The rule.
+        requirement: &'static str,
+        /// What was given.
+        value: Given,
+    },
+    /// The state of a run, or the force on it, is no longer finite.
+    #[error("the state or the force became non-finite at {time} s (run {run})")]
+    NonFinite {
+        /// Index of the run.
+        run: usize,
+        /// When, in s.
+        time: f64,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+    /// The thread pool could not be made.
+    #[error("no thread pool of {threads} threads: {reason}")]
+    Threads {
+        /// Number of threads asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// Result of this crate.
+pub type Result<T> = std::result::Result<T, ReactiveError>;
+
+impl ReactiveError {
+    /// An argument breaks a rule.
+    pub fn invalid(name: impl Into<String>, requirement: &'static str, value: Given) -> Self {
+        Self::InvalidParameter {
+            name: name.into(),
+            requirement,
+            value,
+        }
+    }
+
+    /// The same error with the index of the run among more runs.
+    #[must_use]
+    pub fn of_run(self, index: impl FnOnce(usize) -> usize) -> Self {
+        match self {
+            Self::NonFinite { run, time } => Self::NonFinite {
+                run: index(run),
+                time,
+            },
+            other => other,
+        }
+    }
+
+    /// The same error with the owner of the argument in front of its name.
+    #[must_use]
+    pub fn within(self, owner: &str) -> Self {
+        match self {
+            Self::InvalidParameter {
+                name,
+                requirement,
+                value,
+            } => Self::InvalidParameter {
+                name: format!("{owner}.{name}"),
+                requirement,
+                value,
+            },
+            other => other,
+        }
+    }
+}
+
+/// Passes a finite number.
+///
+/// # Errors
+/// It is not finite.
+pub fn finite(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ReactiveError::invalid(
+            name,
+            "be finite",
+            Given::Number(value),
+        ))
+    }
+}
+
+/// Passes a finite number above zero.
+///
+/// # Errors
+/// It is not finite or not above zero.
+pub fn positive(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ReactiveError::invalid(
+            name,
+            "be finite and positive",
+            Given::Number(value),
+        ))
+    }
+}
+
+/// Passes a finite number that is not negative.
+///
+/// # Errors
+/// It is not finite or below zero.
+pub fn not_negative(name: &str, value: f64) -> Result<f64> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(ReactiveError::invalid(
+            name,
+            "be finite and not negative",
+            Given::Number(value),
+        ))
+    }
+}
+
+/// Passes a finite vector.
+///
+/// # Errors
+/// A component is not finite.
+pub fn finite_pair(name: &str, value: [f64; 2]) -> Result<[f64; 2]> {
+    if value.iter().all(|component| component.is_finite()) {
+        Ok(value)
+    } else {
+        Err(ReactiveError::invalid(
+            name,
+            "be finite",
+            Given::Pair(value),
+        ))
+    }
+}

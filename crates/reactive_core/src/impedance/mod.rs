@@ -1,0 +1,15 @@
+//! Virtual impedance: collision vectors, conventional and active law, attraction.
+//!
+//! Equation numbers are those of Avi (2019), in the form that `docs/theory/errata` derives.
+
+pub mod attraction;
+pub mod bank;
+pub mod collision;
+pub mod law;
+pub mod rate;
+
+pub use attraction::Attraction;
+pub use bank::{Bank, BankOptions, Rotation};
+pub use collision::{clamped_foot, foot, pair_echoes};
+pub use law::{Form, Impedance};
+pub use rate::{Rate, RateFilter, Speed};

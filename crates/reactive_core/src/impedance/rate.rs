@@ -1,0 +1,112 @@
+//! Speed of a collision vector from its samples.
+
+use crate::error::{Result, not_negative, positive};
+
+/// Which speed stands for `||dC/dt||`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Speed {
+    /// `max(0, -d||C||/dt)`: only what comes nearer.
+    #[default]
+    Closing,
+    /// Norm of the change of the vector in the world, without sign.
+    Norm,
+}
+
+/// First-order filter of the change of a collision vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateFilter {
+    /// What is filtered.
+    pub speed: Speed,
+    /// Time constant, in s; no filter at zero.
+    pub time_constant: f64,
+    /// Faster changes between two samples are left out, in m/s.
+    pub largest: f64,
+    /// Whether the estimate outlives samples without an echo; it starts anew only when the case of
+    /// the collision vector changes then.
+    pub outlives_gaps: bool,
+}
+
+impl Default for RateFilter {
+    fn default() -> Self {
+        Self {
+            speed: Speed::default(),
+            time_constant: 0.15,
+            largest: 4.0,
+            outlives_gaps: true,
+        }
+    }
+}
+
+impl RateFilter {
+    /// Passes numbers that can be.
+    ///
+    /// # Errors
+    /// The time constant is negative or the largest change not positive.
+    pub fn checked(self) -> Result<Self> {
+        not_negative("filter_time", self.time_constant)?;
+        if self.largest != f64::INFINITY {
+            positive("largest_rate", self.largest)?;
+        }
+        Ok(self)
+    }
+
+    /// Share of a new sample after a step in s: `1 - exp(-step/time constant)`.
+    #[must_use]
+    pub fn weight(&self, step: f64) -> f64 {
+        if self.time_constant == 0.0 {
+            1.0
+        } else {
+            -(-step / self.time_constant).exp_m1()
+        }
+    }
+}
+
+/// Speed estimate of one collision vector; starts anew when its case changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rate {
+    case: Option<usize>,
+    last: Option<[f64; 2]>,
+    filtered: [f64; 2],
+}
+
+impl Rate {
+    /// Forgets everything.
+    #[inline]
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Takes the vector (in the world's directions, m) of a new sample and its case, and gives the
+    /// speed in m/s; zero at the first one.
+    #[inline]
+    pub fn update(
+        &mut self,
+        filter: &RateFilter,
+        (case, vector): (usize, [f64; 2]),
+        (step, weight): (f64, f64),
+    ) -> f64 {
+        let distance = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+        if self.case != Some(case) {
+            self.reset();
+            self.case = Some(case);
+        }
+        // The distance alone is kept for the closing speed.
+        let sample = match filter.speed {
+            Speed::Closing => [distance(vector), 0.0],
+            Speed::Norm => vector,
+        };
+        if let Some(last) = self.last {
+            let raw = [(sample[0] - last[0]) / step, (sample[1] - last[1]) / step];
+            if raw[0] * raw[0] + raw[1] * raw[1] <= filter.largest * filter.largest {
+                for (filtered, raw) in self.filtered.iter_mut().zip(raw) {
+                    *filtered += weight * (raw - *filtered);
+                }
+            }
+        }
+        self.last = Some(sample);
+        match filter.speed {
+            Speed::Closing => (-self.filtered[0]).max(0.0),
+            Speed::Norm => distance(self.filtered),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+"""Pictures of the follower: single layouts, laws, rates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from hrsafety import plotting, reactive
+from hrsafety.reactive.layouts import Kind
+from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, SETTINGS, FollowerStudy
+from hrsafety.reproduce.reactive_follower_tables import SECOND
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["make"]
+
+PUBLISHED = {"static": "13", "one_dynamic": "15", "two_dynamic": "16"}
+
+
+def make(study: FollowerStudy) -> list[Picture]:
+    """Draw every picture.
+
+    Parameters
+    ----------
+    study : FollowerStudy
+        All runs.
+
+    Returns
+    -------
+    list of Picture
+        In the order of the source's figures.
+    """
+    return [picture(name, caption, figure) for name, caption, figure in _drawings(study)]
+
+
+def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
+    active, conventional = reactive.VirtualImpedance.active, reactive.VirtualImpedance.conventional
+    yield (
+        "follower_forces",
+        "Repulsion over the size of the collision vector, and over the approach speed at half the safe distance "
+        "(figure 6): K_0 = 40 N/m, D_0 = 10 N s/m, rho_0 = 0.8 m, mu_0 = 0.72 m/s.",
+        plotting.impedance_forces(
+            {
+                "conventional (19-a)": conventional(),
+                "active (20)": active(),
+                "(20) without its limit": active(clamp=False),
+                "(19-b) as printed": reactive.VirtualImpedance(form="twice_scaled"),
+            }
+        ),
+    )
+    for kind in KINDS:
+        seed = _telling(study, kind)
+        scene = reactive.FollowerLayouts(kind=kind).scene(seed)
+        laws = {law: study.base[kind, law].law for law in LAWS}
+        runs = {f"{law} law": reactive.follow(scene, law=laws[law], seed=seed) for law in LAWS}
+        yield (
+            f"follower_{kind}",
+            f"{SETTINGS[kind].capitalize()} (figure {PUBLISHED[kind]}): layout {seed}, the first one in which the "
+            "conventional law touches and the active law follows, as in the source. It is one of 1,000.",
+            plotting.follower_runs(runs),
+        )
+    yield (
+        "follower_rates",
+        "Share of 1,000 layouts with a contact, with 95 % intervals; diamonds: a second implementation of the same "
+        "description in other layouts.",
+        plotting.follower_rates(
+            {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
+            marks={SETTINGS[kind]: {law: SECOND["as specified", kind, law] for law in LAWS} for kind in KINDS},
+            marks_label="second implementation",
+        ),
+    )
+    names = {"as specified": "front", "mirrored rear sensors": "front and rear"}
+    yield (
+        "follower_rear",
+        "Three more sensors, turned by half a turn: share of 1,000 layouts with a contact, active law.",
+        plotting.follower_rates(
+            {
+                SETTINGS[kind]: {
+                    label: study.found[variant][kind, "active"].collision_rate for variant, label in names.items()
+                }
+                for kind in KINDS
+            }
+        ),
+    )
+
+
+def _telling(study: FollowerStudy, kind: Kind) -> int:
+    """Return the first layout in which the conventional law touches and the active law follows."""
+    telling = study.base[kind, "conventional"].collided & study.base[kind, "active"].follows
+    return int(study.base[kind, "active"].seed[int(telling.argmax())])

@@ -1,0 +1,76 @@
+"""Pictures of the sound part: a burst at three microphones, likeness over lag, scattered fixes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hrsafety import plotting, reactive
+from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.reactive_sound_study import BURST, NOISE, ROW
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["make"]
+
+DISTANCE, BEARING = 2.0, math.radians(30.0)
+LEAD = 0.005
+BAND = (500.0, 8000.0)
+SHOWN_RUNS = 200
+SOURCES = ((1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (2.0, 30.0), (3.0, 30.0), (2.0, -60.0), (3.0, -60.0))  # m, deg
+
+
+def make() -> list[Picture]:
+    """Draw every picture.
+
+    Returns
+    -------
+    list of Picture
+        In the order of the source.
+    """
+    return [picture(name, caption, figure) for name, caption, figure in _drawings()]
+
+
+def _drawings() -> Iterator[tuple[str, str, Figure]]:
+    delays = [0.0, *(float(each) for each in ROW.delays(range=DISTANCE, bearing=BEARING))]
+    heard = reactive.record_burst(BURST, ROW, range=DISTANCE, bearing=BEARING, noise=0.01, lead=LEAD)
+    yield (
+        "sound_burst",
+        "A burst from 2 m, 30 deg to the left: its beginning at the three microphones, with 0.01 of full scale of "
+        "noise and 10 bits. Dashed: the arrivals.",
+        plotting.sound_burst(
+            heard, arrivals=[LEAD + each - min(delays) for each in delays], span=(LEAD - 0.001, LEAD + 0.011)
+        ),
+    )
+    noisy = reactive.record_burst(BURST, ROW, range=DISTANCE, bearing=BEARING, noise=NOISE, lead=-0.02, samples=4096)
+    rate = noisy.sample_rate
+    yield (
+        "sound_likeness",
+        f"How alike M1 is to M2 and M3 over the lag, 4096 samples of the same burst with {NOISE:g} of full scale of "
+        "noise. Dashed: the true lags. The similarity of (5) is the inverse of the mean square difference.",
+        plotting.sound_likeness(
+            {
+                "similarity": reactive.likeness(noisy, ROW, method="mean_square"),
+                "cross-correlation": reactive.likeness(noisy, ROW),
+                "GCC-PHAT, 0.5 to 8 kHz": reactive.likeness(noisy, ROW, method="phase", band=BAND),
+            },
+            lags=(delays[1] * rate, delays[2] * rate),
+        ),
+    )
+    distance, bearing = np.array(SOURCES).T
+    delay_12, delay_13 = ROW.delays(range=distance, bearing=np.radians(bearing))
+    truth = [
+        reactive.locate(ROW, delay_12=float(first), delay_13=float(second))
+        for first, second in zip(delay_12, delay_13, strict=True)
+    ]
+    fixes = reactive.jittered_fixes(ROW, range=distance, bearing=np.radians(bearing), runs=SHOWN_RUNS)
+    yield (
+        "sound_fixes",
+        f"{SHOWN_RUNS} fixes of each source with a quarter of a sample of jitter on every arrival, seen from above. "
+        "Crosses: the sources; curves: two standard deviations by the covariance of a fix.",
+        plotting.sound_fixes(fixes, truth, labels=[f"{each:g} m, {angle:g} deg" for each, angle in SOURCES]),
+    )

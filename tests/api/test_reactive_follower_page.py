@@ -1,0 +1,48 @@
+"""The follower's part of the page, in few layouts."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("matplotlib")
+
+from hrsafety.reproduce import reactive_follower_figures, reactive_follower_study, reactive_follower_tables
+from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, FollowerStudy
+
+LAYOUTS = 25
+
+
+@pytest.fixture(scope="module")
+def study() -> FollowerStudy:
+    return reactive_follower_study.run_study(layouts=LAYOUTS)
+
+
+def test_every_variant_is_run_where_it_is_to_be(study: FollowerStudy) -> None:
+    for name, variant in reactive_follower_study.variants().items():
+        assert set(study.found[name]) == {(kind, law) for kind in variant.kinds for law in variant.laws}
+    assert set(study.base) == {(kind, law) for kind in KINDS for law in LAWS}
+    assert all(len(found) == LAYOUTS for runs in study.found.values() for found in runs.values())
+
+
+def test_variants_differ_from_each_other() -> None:
+    seen = list(reactive_follower_study.variants().values())
+    assert all(seen.count(each) == 1 for each in seen)
+
+
+def test_every_known_rate_has_a_cell(study: FollowerStudy) -> None:
+    cells = reactive_follower_tables.cells(study)
+    for (name, kind, law), value in reactive_follower_tables.SECOND.items():
+        place = (name, f"{reactive_follower_study.SETTINGS[kind]}, {law}")
+        if name == "as specified":
+            found = [cell for cell in cells if f"{value:.3f}" in cell.reason]
+        else:
+            found = [cell for cell in cells if (cell.row, cell.column) == place]
+            assert f"{value:.3f}" in str(found[0].printed)
+        assert found
+    assert all(cell.reason for cell in cells if cell.within is False)
+
+
+def test_pictures_are_pngs(study: FollowerStudy) -> None:
+    pictures = reactive_follower_figures.make(study)
+    assert len({picture.name for picture in pictures}) == len(pictures) == 6
+    assert all(picture.png.startswith(b"\x89PNG") for picture in pictures)
