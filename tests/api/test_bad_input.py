@@ -40,15 +40,22 @@ RIGHT: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Scenario": (nav.Scenario, {"start": (3.9, 0.6), "goal": (0.0, 0.6)}),
 }
 
+# Two numbers are right for two wheels, three are not.
+TWO_WHEELS = (*(wrong for wrong in WHEELS if wrong != (1.0, 2.0)), (0.1, 0.1, 0.1))
+
 RULES: dict[str, dict[str, tuple[Any, ...]]] = {
     "HolonomicRobot": {
         **dict.fromkeys(("mass", "radius", "max_speed", "max_acceleration", "wheel_radius"), POSITIVE),
         "winding_resistance": NOT_NEGATIVE,
         **dict.fromkeys(("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction"), WHEELS),
     },
-    "DifferentialDriveRobot": dict.fromkeys(
-        ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"), POSITIVE
-    ),
+    "DifferentialDriveRobot": {
+        **dict.fromkeys(("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"), POSITIVE),
+        **dict.fromkeys(("wheel_radius", "wheel_span"), POSITIVE),
+        "reference_speed_share": (*POSITIVE, 1.01),
+        "winding_resistance": NOT_NEGATIVE,
+        **dict.fromkeys(("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction"), TWO_WHEELS),
+    },
     "VirtualForceField": {
         **dict.fromkeys(("attractive_gain", "repulsive_gain", "detour_gain", "gain_ratio"), NOT_NEGATIVE),
         "stabilizing": WORD,
@@ -103,7 +110,7 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
             [nav.HolonomicRobot()],
             nav.Disc(center=(2, 2), radius=0.1),
         ),
-        "robot": (None, "robot", 4.4, nav.DifferentialDriveRobot(), nav.HolonomicRobot),
+        "robot": (None, "robot", 4.4, nav.Disc(center=(2, 2), radius=0.1), nav.HolonomicRobot),
         "control_period": POSITIVE,
         "time_limit": POSITIVE,
         "arrival_tolerance": POSITIVE,

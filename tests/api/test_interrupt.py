@@ -42,6 +42,13 @@ crowds = [scenarios.random_traffic(12, seed=seed) for seed in range(40)]
 """
 PLANNED = "nav.simulate_batch(crowds, nav.FieldDStar(resolution=0.02), threads=2)"
 
+# Wheels with controllers every millisecond.
+WHEELS = """
+from hrsafety import scenarios
+scene, built = scenarios.configuration("c4"), nav.AsBuilt(wheels=nav.HOLONOMIC_WHEELS)
+"""
+REPEATED = "nav.repeat(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
+
 PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
 SPEEDS = "speeds = np.linspace(0.1, 2.0, 20_000_000)\n" + PARTS
 BATCH = (
@@ -68,6 +75,7 @@ JOBS = {
     "short runs": (SHORT, SIMULATE.format(options="threads=1, lanes=1")),
     "short runs, reported": (SHORT, SIMULATE.format(options="threads=1, lanes=1, progress=lambda done, total: None")),
     "planned runs": (CROWDS, PLANNED),
+    "repeated runs": (WHEELS, REPEATED),
     "impacts": (SPEEDS, BATCH.format(more="")),
     "impacts, reported": (SPEEDS, BATCH.format(more=", progress=lambda done, total: None")),
     "one impact, exact": (PARTS, RECORD.format(method="exact")),

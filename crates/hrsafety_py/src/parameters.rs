@@ -6,7 +6,7 @@ use vff_core::measurement::{self, Distribution, Noisy};
 use vff_core::motion::{Motion, Segment};
 use vff_core::obstacle::{self, Limits};
 use vff_core::region;
-use vff_core::robots::{self, Wheels};
+use vff_core::robots::{self, DifferentialWheels, Wheels};
 use vff_core::scenario::{self, Rules};
 
 use crate::errors::CoreResult;
@@ -52,25 +52,45 @@ impl HolonomicRobot {
 
 /// Differential-drive robot.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct DifferentialDriveRobot(robots::DifferentialDriveRobot);
+pub struct DifferentialDriveRobot(pub robots::DifferentialDriveRobot);
 
 #[pymethods]
 impl DifferentialDriveRobot {
     #[new]
-    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, max_angular_acceleration))]
+    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, max_angular_acceleration,
+        reference_speed_share, wheel_radius, wheel_span, winding_resistance, wheel_inertia,
+        wheel_viscous_friction, wheel_static_friction))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
     fn new(
         mass: f64,
         radius: f64,
         max_speed: f64,
         max_acceleration: f64,
         max_angular_acceleration: f64,
+        reference_speed_share: f64,
+        wheel_radius: f64,
+        wheel_span: f64,
+        winding_resistance: f64,
+        wheel_inertia: [f64; 2],
+        wheel_viscous_friction: [f64; 2],
+        wheel_static_friction: [f64; 2],
     ) -> CoreResult<Self> {
+        let wheels = DifferentialWheels {
+            radius: wheel_radius,
+            span: wheel_span,
+            resistance: winding_resistance,
+            inertia: wheel_inertia,
+            viscous_friction: wheel_viscous_friction,
+            static_friction: wheel_static_friction,
+        };
         let robot = robots::DifferentialDriveRobot {
             mass,
             radius,
             max_speed,
             max_acceleration,
             max_angular_acceleration,
+            reference_speed_share,
+            wheels,
         };
         Ok(Self(robot.checked()?))
     }
@@ -255,7 +275,7 @@ impl Scenario {
     #[allow(clippy::too_many_arguments)] // keyword-only in Python
     #[allow(clippy::needless_pass_by_value)] // references to Python objects
     fn new(
-        robot: &HolonomicRobot,
+        robot: &Bound<'_, PyAny>,
         start: [f64; 2],
         goal: [f64; 2],
         obstacles: Vec<PyRef<'_, Obstacle>>,
@@ -266,7 +286,7 @@ impl Scenario {
         rest_time: f64,
         measurement: Option<PyRef<'_, Measurement>>,
         seed: u64,
-    ) -> CoreResult<Self> {
+    ) -> PyResult<Self> {
         let obstacles = obstacles
             .iter()
             .map(|obstacle| obstacle.0.clone())
@@ -278,7 +298,13 @@ impl Scenario {
             rest_time,
             heading,
         };
-        let scenario = scenario::Scenario::new(robot.0, start, goal, obstacles, rules)?;
+        let scenario = if let Ok(robot) = robot.cast::<HolonomicRobot>() {
+            scenario::Scenario::new(robot.get().0, start, goal, obstacles, rules)
+        } else {
+            let robot = robot.cast::<DifferentialDriveRobot>()?.get().0;
+            scenario::Scenario::for_differential(robot, start, goal, obstacles, rules)
+        };
+        let scenario = scenario.map_err(crate::errors::CoreError::from)?;
         Ok(Self(scenario.measured(
             measurement.map(|measurement| measurement.0),
             seed,

@@ -74,7 +74,8 @@ fn run(
     Ok(result.map_err(CoreError::from)?)
 }
 
-fn trajectory_fields<'py>(
+/// Fields of a trajectory.
+pub fn trajectory_fields<'py>(
     py: Python<'py>,
     scenario: &vff_core::scenario::Scenario,
     summary: RunSummary,

@@ -21,4 +21,5 @@ pub mod planners;
 pub mod region;
 pub mod robots;
 pub mod scenario;
+pub mod sensing;
 pub mod simulate;

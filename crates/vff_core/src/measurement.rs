@@ -4,7 +4,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Result, not_negative};
-use crate::forces::geometry::Body;
+use crate::forces::geometry::{Body, RobotState};
+use crate::lanes::{Real, Vec2};
 use crate::motion::BodyState;
 use crate::scenario::Scenario;
 
@@ -52,17 +53,23 @@ impl Measurement {
             noisy,
         })
     }
+
+    /// Whether the robot is measured with an error.
+    #[must_use]
+    pub fn of_robot(&self) -> bool {
+        self.noisy != Noisy::Obstacles
+    }
 }
 
 /// Errors of one measured body, a stream of its own.
 #[derive(Clone, Debug)]
-struct Noise {
+pub(crate) struct Noise {
     generator: ChaCha8Rng,
     measurement: Measurement,
 }
 
 impl Noise {
-    fn new(measurement: Measurement, seed: u64, stream: u64) -> Self {
+    pub(crate) fn new(measurement: Measurement, seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
         Self {
@@ -72,11 +79,12 @@ impl Noise {
     }
 
     /// Uniform in [0, 1) with 53 bits.
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn draw(&mut self) -> [f64; 2] {
+    /// Error of one position in m.
+    pub(crate) fn draw(&mut self) -> [f64; 2] {
         let scale = self.measurement.scale;
         match self.measurement.distribution {
             Distribution::Uniform => {
@@ -105,6 +113,31 @@ pub struct Measured {
     pub period: f64,
 }
 
+impl Measured {
+    /// State of robots as measured, from their own; the first velocity is the true one.
+    #[inline(always)]
+    pub(crate) fn of_robot<R: Real>(
+        &self,
+        robot: RobotState<R>,
+        last: &mut Option<Vec2<R>>,
+    ) -> RobotState<R> {
+        let Some(error) = self.robot_error else {
+            return robot;
+        };
+        let position = robot.position + Vec2::splat(error);
+        let rate = R::splat(self.period);
+        let velocity = last.map_or(robot.velocity, |last| {
+            let way = position - last;
+            Vec2 {
+                x: way.x / rate,
+                y: way.y / rate,
+            }
+        });
+        *last = Some(position);
+        RobotState { position, velocity }
+    }
+}
+
 /// What the controller sees of the scene.
 #[derive(Clone, Debug)]
 pub struct Sensor {
@@ -119,7 +152,7 @@ impl Sensor {
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let measurement = scenario.measurement?;
-        let noisy_robot = measurement.noisy != Noisy::Obstacles;
+        let noisy_robot = measurement.of_robot();
         let noisy_obstacles = measurement.noisy != Noisy::Robot;
         let noise = |stream| Noise::new(measurement, scenario.seed, stream);
         let obstacles = (1..).zip(&scenario.obstacles);

@@ -3,8 +3,8 @@
 use crate::error::{Given, NavigationError, Result, finite, finite_pair, positive};
 use crate::measurement::Measurement;
 use crate::obstacle::{Obstacle, Regions};
-use crate::region;
-use crate::robots::HolonomicRobot;
+use crate::region::{self, RobotLimits};
+use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
 
 /// An obstacle whose regions are known.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,9 @@ impl Default for Rules {
 /// What is simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
+    /// What a law drives: the robot, or the one that a two-wheel robot follows.
     pub(crate) robot: HolonomicRobot,
+    pub(crate) differential: Option<DifferentialDriveRobot>,
     pub(crate) start: [f64; 2],
     pub(crate) goal: [f64; 2],
     pub(crate) obstacles: Vec<PlacedObstacle>,
@@ -75,6 +77,37 @@ impl Scenario {
         rules: Rules,
     ) -> Result<Self> {
         robot.checked()?;
+        Self::placed(robot, &robot.limits(), [start, goal], obstacles, rules)
+    }
+
+    /// The same for a two-wheel robot: its regions include the time that it needs to turn, and a
+    /// law drives the robot that it follows.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_differential(
+        robot: DifferentialDriveRobot,
+        start: [f64; 2],
+        goal: [f64; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
+        let limits = robot.checked()?.limits();
+        let scenario = Self::placed(robot.reference(), &limits, [start, goal], obstacles, rules)?;
+        let differential = Some(robot);
+        Ok(Self {
+            differential,
+            ..scenario
+        })
+    }
+
+    fn placed(
+        robot: HolonomicRobot,
+        limits: &RobotLimits,
+        [start, goal]: [[f64; 2]; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
         finite_pair("start", start)?;
         finite_pair("goal", goal)?;
         positive("control_period", rules.control_period)?;
@@ -90,7 +123,7 @@ impl Scenario {
             .into_iter()
             .enumerate()
             .map(|(index, obstacle)| {
-                place(&robot, obstacle, rules.control_period)
+                place(limits, obstacle, rules.control_period)
                     .map_err(|error| error.within(&format!("obstacles[{index}]")))
             })
             .collect::<Result<Vec<_>>>()?;
@@ -99,6 +132,7 @@ impl Scenario {
         }
         Ok(Self {
             robot,
+            differential: None,
             start,
             goal,
             obstacles,
@@ -160,10 +194,35 @@ impl Scenario {
         self.rules.control_period
     }
 
+    /// Goal in m.
+    #[must_use]
+    pub fn goal(&self) -> [f64; 2] {
+        self.goal
+    }
+
     /// Heading of the robot in rad.
     #[must_use]
     pub fn heading(&self) -> f64 {
         self.rules.heading
+    }
+
+    /// The two-wheel robot, if it is one.
+    #[must_use]
+    pub fn differential(&self) -> Option<&DifferentialDriveRobot> {
+        self.differential.as_ref()
+    }
+
+    /// Passes a scenario whose robot moves as a point mass.
+    ///
+    /// # Errors
+    /// The robot has two wheels.
+    pub(crate) fn of_point_mass(&self) -> Result<()> {
+        if self.differential.is_none() {
+            return Ok(());
+        }
+        let rule = "be a HolonomicRobot here, where robots move as point masses";
+        let given = Given::Word("a DifferentialDriveRobot".into());
+        Err(NavigationError::invalid("robot", rule, given))
     }
 
     /// Mass of the robot in kg.
@@ -173,11 +232,7 @@ impl Scenario {
     }
 }
 
-fn place(
-    robot: &HolonomicRobot,
-    obstacle: Obstacle,
-    control_period: f64,
-) -> Result<PlacedObstacle> {
+fn place(robot: &RobotLimits, obstacle: Obstacle, control_period: f64) -> Result<PlacedObstacle> {
     let limits = obstacle.limits;
     let given = limits.critical_radius.zip(limits.active_radius);
     let regions = if let Some((critical_radius, active_radius)) = given {
@@ -186,7 +241,7 @@ fn place(
             active_radius,
         }
     } else {
-        let computed = region::radii(&robot.limits(), &obstacle, control_period, None)?;
+        let computed = region::radii(robot, &obstacle, control_period, None)?;
         Regions {
             critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
             active_radius: limits.active_radius.unwrap_or(computed.active_radius),

@@ -12,6 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import callback, count, flag, number, numbers, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws import Law
+from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Array, Integrator, check_weights
 
@@ -213,6 +214,9 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
     scenes = sequence("scenarios", "be a sequence of Scenario", scenarios)
     for index, scenario in enumerate(scenes):
         _require(f"scenarios[{index}]", scenario, Scenario)
+        if not isinstance(scenario.robot, HolonomicRobot):
+            rule = "be a HolonomicRobot, since batches move point masses; `simulate` and `repeat` run the other kind"
+            raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)
     if not scenes:
         raise InvalidParameterError("scenarios", "hold at least one scenario", "an empty list")
     return scenes

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, number, sequence
+from hrsafety._arguments import Pair, Parameters, number, sequence
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
@@ -13,13 +13,13 @@ __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
 Triple = tuple[float, float, float]
 
 
-def _triple(name: str, value: object) -> Triple:
-    rule = "be three numbers, one for each wheel"
+def _of_wheels(name: str, value: object, wheels: int) -> tuple[float, ...]:
+    """Return a number for each wheel, or say what it should have been."""
+    rule = f"be {('two', 'three')[wheels - 2]} numbers, one for each wheel"
     parts = sequence(name, rule, value)
-    if len(parts) != 3:
+    if len(parts) != wheels:
         raise InvalidParameterError(name, rule, value)
-    first, second, third = (number(name, part) for part in parts)
-    return (first, second, third)
+    return tuple(number(name, part) for part in parts)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -83,7 +83,7 @@ class HolonomicRobot(Parameters):
         self._set(**{name: number(name, getattr(self, name)) for name in scalars})
         self._set(winding_resistance=number("winding_resistance", self.winding_resistance))
         wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
-        self._set(**{name: _triple(name, getattr(self, name)) for name in wheels})
+        self._set(**{name: _of_wheels(name, getattr(self, name), 3) for name in wheels})
         self._set(
             _native=_hrsafety.HolonomicRobot(
                 mass=self.mass,
@@ -101,10 +101,12 @@ class HolonomicRobot(Parameters):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialDriveRobot(Parameters):
-    """Limits of a two-wheel robot that has to turn before it can go sideways.
+    """Two-wheel robot that has to turn before it can go sideways.
 
-    `region_radii` sizes the regions for it; its motion is not simulated in this release.
-    Defaults are the robot of chapter 7 of Zeng (2011).
+    A law drives a point mass with the same mass, size and acceleration and a share of the speed;
+    the robot follows it, Zeng (2011), section 7.2. The force is computed at the position and
+    velocity of the robot itself. `region_radii` sizes the regions with the time that the robot
+    needs to turn. Defaults are the robot of chapter 7 and Table E.2 of that thesis.
 
     Parameters
     ----------
@@ -118,11 +120,29 @@ class DifferentialDriveRobot(Parameters):
         Largest acceleration and deceleration, in m/s^2.
     max_angular_acceleration : float
         Largest angular acceleration alpha_max, in rad/s^2.
+    reference_speed_share : float
+        Share of the largest speed that the point mass may use, above 0 and at most 1. At 1 the
+        robot has no speed left to catch up with it.
+    wheel_radius : float
+        Wheel radius r_w in m.
+    wheel_span : float
+        Span l between the driven wheels in m.
+    winding_resistance : float
+        Winding resistance R_a in ohm; the default is that of the motor's datasheet. The thesis gives
+        no value, but the printed H, T, L and d of Tables 7.1 to 7.3 imply free runs of 1.95, 1.86
+        and 1.91 J, and with the default a free run takes 1.95 J. Energy scores need ratios only and
+        do not depend on it.
+    wheel_inertia : tuple of float
+        Feed-forward J/K of each wheel, in A s^2.
+    wheel_viscous_friction : tuple of float
+        Feed-forward B/K of each wheel, in A s.
+    wheel_static_friction : tuple of float
+        Feed-forward tau/K of each wheel, in A.
 
     Raises
     ------
     InvalidParameterError
-        If a value is not finite and positive.
+        If a value is not finite, or negative or zero where it must not be, or the share is above 1.
 
     Examples
     --------
@@ -136,10 +156,25 @@ class DifferentialDriveRobot(Parameters):
     max_speed: float = 0.7
     max_acceleration: float = 10.0
     max_angular_acceleration: float = 70.0
+    reference_speed_share: float = 0.9
+    wheel_radius: float = 0.025
+    wheel_span: float = 0.28
+    winding_resistance: float = 1.16
+    wheel_inertia: Pair = (0.0079, 0.0057)
+    wheel_viscous_friction: Pair = (0.0032, 0.0030)
+    wheel_static_friction: Pair = (0.18, 0.28)
     _native: _hrsafety.DifferentialDriveRobot = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
-        names = ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration")
-        values = {name: number(name, getattr(self, name)) for name in names}
-        self._set(**values, _native=_hrsafety.DifferentialDriveRobot(**values))
+        wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
+        self._set(**{name: _of_wheels(name, getattr(self, name), 2) for name in wheels})
+        scalars = self._as_numbers(*(item.name for item in fields(self) if item.init and item.name not in wheels))
+        self._set(
+            _native=_hrsafety.DifferentialDriveRobot(
+                **scalars,
+                wheel_inertia=self.wheel_inertia,
+                wheel_viscous_friction=self.wheel_viscous_friction,
+                wheel_static_friction=self.wheel_static_friction,
+            )
+        )

@@ -83,8 +83,8 @@ class Scenario(Parameters):
     obstacles : iterable of Obstacle
         Discs, rectangles, people, moving discs. Kept as a tuple with the radii of all regions
         filled in.
-    robot : HolonomicRobot
-        The robot.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot. Batches of point masses take the first kind only.
     control_period : float
         Time T_s between two evaluations of the force, in s.
     time_limit : float
@@ -92,7 +92,8 @@ class Scenario(Parameters):
     arrival_tolerance : float
         The robot has arrived when it is this close to the goal for the first time, in m.
     heading : float
-        Constant heading of the robot in rad; it matters for wheel speeds and energy only.
+        Heading of the robot in rad. It is constant and matters for wheel speeds and energy only;
+        a `DifferentialDriveRobot` starts with it.
     rest_time : float
         A robot that has been at rest for this long has stopped for good, in s.
     measurement : Measurement or None
@@ -120,7 +121,7 @@ class Scenario(Parameters):
     start: Pair
     goal: Pair
     obstacles: tuple[Obstacle, ...] = ()
-    robot: HolonomicRobot = field(default_factory=HolonomicRobot)
+    robot: HolonomicRobot | DifferentialDriveRobot = field(default_factory=HolonomicRobot)
     control_period: float = 0.06
     time_limit: float = 60.0
     arrival_tolerance: float = 0.12
@@ -136,7 +137,7 @@ class Scenario(Parameters):
         numbers = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
         values = {name: number(name, getattr(self, name)) for name in numbers}
         self._set(**values)
-        _require("robot", self.robot, HolonomicRobot)
+        _require("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
         if self.measurement is not None:
             _require("measurement", self.measurement, Measurement)
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
@@ -160,7 +161,9 @@ def _require(name: str, value: object, *kinds: type) -> None:
         raise InvalidParameterError(name, f"be a {words}", value)
 
 
-def _with_regions(robot: HolonomicRobot, obstacles: Iterable[Obstacle], control_period: float) -> tuple[Obstacle, ...]:
+def _with_regions(
+    robot: HolonomicRobot | DifferentialDriveRobot, obstacles: Iterable[Obstacle], control_period: float
+) -> tuple[Obstacle, ...]:
     """Return the obstacles with every region radius filled in."""
     complete = []
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):

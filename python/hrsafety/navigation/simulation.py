@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import flag, number, numbers, pair, points
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws import Law, VirtualForceField
+from hrsafety.navigation.robots import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario, _require
 
 __all__ = [
@@ -439,7 +440,8 @@ def simulate(
     Returns
     -------
     Trajectory
-        The run.
+        The run; a `BuiltTrajectory` for a `DifferentialDriveRobot`, which moves by
+        semi-implicit Euler with a held force, as `simulate_built` does.
 
     Raises
     ------
@@ -457,6 +459,11 @@ def simulate(
     ('arrived', 6.63, 0.536)
     """
     _check(scenario, law, Law)
+    if isinstance(scenario.robot, DifferentialDriveRobot):
+        _check_held(integrator, hold)
+        from hrsafety.navigation import built  # which needs this module
+
+        return built.simulate_built(scenario, law, step=step, stop_on_contact=stop_on_contact)
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
@@ -523,17 +530,29 @@ def evaluate(
     0.65
     """
     _check(scenario, law, Law)
+    if isinstance(scenario.robot, DifferentialDriveRobot):
+        _check_held(integrator, hold)
+        from hrsafety.navigation import built  # which needs this module
+
+        return built.evaluate_built(scenario, law, weights, step=step)
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)
     )
     return Performance(
         **scores,
         trajectory=Trajectory(scenario=scenario, law=law, **run),
-        nominal=Trajectory(scenario=_without_obstacles(scenario), law=law, **nominal),
+        nominal=Trajectory(scenario=without_obstacles(scenario), law=law, **nominal),
     )
 
 
-def _without_obstacles(scenario: Scenario) -> Scenario:
-    from dataclasses import replace
-
+def without_obstacles(scenario: Scenario) -> Scenario:
+    """Return the same way without obstacles."""
     return replace(scenario, obstacles=())
+
+
+def _check_held(integrator: Integrator, hold: bool) -> None:
+    """Refuse what a two-wheel robot cannot do."""
+    if flag("hold", hold) is False:
+        raise InvalidParameterError("hold", "be True for a DifferentialDriveRobot", hold)
+    if integrator != "semi_implicit_euler":
+        raise InvalidParameterError("integrator", 'be "semi_implicit_euler" for a DifferentialDriveRobot', integrator)

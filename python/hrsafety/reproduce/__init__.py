@@ -11,6 +11,9 @@ from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reproduce import (
+    built_figures,
+    camera_figures,
+    camera_tables,
     figures,
     gain_figures,
     gain_tables,
@@ -20,16 +23,32 @@ from hrsafety.reproduce import (
     laws_figures,
     laws_study,
     page,
+    reactive_part,
     study,
     tables,
     trends,
+    wheels_figures,
+    wheels_tables,
 )
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.published import published_tables
 
 __all__ = ["PARTS", "Cell", "published_tables", "run"]
 
-PARTS = ("tables-6", "tables-7", "table-5.1", "tables-c", "figures-6", "impact", "laws", "stabilizing")
+PARTS = (
+    "tables-6",
+    "tables-7",
+    "table-5.1",
+    "tables-c",
+    "figures-6",
+    "figures-7",
+    "impact",
+    "laws",
+    "reactive",
+    "stabilizing",
+    "wheels",
+    "camera",
+)
 """What `run` can make, in the order in which it is made."""
 
 
@@ -86,10 +105,14 @@ def run(
             report.impact_pictures.extend(impact_part.pictures())
         elif part == "figures-6":
             report.pictures.extend(figures.make())
+        elif part == "figures-7":
+            report.pictures.extend(built_figures.make())
         elif part == "laws":
             report.laws = laws_study.compare(say)
             report.cells.extend(laws_claims.cells(report.laws))
             report.laws_pictures.extend([*laws_demonstrations.make(report.laws), *laws_figures.make(report.laws)])
+        elif part == "reactive":
+            report.reactive_cells, report.reactive_pictures = reactive_part.make(say)
         elif part == "stabilizing":
             report.study = study.compare(say)
             report.study_pictures.extend(figures.of_study(report.study))
@@ -97,6 +120,10 @@ def run(
             report.cells.extend(_TABLES[part]())
         if part == "tables-c":
             report.gain_pictures.extend(gain_figures.make())
+        if part == "wheels":
+            report.wheel_pictures.extend(wheels_figures.make())
+        if part == "camera":
+            report.camera_pictures.extend(camera_figures.make())
     if {"tables-c", "figures-6"} <= set(parts):
         report.pictures.extend(trends.make(report.cells))
     report.seconds = time.perf_counter() - begin
@@ -109,16 +136,22 @@ _TABLES: dict[str, Callable[[], list[Cell]]] = {
     "tables-7": tables.chapter_7,
     "table-5.1": tables.unpredictable_human,
     "tables-c": gain_tables.appendix_c,
+    "wheels": wheels_tables.cells,
+    "camera": camera_tables.cells,
 }
 _TITLES = {
     "impact": "chapters 3 and 4, appendix A: tables, claims and pictures of impacts",
     "tables-6": "Tables 6.1 to 6.5",
-    "tables-7": "Tables 7.1 to 7.4",
+    "tables-7": "Tables 7.1 to 7.4 and section 7.5.5",
     "table-5.1": "Table 5.1",
     "tables-c": "Tables C.1 to C.9 and the search for the best gains",
     "figures-6": "Figures 6.3 to 6.18",
+    "figures-7": "Figures 7.3 to 7.14 and F.1 to F.4",
     "laws": "nine laws: sections 2.2.5 and 5.7, Figures 2.5, 2.6, 5.11, 5.12, 6.19, 6.20",
+    "reactive": "sound-following robot and ultrasonic skirt: tables and experiments of three papers",
     "stabilizing": "stabilizing force off, capped and full",
+    "wheels": "Tables D.1, D.2, E.1 and E.2: wheels identified and controlled",
+    "camera": "section D.4: the camera recovered from points, errors of positions",
 }
 
 

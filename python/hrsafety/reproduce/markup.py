@@ -134,7 +134,7 @@ def anchor(table: str) -> str:
 
 
 def _link(table: str) -> str:
-    return f'<a href="#{anchor(table)}">{table}</a> {TABLE_TITLES[table]}'
+    return f'<a href="#{anchor(table)}">{table}</a> {TABLE_TITLES.get(table, "")}'.rstrip()
 
 
 def _count_row(name: str, cells: Sequence[Cell]) -> str:
@@ -161,8 +161,9 @@ def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
     judged = [cell for cell in cells if cell.within is not None]
     within = sum(bool(cell.within) for cell in judged)
     verdict = f"{within} of {len(judged)} within tolerance" if judged else "inputs"
-    name = table if table.startswith("Section") else f"Table {table}"
-    heading = f'<h3 id="{anchor(table)}">{name}: {TABLE_TITLES[table]} ({verdict})</h3>'
+    name = table if table.startswith("Section") or _of_papers(table) else f"Table {table}"
+    title = f": {TABLE_TITLES[table]}" if table in TABLE_TITLES else ""
+    heading = f'<h3 id="{anchor(table)}">{name}{title} ({verdict})</h3>'
     if not any(cell.row.endswith("%") for cell in cells):
         return heading + _list(cells)
     folded = f"<details><summary>All {len(cells)} values one by one</summary>{_list(cells)}</details>"
@@ -252,9 +253,14 @@ def _reasons(cells: Sequence[Cell]) -> str:
     return f'<ul class="reasons">{"".join(items)}</ul>' if items else ""
 
 
-def _of_impacts(cell: Cell) -> bool:
-    """Return whether a cell is of the impact part, whose quantities differ in size by decades."""
-    return cell.table[0] in "34AS"
+def _of_papers(table: str) -> bool:
+    """Return whether a table is of a paper: its name begins with the key of the paper."""
+    return table[0].islower()
+
+
+def _of_many_sizes(cell: Cell) -> bool:
+    """Return whether a cell is of the impact part or of a paper, whose quantities differ in size by decades."""
+    return cell.table[0] in "34AS" or _of_papers(cell.table)
 
 
 def _digits(cell: Cell) -> int:
@@ -275,7 +281,7 @@ def _measured(cell: Cell) -> str:
         return "&ndash;"
     if isinstance(cell.measured, str):
         return escape(cell.measured)
-    return f"{cell.measured:.4g}" if _of_impacts(cell) else f"{cell.measured:.{_digits(cell)}f}"
+    return f"{cell.measured:.4g}" if _of_many_sizes(cell) else f"{cell.measured:.{_digits(cell)}f}"
 
 
 def _deviation(cell: Cell) -> str:
@@ -286,7 +292,7 @@ def _signed(value: float, cell: Cell, *, sign: bool = True) -> str:
     plus = "+" if sign else ""
     if cell.relative:
         return f"{100.0 * value:{plus}.1f} %" if sign else f"{100.0 * value:g} %"
-    return f"{value:{plus}.2g}" if _of_impacts(cell) else f"{value:{plus}.3f}"
+    return f"{value:{plus}.2g}" if _of_many_sizes(cell) else f"{value:{plus}.3f}"
 
 
 def head(names: Sequence[str], *, escaped: bool = False) -> str:

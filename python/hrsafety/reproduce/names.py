@@ -38,6 +38,7 @@ TABLE_TITLES = {
     "7.2": "Configuration 2, a person",
     "7.3": "Configuration 3, a disc and a rectangle",
     "7.4": "Configuration 4, a person, a disc and a rectangle",
+    "Section 7.5.5": "a person, a disc and another robot at once",
     "Section C.2": "the search for the best gains",
     "Section C.3": "sensitivities and trends of the text",
     "C.1": "Optimized gains",
@@ -49,6 +50,15 @@ TABLE_TITLES = {
     "C.7": "Change of K<sub>5</sub>: score and sensitivity",
     "C.8": "Change of b: time, energy, distance",
     "C.9": "Change of b: score and sensitivity",
+    "D.1": "Holonomic robot: wheel models",
+    "D.2": "Holonomic robot: wheel controllers",
+    "Section D.4": "camera calibration and position errors",
+    "E.1": "Differential-drive robot: wheel models",
+    "E.2": "Differential-drive robot: wheel controllers",
+    "Section D.2": "identification, holonomic robot",
+    "Section D.3": "observer and wheel period, holonomic robot",
+    "Section E.2": "identification, differential-drive robot",
+    "Section E.3": "observer and wheel period, differential-drive robot",
 }
 """What each published table is about, in HTML."""
 

@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from hrsafety._atomic import write_file
-from hrsafety.reproduce import evidence, gain_page, impact_page, laws_page, markup, records
+from hrsafety.reproduce import evidence, gain_page, impact_page, laws_page, markup, reactive_page, records
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.laws_study import LawsStudy
@@ -49,6 +49,14 @@ class Report:
         Every printed value and claim of the impact part.
     impact_pictures : list of Picture
         Pictures of that part.
+    reactive_cells : list of Cell
+        Every printed value and claim of the reactive part.
+    reactive_pictures : list of Picture
+        Pictures of that part.
+    wheel_pictures : list of Picture
+        Pictures of the wheels.
+    camera_pictures : list of Picture
+        Pictures of the camera.
     seconds : float
         How long simulations and pictures took, in s.
     """
@@ -64,12 +72,16 @@ class Report:
     laws_pictures: list[Picture] = field(default_factory=list)
     impact_cells: list[Cell] = field(default_factory=list)
     impact_pictures: list[Picture] = field(default_factory=list)
+    reactive_cells: list[Cell] = field(default_factory=list)
+    reactive_pictures: list[Picture] = field(default_factory=list)
+    wheel_pictures: list[Picture] = field(default_factory=list)
+    camera_pictures: list[Picture] = field(default_factory=list)
     seconds: float = 0.0
 
     @property
     def all_cells(self) -> list[Cell]:
         """Cells of all parts."""
-        return [*self.impact_cells, *self.cells]
+        return [*self.impact_cells, *self.cells, *self.reactive_cells]
 
     @property
     def all_pictures(self) -> list[Picture]:
@@ -79,7 +91,10 @@ class Report:
             *self.laws_pictures,
             *self.gain_pictures,
             *self.pictures,
+            *self.reactive_pictures,
             *self.study_pictures,
+            *self.wheel_pictures,
+            *self.camera_pictures,
         ]
 
 
@@ -143,6 +158,7 @@ def html(report: Report) -> str:
     )
 
 
+WHEEL_TABLES = ("D.1", "Section D.2", "D.2", "Section D.3", "E.1", "Section E.2", "E.2", "Section E.3")
 _PARTS = {
     "impact": "Impact",
     "tables-6": "Chapter 6",
@@ -150,7 +166,10 @@ _PARTS = {
     "table-5.1": "Table 5.1",
     "laws": "Compared laws",
     "tables-c": "Appendix C",
+    "reactive": "Avoidance from sensors",
     "stabilizing": "Stabilizing force",
+    "wheels": "Wheels",
+    "camera": "Camera",
     "figures-6": "Pictures",
 }
 
@@ -160,9 +179,9 @@ def _head(report: Report) -> Iterator[str]:
     yield (
         "<p>Every printed value of the impact model, of the new virtual force field and of the laws that it is "
         "compared with, in L. Zeng, <cite>Design and "
-        "control of human-friendly robots</cite> (PhD thesis, McMaster University, 2011), beside the value measured "
-        "here with the corrected equations. Nothing is tuned to the printed values; where a value differs, the reason "
-        "stands beside it.</p>"
+        "control of human-friendly robots</cite> (PhD thesis, McMaster University, 2011), and of three papers about "
+        "avoidance from sensors, beside the value measured here with the corrected equations. Nothing is tuned to the "
+        "printed values; where a value differs, the reason stands beside it.</p>"
     )
     links = " ".join(f'<a href="#{part}">{escape(_PARTS[part])}</a>' for part in _PARTS if part in report.parts)
     yield f'<nav>{links} <a href="#made">How it was made</a></nav>'
@@ -191,7 +210,7 @@ def _sections(report: Report) -> Iterator[str]:
     tables = markup.by_table(report.cells)
     for part, words, prefix in (
         ("tables-6", "Chapter 6: holonomic robot, configurations c1 to c4", "6."),
-        ("tables-7", "Chapter 7: holonomic rows, configurations n1 to n4", "7."),
+        ("tables-7", "Chapter 7: both robots, configurations n1 to n4", ("7.", "Section 7.")),
         ("table-5.1", "Table 5.1: a person who stops and turns", "5."),
     ):
         if part in report.parts:
@@ -208,10 +227,26 @@ def _sections(report: Report) -> Iterator[str]:
         yield '<section id="tables-c"><h2>Appendix C: the best gains, and one gain at a time changed</h2>'
         yield from gain_page.section(report.cells, report.gain_pictures)
         yield "</section>"
+    if "reactive" in report.parts:
+        yield '<section id="reactive"><h2>Avoidance from sensors: sound, virtual impedance, ultrasonic skirt</h2>'
+        yield from reactive_page.section(report.reactive_cells, report.reactive_pictures)
+        yield "</section>"
     if report.study is not None:
         yield '<section id="stabilizing"><h2>Stabilizing force: off, capped, full</h2>'
         yield from evidence.section(report.study)
         yield from (markup.figure(picture) for picture in report.study_pictures)
+        yield "</section>"
+    if "wheels" in report.parts:
+        yield '<section id="wheels"><h2>Appendices D and E: wheels</h2>'
+        yield "<p>Tolerances: identified parameters 2 %; means and feed-forward half a unit of the last digit.</p>"
+        for table in WHEEL_TABLES:
+            yield markup.table_of_cells(table, tables[table])
+        yield from (markup.figure(picture) for picture in report.wheel_pictures)
+        yield "</section>"
+    if "camera" in report.parts:
+        yield '<section id="camera"><h2>Section D.4: the camera</h2>'
+        yield markup.table_of_cells("Section D.4", tables["Section D.4"])
+        yield from (markup.figure(picture) for picture in report.camera_pictures)
         yield "</section>"
     if report.pictures:
         yield '<section id="figures-6"><h2>Pictures</h2>'

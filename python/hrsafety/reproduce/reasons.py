@@ -8,7 +8,7 @@ from __future__ import annotations
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-__all__ = ["EXCHANGED_COLUMNS", "cause_of", "note_of", "why_not_judged", "why_not_measured"]
+__all__ = ["EXCHANGED_COLUMNS", "cause_of", "note_of", "why_not_judged"]
 
 
 class _Cause(NamedTuple):
@@ -73,8 +73,15 @@ _TOUCHES = (
     "1.8 m. The force jumps at the edge of the active region and nothing damps it, so the run is chaotic: the way of "
     "integrating decides how near they come."
 )
-_EXPERIMENT = "An experiment with the real robot: not simulated."
-_TWO_WHEELS = "The motion of the differential-drive robot is not simulated in this release."
+_FASTER_TURNS = (
+    "The robot here turns as fast as its limits let it and follows with a law that is stable at all of them. The "
+    "printed law takes omega_d = phi_e/T_s, which diverges for heading errors beyond half a radian, so what the source "
+    "ran is not what it prints; no combination of law, frame, rates and limits that was tried gives all four rows."
+)
+_TURNING_ENERGY = (
+    "Nearly all of it is the feed-forward current of turning at 70 rad/s^2: it follows how often and how fast the "
+    "robot turns, which is not known of the source."
+)
 
 _CAUSES = (
     _Cause("6.2", "new_vff", "d_circle_min", "The text of section 6.4.1 gives 0.49 m; only the table 0.54 m."),
@@ -91,6 +98,9 @@ _CAUSES = (
     _Cause("6.4", "new_vff_optimised", "H", _OWN_PARTS_3),
     _Cause("6.4", "new_vff", "H", "Times and distances agree; the energy is higher here, which lowers the score."),
     _Cause("7.3", "holonomic", "H", "The printed score is lower than its own T, L and d give."),
+    _Cause("7.*", "nonholonomic", "[Td]_*", _FASTER_TURNS),
+    _Cause("7.*", "nonholonomic", "L_energy", _TURNING_ENERGY),
+    _Cause("7.*", "nonholonomic", "H", "Follows from time, distances and energy of the same row."),
     _Cause("7.4", "holonomic", "H", "Follows from the distances to the person and the disc."),
     _Cause(
         "7.4",
@@ -239,24 +249,6 @@ def note_of(table: str, row: str, column: str) -> str:
         The note; empty for most cells.
     """
     return _first(_NOTES, table, row, column)
-
-
-def why_not_measured(method: str) -> str:
-    """Return why a method of the tables has no measured values.
-
-    Parameters
-    ----------
-    method : str
-        Name of the row, for example ``"masoud"``.
-
-    Returns
-    -------
-    str
-        The reason; empty if the method is simulated.
-    """
-    if method.endswith("_experiment"):
-        return _EXPERIMENT
-    return _TWO_WHEELS if method == "nonholonomic" else ""
 
 
 def why_not_judged(method: str, column: str) -> str:

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from hrsafety.reproduce import built_runs, built_tables
 from hrsafety.reproduce.cells import Cell, tolerance_of
 from hrsafety.reproduce.impact_cells import listed
 from hrsafety.reproduce.measured import LAWS, Measured, measure_laws, score_of_parts
 from hrsafety.reproduce.published import Row, printed_rows
-from hrsafety.reproduce.reasons import cause_of, note_of, why_not_judged, why_not_measured
+from hrsafety.reproduce.reasons import cause_of, note_of, why_not_judged
 
 __all__ = [
     "GAIN_UNITS",
@@ -63,20 +64,20 @@ def chapter_6() -> list[Cell]:
 
 
 def chapter_7() -> list[Cell]:
-    """Return the cells of Tables 7.1 to 7.4: configurations n1 to n4.
+    """Return the cells of Tables 7.1 to 7.4, configurations n1 to n4, and of section 7.5.5.
 
     Returns
     -------
     list of Cell
-        Every printed number once.
+        Every printed number of the tables once, then the times of the section.
     """
     names = ("n1", "n2", "n3", "n4")
-    runs = measure_laws(names, ["new_vff"])
-    return [
-        cell
-        for index, run in enumerate(runs["new_vff"])
-        for cell in _method_cells(f"7.{index + 1}", {"holonomic": run})
-    ]
+    runs = measure_laws(names, ["new_vff"])["new_vff"]
+    cells = []
+    for index, name in enumerate(names):
+        both = {"holonomic": runs[index], "nonholonomic": built_runs.two_wheels(name)}
+        cells += _method_cells(f"7.{index + 1}", both)
+    return [*cells, *built_tables.multiple_obstacles()]
 
 
 def unpredictable_human() -> list[Cell]:
@@ -142,8 +143,8 @@ def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
         for column, printed in numbers(row):
             place: dict[str, Any] = {"table": table, "row": method, "column": column, "printed": printed}
             unit = UNITS[column[0]]
-            if method not in runs:
-                cells.append(Cell.listed(**place, unit=unit, reason=why_not_measured(method)))
+            if method.endswith("_experiment"):
+                cells.append(built_tables.experiment_cell(**place, unit=unit))
                 continue
             run, unjudged = runs[method], why_not_judged(method, column)
             if unjudged:

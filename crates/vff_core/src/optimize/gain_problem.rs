@@ -63,9 +63,9 @@ impl GainProblem {
         let mut longest = 1;
         for (index, mut scenario) in scenarios.into_iter().enumerate() {
             scenario.rules.time_limit = scenario.rules.time_limit.min(limit);
-            let clock = options
-                .run
-                .clock(&scenario)
+            let clock = scenario
+                .of_point_mass()
+                .and_then(|()| options.run.clock(&scenario))
                 .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
             longest = longest.max(clock.steps);
             if options.seeds.is_empty() {

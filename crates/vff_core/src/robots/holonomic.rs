@@ -3,6 +3,7 @@
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Real, Vec2};
 use crate::region::RobotLimits;
+use crate::robots::wheels::omni_rows;
 
 /// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
 const WHEEL_STANDSTILL: f64 = 1e-9;
@@ -136,11 +137,8 @@ impl WheelModel {
     #[must_use]
     pub fn new(robot: &HolonomicRobot, heading: f64, step: f64) -> Self {
         let (sin, cos) = heading.sin_cos();
-        // (D.1.2): v_i = -x' sin z_i + y' cos z_i with z = 120, 240, 0 degrees.
-        let half_root_3 = 0.5 * 3f64.sqrt();
-        let own = [[-half_root_3, -0.5], [half_root_3, -0.5], [0.0, 1.0]];
         let per_meter = 1.0 / robot.wheels.radius;
-        let rows = own.map(|[forward, left]| {
+        let rows = omni_rows().map(|[forward, left]| {
             [
                 (forward * cos - left * sin) * per_meter,
                 (forward * sin + left * cos) * per_meter,

@@ -1,13 +1,32 @@
 //! Robots: how a commanded force becomes motion, and what it costs.
 
+pub mod differential;
 mod holonomic;
+pub mod wheels;
 
 pub use holonomic::{HolonomicRobot, WheelModel, Wheels};
 
-use crate::error::{Result, positive};
+use crate::error::{Given, NavigationError, Result, not_negative, positive};
 use crate::region::RobotLimits;
 
-/// Limits of a two-wheel robot; its regions are larger by the time it needs to turn.
+/// Driven wheels and motors of a two-wheel robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DifferentialWheels {
+    /// Wheel radius `r_w` in m.
+    pub radius: f64,
+    /// Span `l` between the wheels in m.
+    pub span: f64,
+    /// Winding resistance `R_a` in ohm.
+    pub resistance: f64,
+    /// `J/K` of each wheel in A s^2.
+    pub inertia: [f64; 2],
+    /// `B/K` of each wheel in A s.
+    pub viscous_friction: [f64; 2],
+    /// `tau/K` of each wheel in A.
+    pub static_friction: [f64; 2],
+}
+
+/// A two-wheel robot; its regions are larger by the time it needs to turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DifferentialDriveRobot {
     /// Mass in kg.
@@ -20,10 +39,37 @@ pub struct DifferentialDriveRobot {
     pub max_acceleration: f64,
     /// Largest angular acceleration in rad/s^2.
     pub max_angular_acceleration: f64,
+    /// Share of the largest speed that the robot which it follows may use, so that it can catch up.
+    pub reference_speed_share: f64,
+    /// Wheels and motors.
+    pub wheels: DifferentialWheels,
+}
+
+impl Default for DifferentialDriveRobot {
+    /// The robot of Zeng (2011), chapter 7 and Table E.2; the resistance is that of the
+    /// motor's datasheet.
+    fn default() -> Self {
+        Self {
+            mass: 3.7,
+            radius: 0.2,
+            max_speed: 0.7,
+            max_acceleration: 10.0,
+            max_angular_acceleration: 70.0,
+            reference_speed_share: 0.9,
+            wheels: DifferentialWheels {
+                radius: 0.025,
+                span: 0.28,
+                resistance: 1.16,
+                inertia: [0.0079, 0.0057],
+                viscous_friction: [0.0032, 0.0030],
+                static_friction: [0.18, 0.28],
+            },
+        }
+    }
 }
 
 impl DifferentialDriveRobot {
-    /// Passes a robot whose values are finite and positive.
+    /// Passes a robot whose values are in range.
     ///
     /// # Errors
     /// Names the value that is not.
@@ -33,7 +79,41 @@ impl DifferentialDriveRobot {
         positive("max_speed", self.max_speed)?;
         positive("max_acceleration", self.max_acceleration)?;
         positive("max_angular_acceleration", self.max_angular_acceleration)?;
+        let share = positive("reference_speed_share", self.reference_speed_share)?;
+        if share > 1.0 {
+            let rule = "be positive and at most 1";
+            let given = Given::Number(share);
+            return Err(NavigationError::invalid(
+                "reference_speed_share",
+                rule,
+                given,
+            ));
+        }
+        positive("wheel_radius", self.wheels.radius)?;
+        positive("wheel_span", self.wheels.span)?;
+        not_negative("winding_resistance", self.wheels.resistance)?;
+        for wheel in 0..2 {
+            let inertia = self.wheels.inertia[wheel];
+            not_negative(&format!("wheel_inertia[{wheel}]"), inertia)?;
+            let friction = self.wheels.viscous_friction[wheel];
+            not_negative(&format!("wheel_viscous_friction[{wheel}]"), friction)?;
+            let friction = self.wheels.static_friction[wheel];
+            not_negative(&format!("wheel_static_friction[{wheel}]"), friction)?;
+        }
         Ok(self)
+    }
+
+    /// The robot that a law drives and that this one follows: a point mass with the same mass,
+    /// size and acceleration, and a share of the speed.
+    #[must_use]
+    pub fn reference(&self) -> HolonomicRobot {
+        HolonomicRobot {
+            mass: self.mass,
+            radius: self.radius,
+            max_speed: self.max_speed * self.reference_speed_share,
+            max_acceleration: self.max_acceleration,
+            ..HolonomicRobot::default()
+        }
     }
 
     /// Limits for the size of regions; `t_turn = sqrt(pi / alpha_max)`.

@@ -160,7 +160,9 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
             .map_err(|error| error.within(&format!("gains[{index}]")))?;
     }
     for (index, scenario) in scenarios.iter().enumerate() {
-        run.clock(scenario)
+        scenario
+            .of_point_mass()
+            .and_then(|()| run.clock(scenario))
             .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
     }
     Ok(())

@@ -74,7 +74,8 @@ pub(crate) type Keep<'a> = &'a mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -
 
 /// A law of any kind up to its gains.
 ///
-/// The kernels of a law are compiled where it is turned into this, that is in this crate.
+/// The kernels of a law are compiled where it is turned into this, that is in this crate, or for
+/// laws of other crates there.
 #[derive(Clone)]
 pub struct AnyLaw(Arc<dyn Driven>);
 
@@ -110,6 +111,12 @@ any_law!(One: Planned<VelocityObstacle>, Planned<ReciprocalAvoidance>);
 any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>);
 
 impl AnyLaw {
+    /// A law of another crate, whose gain sets run one after the other.
+    #[must_use]
+    pub fn one_by_one<F: LawFamily + Send + 'static>(law: F) -> Self {
+        Self::driven_by::<_, One>(law)
+    }
+
     fn driven_by<F: LawFamily + Send + 'static, K: Kernels>(law: F) -> Self {
         Self(Arc::new(Driver::<F, K>(law, PhantomData)))
     }
@@ -134,6 +141,18 @@ impl AnyLaw {
     }
 }
 
+/// A law of any kind at work on one robot.
+pub(crate) trait Steering {
+    /// Force for the time until the next sample.
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
+}
+
+impl<L: Law<f64>> Steering for L {
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        Law::command(self, situation)
+    }
+}
+
 /// A law whose gain sets can be run.
 pub(crate) trait Driven: Send + Sync {
     /// Words for the gains, in their order.
@@ -148,6 +167,8 @@ pub(crate) trait Driven: Send + Sync {
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
     /// What it asks for at first, with its own gains.
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
+    /// It at work in a scenario, with its own gains, to be asked once a control period.
+    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>>;
     /// One run with its own gains and everything recorded.
     fn record(
         &self,
@@ -241,7 +262,12 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
 
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
         let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
-        Ok(law.command(situation))
+        Ok(Law::command(&mut law, situation))
+    }
+
+    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>> {
+        let law = self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?;
+        Ok(Box::new(law))
     }
 
     fn record(

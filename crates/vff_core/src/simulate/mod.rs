@@ -1,6 +1,7 @@
 //! Runs: control period, integrators, outcomes; one run, or many at once.
 
 mod batch;
+pub mod built;
 mod group;
 mod nominal;
 mod options;
@@ -45,6 +46,7 @@ pub fn simulate(
     interrupted: Interrupted<'_>,
 ) -> Result<(RunSummary, Trajectory)> {
     let law: AnyLaw = law.into();
+    scenario.of_point_mass()?;
     law.driven().record(scenario, options, interrupted)
 }
 

@@ -236,25 +236,10 @@ fn record<R: Real, L, C: Recorder<R>>(
 #[inline(always)]
 fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> RobotState<R> {
     let (position, velocity) = (runs.position, runs.velocity);
-    let Some(Measured {
-        robot_error: Some(error),
-        period,
-    }) = measured
-    else {
-        return RobotState { position, velocity };
-    };
-    let position = position + Vec2::splat(error);
-    let rate = R::splat(period);
-    // The first velocity is the true one.
-    let velocity = runs.last_measured.map_or(velocity, |last| {
-        let way = position - last;
-        Vec2 {
-            x: way.x / rate,
-            y: way.y / rate,
-        }
-    });
-    runs.last_measured = Some(position);
-    RobotState { position, velocity }
+    let robot = RobotState { position, velocity };
+    measured.map_or(robot, |measured| {
+        measured.of_robot(robot, &mut runs.last_measured)
+    })
 }
 
 #[inline(always)]

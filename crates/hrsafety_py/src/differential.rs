@@ -1,0 +1,344 @@
+//! Two-wheel robot that follows a reference.
+
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::error::{Given, NavigationError};
+use vff_core::motion::Motion;
+use vff_core::robots::differential::{
+    self, DifferentialLimits, ErrorFrame, ExponentialGoal, FullSpeed, Nonlinear, Pose,
+    ReferenceTurn, TorqueSteering, TrackOptions, TrackRow, TrackRun, TrackStart, Twist,
+};
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::parameters::DifferentialDriveRobot;
+use crate::watch::{Report, watched};
+
+/// Tracking law.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Tracking(pub differential::Tracking);
+
+#[pymethods]
+impl Tracking {
+    /// Up to the full speed.
+    #[staticmethod]
+    #[pyo3(signature = (*, position_gain, heading_gain))]
+    fn full_speed(position_gain: f64, heading_gain: f64) -> CoreResult<Self> {
+        let law = FullSpeed {
+            position_gain,
+            heading_gain,
+        };
+        Ok(Self(differential::Tracking::FullSpeed(law).checked()?))
+    }
+
+    /// The law of the source.
+    #[staticmethod]
+    #[pyo3(signature = (*, damping_ratio, gain, error_frame, reference_turn))]
+    fn nonlinear(
+        damping_ratio: f64,
+        gain: f64,
+        error_frame: &str,
+        reference_turn: &str,
+    ) -> CoreResult<Self> {
+        let frame = match error_frame {
+            "robot" => ErrorFrame::Robot,
+            "world" => ErrorFrame::World,
+            other => return unknown("error_frame", "be \"robot\" or \"world\"", other),
+        };
+        let turn = match reference_turn {
+            "derivative" => ReferenceTurn::Derivative,
+            "printed" => ReferenceTurn::HeadingErrorPerPeriod,
+            other => {
+                let rule = "be \"derivative\" or \"printed\"";
+                return unknown("reference_turn", rule, other);
+            }
+        };
+        let law = Nonlinear {
+            damping_ratio,
+            gain,
+            frame,
+            turn,
+        };
+        Ok(Self(differential::Tracking::Nonlinear(law).checked()?))
+    }
+
+    /// Exponentially to the goal near it.
+    #[staticmethod]
+    #[pyo3(signature = (*, position_gain, heading_gain, distance_gain, bearing_gain,
+        orientation_gain, goal_heading, capture_radius, rest_radius))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn exponential(
+        position_gain: f64,
+        heading_gain: f64,
+        distance_gain: f64,
+        bearing_gain: f64,
+        orientation_gain: f64,
+        goal_heading: Option<f64>,
+        capture_radius: f64,
+        rest_radius: f64,
+    ) -> CoreResult<Self> {
+        let law = ExponentialGoal {
+            approach: FullSpeed {
+                position_gain,
+                heading_gain,
+            },
+            distance_gain,
+            bearing_gain,
+            orientation_gain,
+            goal_heading,
+            capture_radius,
+            rest_radius,
+        };
+        Ok(Self(
+            differential::Tracking::ExponentialGoal(law).checked()?,
+        ))
+    }
+}
+
+fn unknown<T>(name: &str, rule: &'static str, word: &str) -> CoreResult<T> {
+    Err(NavigationError::invalid(name, rule, Given::Word(word.into())).into())
+}
+
+/// Torque that turns the robot toward the force.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct VirtualTorque(pub differential::VirtualTorque);
+
+#[pymethods]
+impl VirtualTorque {
+    #[new]
+    #[pyo3(signature = (*, torque_gain, damping_ratio, backward))]
+    fn new(torque_gain: f64, damping_ratio: f64, backward: bool) -> CoreResult<Self> {
+        let law = differential::VirtualTorque {
+            torque_gain,
+            damping_ratio,
+            backward,
+        };
+        Ok(Self(law.checked()?))
+    }
+
+    /// Gain that gives a robot an angular frequency.
+    #[staticmethod]
+    fn gain_for(robot: &DifferentialDriveRobot, frequency: f64) -> CoreResult<f64> {
+        let law = differential::VirtualTorque::tuned(&robot.0, frequency);
+        Ok(law.checked()?.torque_gain)
+    }
+
+    /// Torque at a heading.
+    fn torque(&self, heading: f64, force: [f64; 2]) -> f64 {
+        self.0.torque(heading, force)
+    }
+
+    /// Speed and turn rate to ask for.
+    #[pyo3(signature = (robot, *, force, heading, speed, turn_rate, control_period))]
+    fn command(
+        &self,
+        robot: &DifferentialDriveRobot,
+        force: [f64; 2],
+        heading: f64,
+        speed: f64,
+        turn_rate: f64,
+        control_period: f64,
+    ) -> CoreResult<(f64, f64)> {
+        let limits = DifferentialLimits::from(&robot.0);
+        let pose = Pose {
+            position: [0.0; 2],
+            heading,
+        };
+        let twist = Twist { speed, turn_rate };
+        let steering = TorqueSteering::new(&self.0, &robot.0, &limits, control_period);
+        let wish = steering.checked_command(&pose, twist, force)?;
+        Ok((wish.speed, wish.turn_rate))
+    }
+}
+
+/// Path of a reference.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct ReferencePath(pub differential::ReferencePath);
+
+#[pymethods]
+impl ReferencePath {
+    /// Constant velocity.
+    #[staticmethod]
+    #[pyo3(signature = (*, start, velocity))]
+    fn line(start: [f64; 2], velocity: [f64; 2]) -> CoreResult<Self> {
+        let motion = Motion::moving(start, velocity, [0.0; 2], None)?;
+        Ok(Self(differential::ReferencePath::Pieces(motion)))
+    }
+
+    /// Circle at constant speed.
+    #[staticmethod]
+    #[pyo3(signature = (*, center, radius, speed, start_angle))]
+    fn circle(center: [f64; 2], radius: f64, speed: f64, start_angle: f64) -> CoreResult<Self> {
+        Ok(Self(differential::ReferencePath::circle(
+            center,
+            radius,
+            speed,
+            start_angle,
+        )?))
+    }
+
+    /// Cubic between samples.
+    #[staticmethod]
+    #[pyo3(signature = (*, time, position, velocity))]
+    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+    fn samples(
+        time: PyReadonlyArray1<'_, f64>,
+        position: PyReadonlyArray2<'_, f64>,
+        velocity: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Self> {
+        let path = differential::ReferencePath::samples(
+            time.as_slice()?.to_vec(),
+            position.as_slice()?.as_chunks().0.to_vec(),
+            velocity.as_slice()?.as_chunks().0.to_vec(),
+        );
+        Ok(Self(path.map_err(CoreError::from)?))
+    }
+
+    /// Positions, velocities and accelerations at instants.
+    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        time: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let instants = time.as_slice()?;
+        let mut cursor = 0;
+        let states: Vec<_> = instants
+            .iter()
+            .map(|instant| self.0.at(*instant, &mut cursor))
+            .collect();
+        let fields = Fields::new(py);
+        let count = states.len();
+        let position = states.iter().flat_map(|state| state.position).collect();
+        fields.matrix("position", position, count, 2)?;
+        let velocity = states.iter().flat_map(|state| state.velocity).collect();
+        fields.matrix("velocity", velocity, count, 2)?;
+        let acceleration = states.iter().flat_map(|state| state.acceleration).collect();
+        fields.matrix("acceleration", acceleration, count, 2)?;
+        Ok(fields.finish())
+    }
+}
+
+/// A start from x, y, heading, speed and turn rate.
+fn start_of(numbers: &[f64; 5]) -> TrackStart {
+    let [x, y, heading, speed, turn_rate] = *numbers;
+    TrackStart {
+        pose: Pose {
+            position: [x, y],
+            heading,
+        },
+        twist: Twist { speed, turn_rate },
+    }
+}
+
+/// History of one run.
+#[pyfunction]
+#[pyo3(signature = (reference, tracking, robot, *, start, control_period, step, duration, goal))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+pub fn track<'py>(
+    py: Python<'py>,
+    reference: &ReferencePath,
+    tracking: &Tracking,
+    robot: &DifferentialDriveRobot,
+    start: [f64; 5],
+    control_period: f64,
+    step: f64,
+    duration: f64,
+    goal: Option<[f64; 2]>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = TrackOptions {
+        period: control_period,
+        step,
+        duration,
+        goal,
+    };
+    let limits = DifferentialLimits::from(&robot.0);
+    let (path, law, start) = (&reference.0, &tracking.0, start_of(&start));
+    let run = watched(py, Report::none(), |control| {
+        let interrupted = || control.interrupted();
+        differential::track(path, (law, &limits), &start, &options, &interrupted)
+    })?;
+    history(py, run)
+}
+
+fn history(py: Python<'_>, run: TrackRun) -> PyResult<Bound<'_, PyDict>> {
+    let fields = Fields::new(py);
+    let rows = run.time.len();
+    fields.vector("time", run.time)?;
+    fields.matrix("position", run.position, rows, 2)?;
+    fields.vector("heading", run.heading)?;
+    fields.vector("speed", run.speed)?;
+    fields.vector("turn_rate", run.turn_rate)?;
+    fields.vector("commanded_speed", run.commanded_speed)?;
+    fields.vector("commanded_turn_rate", run.commanded_turn_rate)?;
+    fields.matrix("reference_position", run.reference_position, rows, 2)?;
+    fields.matrix("reference_velocity", run.reference_velocity, rows, 2)?;
+    fields.vector("goal_phase", run.goal_phase)?;
+    Ok(fields.finish())
+}
+
+/// Summary columns of many runs.
+#[pyfunction]
+#[pyo3(signature = (references, tracking, robot, *, starts, levels, control_period, step, duration,
+    goal, threads, progress))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+pub fn track_batch<'py>(
+    py: Python<'py>,
+    references: Vec<PyRef<'py, ReferencePath>>,
+    tracking: &Tracking,
+    robot: &DifferentialDriveRobot,
+    starts: PyReadonlyArray2<'py, f64>,
+    levels: Vec<f64>,
+    control_period: f64,
+    step: f64,
+    duration: f64,
+    goal: Option<[f64; 2]>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = TrackOptions {
+        period: control_period,
+        step,
+        duration,
+        goal,
+    };
+    let limits = DifferentialLimits::from(&robot.0);
+    let paths: Vec<_> = references.iter().map(|path| path.0.clone()).collect();
+    let starts: Vec<_> = starts
+        .as_slice()?
+        .as_chunks()
+        .0
+        .iter()
+        .map(start_of)
+        .collect();
+    let law = &tracking.0;
+    let report = Report::new(progress.as_ref(), starts.len());
+    let rows = watched(py, report, |control| {
+        differential::track_batch(
+            &paths,
+            (law, &limits),
+            (&starts, &levels),
+            (&options, threads),
+            &|| control.interrupted(),
+            &|runs| control.count(runs),
+        )
+    })?;
+    summary(py, &rows, levels.len())
+}
+
+fn summary<'py>(py: Python<'py>, rows: &[TrackRow], levels: usize) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    let column = |value: fn(&TrackRow) -> f64| rows.iter().map(value).collect::<Vec<_>>();
+    fields.vector("final_error", column(|row| row.final_error))?;
+    fields.vector("max_error", column(|row| row.max_error))?;
+    fields.vector("final_heading", column(|row| row.final_heading))?;
+    fields.vector("path_length", column(|row| row.path_length))?;
+    let settling = rows
+        .iter()
+        .flat_map(|row| row.settling_time.clone())
+        .collect();
+    fields.matrix("settling_time", settling, rows.len(), levels)?;
+    Ok(fields.finish())
+}

@@ -1,0 +1,366 @@
+//! Sensing: conversion of arguments and results.
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::error::NavigationError;
+use vff_core::measurement::Distribution;
+use vff_core::sensing::{
+    self, Estimate, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, VisionSensor,
+};
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::parameters::word;
+use crate::watch::{Control, Report, watched};
+
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+type Samples<'py> = PyReadonlyArray1<'py, f64>;
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Samples of a path that take less than a look at signals.
+const SHORT: usize = 100_000;
+
+/// Row of a point that has no image, or of a time without an estimate.
+const NOTHING: [f64; 2] = [f64::NAN; 2];
+
+/// Camera.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Camera(pub sensing::Camera);
+
+#[pymethods]
+impl Camera {
+    #[new]
+    #[pyo3(signature = (*, focal_length, radial_distortion, horizontal_scale, image_center, pixel_size,
+        image_size, rotation, translation))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        focal_length: f64,
+        radial_distortion: f64,
+        horizontal_scale: f64,
+        image_center: [f64; 2],
+        pixel_size: [f64; 2],
+        image_size: [u32; 2],
+        rotation: [[f64; 3]; 3],
+        translation: [f64; 3],
+    ) -> CoreResult<Self> {
+        let lens = Lens {
+            focal_length,
+            radial_distortion,
+            horizontal_scale,
+            image_center,
+            pixel_size,
+            image_size,
+        };
+        let pose = Pose {
+            rotation,
+            translation,
+        };
+        Ok(Self(sensing::Camera::new(lens, pose)?))
+    }
+
+    /// Where the camera is.
+    fn position(&self) -> [f64; 3] {
+        self.0.pose().position()
+    }
+
+    /// Pixels of points; NaN for those without an image.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn project<'py>(&self, py: Python<'py>, points: Rows<'py>) -> PyResult<Matrix<'py>> {
+        let (points, _) = points.as_slice()?.as_chunks::<3>();
+        let pixel = |point: &[f64; 3]| self.0.project(*point).unwrap_or(NOTHING);
+        matrix(py, points.iter().flat_map(pixel).collect(), 2)
+    }
+
+    /// Whether pixels lie in the picture.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn contains(&self, pixels: Rows<'_>) -> PyResult<Vec<bool>> {
+        let (pixels, _) = pixels.as_slice()?.as_chunks::<2>();
+        Ok(pixels.iter().map(|pixel| self.0.contains(*pixel)).collect())
+    }
+
+    /// Points at known heights that pixels show; NaN where there is none.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn reconstruct<'py>(
+        &self,
+        py: Python<'py>,
+        pixels: Rows<'py>,
+        heights: Samples<'py>,
+    ) -> PyResult<Matrix<'py>> {
+        let (pixels, _) = pixels.as_slice()?.as_chunks::<2>();
+        let point = |(pixel, height): (&[f64; 2], &f64)| {
+            let shown = self.0.reconstruct(*pixel, *height);
+            shown.unwrap_or([f64::NAN; 3])
+        };
+        let points = pixels.iter().zip(heights.as_slice()?).flat_map(point);
+        matrix(py, points.collect(), 3)
+    }
+
+    /// Pixels of points with other parameters than those of this camera, and derivatives.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn linearize<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: [f64; PARAMETERS],
+        points: Rows<'py>,
+    ) -> PyResult<(Matrix<'py>, Matrix<'py>)> {
+        let near = LinearizedCamera::new(&self.0, &parameters).map_err(CoreError::from)?;
+        let (points, _) = points.as_slice()?.as_chunks::<3>();
+        let mut pixels = Vec::with_capacity(2 * points.len());
+        let mut slopes = Vec::with_capacity(2 * PARAMETERS * points.len());
+        for point in points {
+            let nothing = (NOTHING, [[f64::NAN; PARAMETERS]; 2]);
+            let (pixel, rows) = near.at(*point).unwrap_or(nothing);
+            pixels.extend(pixel);
+            slopes.extend(rows.into_iter().flatten());
+        }
+        Ok((matrix(py, pixels, 2)?, matrix(py, slopes, PARAMETERS)?))
+    }
+
+    /// Rotation matrix after the turn among parameters.
+    fn turned(&self, parameters: [f64; PARAMETERS]) -> CoreResult<[[f64; 3]; 3]> {
+        let near = LinearizedCamera::new(&self.0, &parameters)?;
+        Ok(near.camera.pose().rotation)
+    }
+}
+
+/// Estimator of position and velocity.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Estimator(sensing::Estimator);
+
+#[pymethods]
+impl Estimator {
+    /// Backward differences.
+    #[staticmethod]
+    fn differences() -> Self {
+        Self(sensing::Estimator::Differences)
+    }
+
+    /// Constant gains.
+    #[staticmethod]
+    #[pyo3(signature = (*, position_gain, velocity_gain))]
+    fn alpha_beta(position_gain: f64, velocity_gain: f64) -> CoreResult<Self> {
+        let estimator = sensing::Estimator::AlphaBeta {
+            position_gain,
+            velocity_gain,
+        };
+        Ok(Self(estimator.checked()?))
+    }
+
+    /// Kalman filter.
+    #[staticmethod]
+    #[pyo3(signature = (*, acceleration_deviation, position_deviation, speed_deviation))]
+    fn kalman(
+        acceleration_deviation: f64,
+        position_deviation: f64,
+        speed_deviation: f64,
+    ) -> CoreResult<Self> {
+        let estimator = sensing::Estimator::Kalman {
+            acceleration_deviation,
+            position_deviation,
+            speed_deviation,
+        };
+        Ok(Self(estimator.checked()?))
+    }
+
+    /// Estimates at measured positions; rows of the covariance are position, both, velocity.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn track<'py>(
+        &self,
+        py: Python<'py>,
+        time: Samples<'py>,
+        position: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (positions, _) = position.as_slice()?.as_chunks::<2>();
+        let times = time.as_slice()?;
+        let mut track = Track::new(self.0);
+        let mut estimates = Estimates::with_capacity(times.len());
+        let mut covariance = Vec::with_capacity(3 * times.len());
+        for (time, position) in times.iter().zip(positions) {
+            estimates.push(Some(track.measure(*time, *position)));
+            covariance.extend(track.covariance());
+        }
+        let fields = Fields::new(py);
+        fields.matrix("covariance", covariance, times.len(), 3)?;
+        estimates.into_fields(&fields)?;
+        Ok(fields.finish())
+    }
+}
+
+/// Steady gains of a Kalman filter.
+#[pyfunction]
+#[pyo3(signature = (*, acceleration_deviation, position_deviation, period))]
+pub fn steady_gains(
+    acceleration_deviation: f64,
+    position_deviation: f64,
+    period: f64,
+) -> CoreResult<[f64; 2]> {
+    Ok(sensing::Estimator::steady_gains(
+        acceleration_deviation,
+        position_deviation,
+        period,
+    )?)
+}
+
+/// Vision of one body.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Vision(pub sensing::Vision);
+
+#[pymethods]
+impl Vision {
+    #[new]
+    #[pyo3(signature = (*, period, delay, error, drop_probability, estimator, compensated))]
+    fn new(
+        period: f64,
+        delay: f64,
+        error: &ErrorSource,
+        drop_probability: f64,
+        estimator: &Estimator,
+        compensated: bool,
+    ) -> CoreResult<Self> {
+        let vision = sensing::Vision {
+            period,
+            delay,
+            error: error.0,
+            drop_probability,
+            estimator: estimator.0,
+            compensated,
+        };
+        Ok(Self(vision.checked()?))
+    }
+
+    /// Frames of a body on a known path, and what is known at the times of the path.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn observe<'py>(
+        &self,
+        py: Python<'py>,
+        time: Samples<'py>,
+        position: Rows<'py>,
+        seed: u64,
+        stream: u64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (positions, _) = position.as_slice()?.as_chunks::<2>();
+        let times = time.as_slice()?;
+        let work = |control: &Control| observed(&self.0, times, positions, (seed, stream), control);
+        let (estimates, exposed, measured) = if times.len() < SHORT {
+            work(&Control::default()).map_err(CoreError::from)?
+        } else {
+            watched(py, Report::none(), work)?
+        };
+        let fields = Fields::new(py);
+        let frames = exposed.len();
+        fields.vector("exposed", exposed)?;
+        fields.matrix("measured", measured, frames, 2)?;
+        estimates.into_fields(&fields)?;
+        Ok(fields.finish())
+    }
+}
+
+/// Estimates at the times of a path, times of exposures and measured positions.
+fn observed(
+    vision: &sensing::Vision,
+    times: &[f64],
+    positions: &[[f64; 2]],
+    (seed, stream): (u64, u64),
+    control: &Control,
+) -> Result<(Estimates, Vec<f64>, Vec<f64>), NavigationError> {
+    let mut sensor = VisionSensor::new(vision, seed, stream)?;
+    let mut estimates = Estimates::with_capacity(times.len());
+    let (mut exposed, mut measured) = (Vec::new(), Vec::new());
+    for (time, position) in times.iter().zip(positions) {
+        sensor.sample(*time, *position);
+        for frame in sensor.frames() {
+            exposed.push(frame.exposed);
+            measured.extend(frame.measured.unwrap_or(NOTHING));
+        }
+        estimates.push(sensor.estimate(*time));
+        if control.interrupted() {
+            return Err(NavigationError::Interrupted);
+        }
+    }
+    Ok((estimates, exposed, measured))
+}
+
+/// Error of measured positions.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct ErrorSource(PositionError);
+
+#[pymethods]
+impl ErrorSource {
+    /// Added to x and y.
+    #[staticmethod]
+    #[pyo3(signature = (*, distribution, scale))]
+    fn plane(distribution: &Bound<'_, PyAny>, scale: f64) -> PyResult<Self> {
+        let kinds = [
+            ("uniform", Distribution::Uniform),
+            ("gaussian", Distribution::Gaussian),
+        ];
+        let rule = "be \"uniform\" or \"gaussian\"";
+        let distribution = word("distribution", distribution, rule, &kinds)?;
+        let error = PositionError::Plane {
+            distribution,
+            scale,
+        };
+        error.check().map_err(CoreError::from)?;
+        Ok(Self(error))
+    }
+
+    /// Centroid of a color patch.
+    #[staticmethod]
+    #[pyo3(signature = (*, camera, believed, height, centroid_deviation))]
+    fn patch(
+        camera: &Camera,
+        believed: &Camera,
+        height: f64,
+        centroid_deviation: f64,
+    ) -> CoreResult<Self> {
+        let error = PositionError::Patch {
+            camera: camera.0,
+            believed: believed.0,
+            height,
+            deviation: centroid_deviation,
+        };
+        error.check()?;
+        Ok(Self(error))
+    }
+}
+
+/// Columns of estimates.
+struct Estimates {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    measured_at: Vec<f64>,
+}
+
+impl Estimates {
+    fn with_capacity(length: usize) -> Self {
+        Self {
+            position: Vec::with_capacity(2 * length),
+            velocity: Vec::with_capacity(2 * length),
+            measured_at: Vec::with_capacity(length),
+        }
+    }
+
+    fn push(&mut self, estimate: Option<Estimate>) {
+        let estimate = estimate.unwrap_or(Estimate {
+            position: NOTHING,
+            velocity: NOTHING,
+            measured_at: f64::NAN,
+        });
+        self.position.extend(estimate.position);
+        self.velocity.extend(estimate.velocity);
+        self.measured_at.push(estimate.measured_at);
+    }
+
+    fn into_fields(self, fields: &Fields<'_>) -> PyResult<()> {
+        let length = self.measured_at.len();
+        fields.matrix("position", self.position, length, 2)?;
+        fields.matrix("velocity", self.velocity, length, 2)?;
+        fields.vector("measured_at", self.measured_at)
+    }
+}
+
+fn matrix(py: Python<'_>, values: Vec<f64>, columns: usize) -> PyResult<Matrix<'_>> {
+    let rows = values.len() / columns;
+    values.into_pyarray(py).reshape([rows, columns])
+}

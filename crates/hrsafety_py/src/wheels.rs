@@ -1,0 +1,392 @@
+//! Wheels: conversion of arguments and results.
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::error::{Given, NavigationError};
+use vff_core::robots::wheels::{
+    self, Encoder, Feedback, Motor, OpenLoopTest, WheelController, WheelDynamics, WheelState,
+    WheelWish,
+};
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::watch::{Report, watched};
+
+type Column<'py> = PyReadonlyArray1<'py, f64>;
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+
+/// One wheel with its motor, encoder and controller.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct WheelDrive(wheels::WheelDrive);
+
+impl WheelDrive {
+    /// The checked drive.
+    pub fn core(&self) -> &wheels::WheelDrive {
+        &self.0
+    }
+}
+
+fn feedback_of(word: &str, poles: [f64; 2]) -> CoreResult<Feedback> {
+    match word {
+        "differences" => Ok(Feedback::Differences),
+        "observer" => Ok(Feedback::Observer { poles }),
+        "observed_speed" => Ok(Feedback::ObservedSpeed { poles }),
+        other => {
+            let rule = "be one of \"observer\", \"observed_speed\", \"differences\"";
+            let given = Given::Word(other.to_owned());
+            Err(NavigationError::invalid("feedback", rule, given).into())
+        }
+    }
+}
+
+fn feedback_word(feedback: Feedback) -> (&'static str, [f64; 2]) {
+    match feedback {
+        Feedback::Differences => ("differences", [-10.0, -10.0]),
+        Feedback::Observer { poles } => ("observer", poles),
+        Feedback::ObservedSpeed { poles } => ("observed_speed", poles),
+    }
+}
+
+#[pymethods]
+impl WheelDrive {
+    #[new]
+    #[pyo3(signature = (*, inertia, viscous_friction, static_friction, model, proportional_gain,
+        derivative_gain, feedback, observer_poles, encoder_counts, gear_ratio, amplifier_gain,
+        winding_resistance, back_emf, current_limit, supply_voltage, period))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        inertia: f64,
+        viscous_friction: f64,
+        static_friction: f64,
+        model: [f64; 3],
+        proportional_gain: f64,
+        derivative_gain: f64,
+        feedback: &str,
+        observer_poles: [f64; 2],
+        encoder_counts: Option<f64>,
+        gear_ratio: f64,
+        amplifier_gain: f64,
+        winding_resistance: f64,
+        back_emf: f64,
+        current_limit: f64,
+        supply_voltage: f64,
+        period: f64,
+    ) -> CoreResult<Self> {
+        let dynamics = |[inertia, viscous_friction, static_friction]: [f64; 3]| WheelDynamics {
+            inertia,
+            viscous_friction,
+            static_friction,
+        };
+        let drive = wheels::WheelDrive {
+            dynamics: dynamics([inertia, viscous_friction, static_friction]),
+            motor: Motor {
+                amplifier_gain,
+                resistance: winding_resistance,
+                back_emf,
+                current_limit,
+                supply_voltage,
+            },
+            encoder: encoder_counts.map(|counts| Encoder { counts, gear_ratio }),
+            controller: WheelController {
+                proportional: proportional_gain,
+                derivative: derivative_gain,
+                model: dynamics(model),
+                feedback: feedback_of(feedback, observer_poles)?,
+            },
+            period,
+        };
+        Ok(Self(drive.checked()?))
+    }
+
+    /// What the encoder reads of an open-loop test.
+    #[pyo3(signature = (*, command, start_angle, periods))]
+    fn open_loop_angles<'py>(
+        &self,
+        py: Python<'py>,
+        command: f64,
+        start_angle: f64,
+        periods: usize,
+    ) -> Bound<'py, PyAny> {
+        let test = OpenLoopTest {
+            command,
+            start_angle,
+            periods,
+        };
+        let angles = py.detach(|| wheels::open_loop_angles(&self.0, &test));
+        angles.into_pyarray(py).into_any()
+    }
+
+    /// Histories of the wheel after a wanted motion, one row per wheel period.
+    #[pyo3(signature = (*, angle, speed, acceleration, start_angle, start_speed))]
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn follow<'py>(
+        &self,
+        py: Python<'py>,
+        angle: Column<'py>,
+        speed: Column<'py>,
+        acceleration: Column<'py>,
+        start_angle: f64,
+        start_speed: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (angle, speed) = (angle.as_slice()?, speed.as_slice()?);
+        let acceleration = acceleration.as_slice()?;
+        let start = WheelState {
+            angle: start_angle,
+            speed: start_speed,
+        };
+        let count = angle.len().min(speed.len()).min(acceleration.len());
+        let run = watched(py, Report::none(), |control| {
+            let wishes = (0..count).map(|index| WheelWish {
+                angle: angle[index],
+                speed: speed[index],
+                acceleration: acceleration[index],
+            });
+            wheels::follow(&self.0, start, wishes, &|| control.interrupted())
+        })?;
+        let fields = Fields::new(py);
+        fields.vector("angle", run.angle)?;
+        fields.vector("speed", run.speed)?;
+        fields.vector("read_angle", run.read_angle)?;
+        fields.vector("known_angle", run.known_angle)?;
+        fields.vector("known_speed", run.known_speed)?;
+        fields.vector("current", run.current)?;
+        fields.vector("voltage", run.voltage)?;
+        fields.vector("ideal_current", run.ideal_current)?;
+        fields.value("energy", run.energy)?;
+        fields.value("ideal_energy", run.ideal_energy)?;
+        Ok(fields.finish())
+    }
+}
+
+/// Arguments of the wheels of the holonomic robot of the source.
+#[pyfunction]
+pub fn holonomic_wheels(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let drives = wheels::holonomic_wheels();
+    drives.iter().map(|drive| preset(py, drive)).collect()
+}
+
+/// Arguments of the wheels of the differential-drive robot of the source, the right one first.
+#[pyfunction]
+pub fn differential_wheels(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let drives = wheels::differential_wheels();
+    drives.iter().map(|drive| preset(py, drive)).collect()
+}
+
+fn preset<'py>(py: Python<'py>, drive: &wheels::WheelDrive) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    let (dynamics, motor, controller) = (&drive.dynamics, &drive.motor, &drive.controller);
+    fields.value("inertia", dynamics.inertia)?;
+    fields.value("viscous_friction", dynamics.viscous_friction)?;
+    fields.value("static_friction", dynamics.static_friction)?;
+    let model = &controller.model;
+    let model = (model.inertia, model.viscous_friction, model.static_friction);
+    fields.value("model", model)?;
+    fields.value("proportional_gain", controller.proportional)?;
+    fields.value("derivative_gain", controller.derivative)?;
+    let (word, [first, second]) = feedback_word(controller.feedback);
+    fields.value("feedback", word)?;
+    fields.value("observer_poles", (first, second))?;
+    if let Some(encoder) = drive.encoder {
+        fields.value("encoder_counts", encoder.counts)?;
+        fields.value("gear_ratio", encoder.gear_ratio)?;
+    }
+    fields.value("amplifier_gain", motor.amplifier_gain)?;
+    fields.value("winding_resistance", motor.resistance)?;
+    fields.value("back_emf", motor.back_emf)?;
+    fields.value("current_limit", motor.current_limit)?;
+    fields.value("supply_voltage", motor.supply_voltage)?;
+    fields.value("period", drive.period)?;
+    Ok(fields.finish())
+}
+
+/// Heading 0 for every row.
+fn headings(rows: &Rows<'_>) -> Vec<f64> {
+    vec![0.0; rows.as_array().nrows()]
+}
+
+/// Applies a map to every row, with the heading of the row.
+fn each_row<'py, const N: usize, const M: usize>(
+    py: Python<'py>,
+    rows: &Rows<'py>,
+    headings: &[f64],
+    map: impl Fn([f64; N], f64) -> [f64; M],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (whole, _) = rows.as_slice()?.as_chunks::<N>();
+    let mapped = whole
+        .iter()
+        .zip(headings)
+        .flat_map(|(row, heading)| map(*row, *heading));
+    let count = whole.len().min(headings.len());
+    mapped
+        .collect::<Vec<f64>>()
+        .into_pyarray(py)
+        .reshape([count, M])
+}
+
+/// Three omni-wheels.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct OmniKinematics(pub wheels::OmniKinematics);
+
+#[pymethods]
+impl OmniKinematics {
+    #[new]
+    #[pyo3(signature = (*, wheel_radius, center_distance))]
+    fn new(wheel_radius: f64, center_distance: f64) -> CoreResult<Self> {
+        let robot = wheels::OmniKinematics {
+            wheel_radius,
+            center_distance,
+        };
+        Ok(Self(robot.checked()?))
+    }
+
+    /// Wheel speeds from velocities and turn rates in the world.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn wheel_speeds<'py>(
+        &self,
+        py: Python<'py>,
+        velocity: Rows<'py>,
+        heading: Column<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        each_row(py, &velocity, heading.as_slice()?, |row, heading| {
+            self.0.wheel_speeds_in_world(row, heading)
+        })
+    }
+
+    /// Velocities and turn rates in the world from wheel speeds.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn body_velocity<'py>(
+        &self,
+        py: Python<'py>,
+        speeds: Rows<'py>,
+        heading: Column<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        each_row(py, &speeds, heading.as_slice()?, |row, heading| {
+            self.0.world_velocity(row, heading)
+        })
+    }
+}
+
+/// Two driven wheels on one axis.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct DifferentialKinematics(pub wheels::DifferentialKinematics);
+
+#[pymethods]
+impl DifferentialKinematics {
+    #[new]
+    #[pyo3(signature = (*, wheel_radius, span))]
+    fn new(wheel_radius: f64, span: f64) -> CoreResult<Self> {
+        let robot = wheels::DifferentialKinematics { wheel_radius, span };
+        Ok(Self(robot.checked()?))
+    }
+
+    /// Wheel speeds from speeds and turn rates.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn wheel_speeds<'py>(
+        &self,
+        py: Python<'py>,
+        motion: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let straight = headings(&motion);
+        each_row(py, &motion, &straight, |row, _| self.0.wheel_speeds(row))
+    }
+
+    /// Speeds and turn rates from wheel speeds.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn body_velocity<'py>(
+        &self,
+        py: Python<'py>,
+        speeds: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let straight = headings(&speeds);
+        each_row(py, &speeds, &straight, |row, _| self.0.body_velocity(row))
+    }
+
+    /// Velocities and turn rates in the world from wheel speeds.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn world_velocity<'py>(
+        &self,
+        py: Python<'py>,
+        speeds: Rows<'py>,
+        heading: Column<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        each_row(py, &speeds, heading.as_slice()?, |row, heading| {
+            self.0.world_velocity(row, heading)
+        })
+    }
+}
+
+/// Slip of a wheel.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Slip(pub wheels::Slip);
+
+#[pymethods]
+impl Slip {
+    #[new]
+    #[pyo3(signature = (*, creep, grip))]
+    fn new(creep: f64, grip: f64) -> CoreResult<Self> {
+        Ok(Self(wheels::Slip { creep, grip }.checked()?))
+    }
+
+    /// Ground speed after every period.
+    #[pyo3(signature = (rim_speed, *, start, period))]
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn ground_speeds<'py>(
+        &self,
+        py: Python<'py>,
+        rim_speed: Column<'py>,
+        start: f64,
+        period: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut speed = start;
+        let speeds = rim_speed.as_slice()?.iter().map(|&rim| {
+            speed = self.0.ground_speed(rim, speed, period);
+            speed
+        });
+        Ok(speeds.collect::<Vec<f64>>().into_pyarray(py).into_any())
+    }
+}
+
+/// Wanted angle and acceleration from wanted speeds, one for each wheel period.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn wheel_reference<'py>(
+    py: Python<'py>,
+    speed: Column<'py>,
+    period: f64,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let mut reference = wheels::WheelReference::new(period);
+    let (angle, acceleration): (Vec<f64>, Vec<f64>) = speed
+        .as_slice()?
+        .iter()
+        .map(|&speed| {
+            let wish = reference.next(speed);
+            (wish.angle, wish.acceleration)
+        })
+        .unzip();
+    let angle = angle.into_pyarray(py).into_any();
+    Ok((angle, acceleration.into_pyarray(py).into_any()))
+}
+
+/// Angles of a wheel that starts at rest under a held current.
+#[pyfunction]
+#[pyo3(signature = (time, *, dynamics, current))]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn wheel_response<'py>(
+    py: Python<'py>,
+    time: Column<'py>,
+    dynamics: [f64; 3],
+    current: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let [inertia, viscous_friction, static_friction] = dynamics;
+    let wheel = WheelDynamics {
+        inertia,
+        viscous_friction,
+        static_friction,
+    };
+    let wheel = wheel.checked().map_err(CoreError::from)?;
+    let rest = WheelState::default();
+    let angles = time.as_slice()?.iter();
+    let angles = angles.map(|&time| wheel.advance(rest, current, time).angle);
+    Ok(angles.collect::<Vec<f64>>().into_pyarray(py).into_any())
+}

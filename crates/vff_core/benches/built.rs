@@ -1,0 +1,75 @@
+//! Simulated time per second of computing, one thread: robots as built, wheels every millisecond.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use vff_core::forces::side::SideRules;
+use vff_core::forces::stabilizing::Stabilizing;
+use vff_core::gains::Gains;
+use vff_core::laws::VirtualForceField;
+use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::robots::wheels::{differential_wheels, holonomic_wheels};
+use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
+use vff_core::scenario::{Rules, Scenario};
+use vff_core::simulate::AnyLaw;
+use vff_core::simulate::built::{Built, repeat_built};
+
+const START: [f64; 2] = [3.99, 0.6];
+const GOAL: [f64; 2] = [0.0, 0.6];
+
+fn law() -> AnyLaw {
+    let gains = Gains {
+        attractive: 3.0,
+        repulsive: 20.0,
+        detour: 17.0,
+        ratio: 0.25,
+    };
+    let rules = SideRules {
+        pass_behind: true,
+        hysteresis: f64::INFINITY,
+    };
+    VirtualForceField::new(gains, Stabilizing::Off, rules)
+        .unwrap()
+        .into()
+}
+
+fn disc() -> Vec<Obstacle> {
+    let limits = Limits {
+        critical_radius: Some(0.4),
+        active_radius: Some(0.65),
+        max_speed: None,
+    };
+    vec![Obstacle::disc_at_rest([2.16, 0.6], 0.1, limits).unwrap()]
+}
+
+/// Throughput in milliseconds of simulated time: 1 M elements/s is 1000 times real time.
+fn runs(criterion: &mut Criterion) {
+    let rules = Rules {
+        heading: std::f64::consts::PI,
+        ..Rules::default()
+    };
+    let omni = Scenario::new(HolonomicRobot::default(), START, GOAL, disc(), rules).unwrap();
+    let two = DifferentialDriveRobot::default();
+    let two = Scenario::for_differential(two, START, GOAL, disc(), rules).unwrap();
+    let mut group = criterion.benchmark_group("built");
+    for (name, scenario, wheels) in [
+        ("point mass", &omni, None),
+        ("omni-wheels", &omni, Some(holonomic_wheels().to_vec())),
+        ("two ideal wheels", &two, None),
+        ("two wheels", &two, Some(differential_wheels().to_vec())),
+    ] {
+        let built = Built {
+            wheels,
+            ..Built::default()
+        };
+        let run = || repeat_built(scenario, &law(), &built, &[0], Some(1), &|| false, &|_| ());
+        let milliseconds = (1000.0 * run().unwrap()[0].0.end_time).round();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
+        group.throughput(Throughput::Elements(milliseconds as u64));
+        group.bench_function(name, |bencher| bencher.iter(|| black_box(run().unwrap())));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, runs);
+criterion_main!(benches);

@@ -1,0 +1,12 @@
+//! What a robot with a camera knows: projection, delayed and noisy positions, velocity estimates.
+
+pub mod camera;
+pub mod estimator;
+mod linearized;
+mod rotation;
+pub mod vision;
+
+pub use camera::{Camera, Lens, Pose};
+pub use estimator::{Estimate, Estimator, Track};
+pub use linearized::{LinearizedCamera, PARAMETERS};
+pub use vision::{PositionError, Vision, VisionSensor};

@@ -1,0 +1,79 @@
+//! Three omni-wheels that follow the velocity of the point mass which a law drives.
+
+use crate::error::Result;
+use crate::forces::geometry::RobotState;
+use crate::lanes::Vec2;
+use crate::robots::wheels::{OmniKinematics, WheelDrive};
+use crate::scenario::Scenario;
+use crate::simulate::built::Built;
+use crate::simulate::built::driven::{DrivenWheels, WheelSize};
+use crate::simulate::built::motion::{Moving, Order, PointMass, Reading, WHEELS};
+
+/// The robot. It takes its heading for that of the start: nothing measures it.
+#[derive(Clone, Debug)]
+pub(super) struct OmniRobot {
+    reference: PointMass,
+    kinematics: OmniKinematics,
+    wheels: DrivenWheels,
+    wanted_heading: f64,
+    position: Vec2<f64>,
+    heading: f64,
+    step: f64,
+}
+
+impl OmniRobot {
+    pub fn new(scenario: &Scenario, drives: &[WheelDrive], built: &Built) -> Result<Self> {
+        let kinematics = built.omni.checked()?;
+        let size = WheelSize {
+            radius: kinematics.wheel_radius,
+            resistance: scenario.robot.wheels.resistance,
+        };
+        let heading = scenario.rules.heading;
+        Ok(Self {
+            reference: PointMass::new(scenario, built.step),
+            kinematics,
+            wheels: DrivenWheels::new(drives, built.slip, size, built.step)?,
+            wanted_heading: heading,
+            position: Vec2::splat(scenario.start),
+            heading,
+            step: built.step,
+        })
+    }
+}
+
+impl Moving for OmniRobot {
+    fn wheels(&self) -> usize {
+        WHEELS
+    }
+
+    fn hold(&mut self, order: &Order) {
+        self.reference.hold(order.force);
+    }
+
+    fn step(&mut self) -> Reading {
+        self.reference.advance();
+        let [x, y] = self.reference.state.velocity.lane(0);
+        let kinematics = self.kinematics;
+        let wanted = kinematics.wheel_speeds_in_world([x, y, 0.0], self.wanted_heading);
+        let (mut position, mut heading, period) = (self.position, self.heading, self.wheels.period);
+        let mut velocity = Vec2::zero();
+        self.wheels.step(wanted, |rolling, _| {
+            let turn = kinematics.body_velocity(rolling)[2] * period;
+            let [x, y, _] = kinematics.world_velocity(rolling, heading + 0.5 * turn);
+            velocity = Vec2 { x, y };
+            position = position + velocity.scale(period);
+            heading += turn;
+        });
+        let way = position - self.position;
+        (self.position, self.heading) = (position, heading);
+        Reading {
+            robot: RobotState { position, velocity },
+            speed: way.dot(way).sqrt() / self.step,
+            heading,
+            wheel_speeds: self.wheels.speeds,
+            currents: self.wheels.currents,
+            loss: self.wheels.loss,
+            reference: self.reference.state.position,
+        }
+    }
+}

@@ -1,0 +1,192 @@
+"""Runs of both robots as built, for the rows of chapters 6 and 7 that need them."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.navigation.statistics import Share
+from hrsafety.reproduce.measured import LAWS, Measured, kind_of, score_of_parts
+
+__all__ = ["EXPERIMENTS", "SEEDS", "Experiment", "as_built", "experiment", "repeated", "scene", "score", "two_wheels"]
+
+SEEDS = 200
+"""Noisy runs of each experiment."""
+LAW = LAWS["new_vff"]
+_FACING_THE_GOAL = math.pi  # the source does not say where the robot looks at first
+
+EXPERIMENTS = {
+    **{f"6.{number + 1}": f"c{number}" for number in range(1, 5)},
+    **{f"7.{number}": f"n{number}" for number in range(1, 5)},
+}
+"""Configuration of each table that has a row of an experiment."""
+
+
+def scene(name: str) -> nav.Scenario:
+    """Return a configuration with the robot of its chapter: two wheels for chapter 7.
+
+    Parameters
+    ----------
+    name : str
+        ``c1`` to ``c4``, ``n1`` to ``n4`` or ``multiple_obstacles``.
+
+    Returns
+    -------
+    Scenario
+        A two-wheel robot looks at the goal at first.
+    """
+    scenario = scenarios.configuration(name)
+    if name.startswith("c"):
+        return scenario
+    return replace(scenario, robot=nav.DifferentialDriveRobot(), heading=_FACING_THE_GOAL)
+
+
+@functools.cache
+def score(name: str) -> nav.Performance:
+    """Return the run of a configuration with the two-wheel robot, ideal wheels and exact sensing.
+
+    Parameters
+    ----------
+    name : str
+        ``n1`` to ``n4`` or ``multiple_obstacles``.
+
+    Returns
+    -------
+    Performance
+        Run, free run and score; the law without its stabilizing force.
+    """
+    return nav.evaluate(scene(name), LAW)
+
+
+def two_wheels(name: str) -> Measured:
+    """Return the numbers of `score` under the names of the tables.
+
+    Parameters
+    ----------
+    name : str
+        ``n1`` to ``n4``.
+
+    Returns
+    -------
+    Measured
+        The run.
+    """
+    result = score(name)
+    run, free = result.trajectory, result.nominal
+    distances = _by_kind(run.scenario, run.min_distance)
+    return Measured(
+        values={"T_arrive": run.arrival_time, "L_energy": run.energy, "H": result.total} | distances,
+        arrived=math.isfinite(run.arrival_time),
+        contact=run.outcome == "collided",
+        nominal_time=free.arrival_time,
+        nominal_energy=free.energy,
+        scenario=run.scenario,
+    )
+
+
+def as_built(scenario: nav.Scenario) -> nav.AsBuilt:
+    """Return the robot of a scenario as the source describes it: wheels, and the camera's mean error.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Whose robot.
+
+    Returns
+    -------
+    AsBuilt
+        Wheels with controllers, 16.7 frames per second with a mean error of 4 mm of robot and person,
+        velocities by difference, no slip, no delay.
+    """
+    holonomic = isinstance(scenario.robot, nav.HolonomicRobot)
+    camera = nav.Vision(error=nav.PositionNoise(distribution="gaussian", scale=0.0032))
+    return nav.AsBuilt(
+        wheels=nav.HOLONOMIC_WHEELS if holonomic else nav.DIFFERENTIAL_WHEELS,
+        robot_vision=camera,
+        obstacle_vision=camera,
+    )
+
+
+@functools.cache
+def repeated(name: str, seeds: int = SEEDS) -> nav.Repeated:
+    """Return noisy runs of a configuration with the robot as built.
+
+    Parameters
+    ----------
+    name : str
+        Configuration.
+    seeds : int
+        Number of runs.
+
+    Returns
+    -------
+    Repeated
+        The runs.
+    """
+    scenario = scene(name)
+    return nav.repeat(scenario, LAW, seeds=seeds, built=as_built(scenario))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Experiment:
+    """Noisy runs in the place of one experiment.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Medians over the runs that arrived without a contact, by column name of the tables; H of
+        the medians.
+    success, contact : Share
+        Shares of all runs.
+    """
+
+    values: dict[str, float]
+    success: Share
+    contact: Share
+
+
+@functools.cache
+def experiment(table: str) -> Experiment:
+    """Return the noisy runs in the place of the experiment of a table.
+
+    Parameters
+    ----------
+    table : str
+        Number of the table, among `EXPERIMENTS`.
+
+    Returns
+    -------
+    Experiment
+        Medians and shares.
+    """
+    runs = repeated(EXPERIMENTS[table])
+    scenario = runs.scenario
+    free = nav.evaluate_built(scenario, LAW, built=as_built(scenario)).nominal
+    arrived = runs.outcome == "arrived"
+    time, energy = float(np.median(runs.arrival_time[arrived])), float(np.median(runs.energy[arrived]))
+    distances = _by_kind(scenario, np.median(runs.min_distance[arrived], axis=0))
+    parts = Measured(
+        values={},
+        arrived=True,
+        contact=False,
+        nominal_time=free.arrival_time,
+        nominal_energy=free.energy,
+        scenario=scenario,
+    )
+    total = score_of_parts(parts, time=time, energy=energy, distances=distances)
+    return Experiment(
+        values={"T_arrive": time, "L_energy": energy, "H": total} | distances,
+        success=runs.success,
+        contact=runs.contact,
+    )
+
+
+def _by_kind(scenario: nav.Scenario, least: np.ndarray) -> dict[str, float]:
+    """Return least distances by the columns of the tables."""
+    pairs = zip(scenario.obstacles, least.tolist(), strict=True)
+    return {f"d_{kind_of(obstacle)}_min": distance for obstacle, distance in pairs}
