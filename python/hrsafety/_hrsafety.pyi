@@ -12,11 +12,21 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "AsBuilt",
+    "Burst",
+    "Camera",
     "ConstrainedHead",
+    "Converter",
     "CylinderController",
     "DifferentialDriveRobot",
+    "DifferentialKinematics",
     "DirectDrive",
+    "EchoShape",
+    "ErrorSource",
+    "Estimator",
     "Foam",
+    "Follower",
+    "FollowerLayouts",
     "GainProblem",
     "Head",
     "HolonomicRobot",
@@ -24,19 +34,48 @@ __all__ = [
     "Law",
     "Manipulator",
     "Measurement",
+    "MicrophoneArray",
+    "Mover",
     "Obstacle",
+    "OmniKinematics",
+    "ReferencePath",
     "Scenario",
     "SetPoint",
+    "SkirtMotion",
+    "SkirtScene",
+    "Slip",
+    "Sonar",
+    "Tracking",
+    "TriOmniKinematics",
+    "UltrasonicSkirt",
+    "VirtualImpedance",
+    "VirtualTorque",
+    "Vision",
+    "WheelDrive",
+    "built_evaluate",
+    "built_repeat",
+    "built_simulate",
+    "burst_trial_delays",
+    "cast_rays",
+    "collision_feet",
     "contiguous_level",
+    "differential_wheels",
+    "doppler_frequency",
     "drop_trajectory",
     "effective_one_joint",
     "effective_two_joints",
     "evaluate",
     "fit_open_loop",
     "fit_static",
+    "fix_deviations",
+    "fix_status_words",
     "foam_boundary",
     "foam_fastest",
     "foam_ratios",
+    "follower_batch",
+    "follower_layout",
+    "follower_record",
+    "follower_touching",
     "force_field",
     "force_terms",
     "front_hypervolume",
@@ -45,6 +84,7 @@ __all__ = [
     "hic_half_sine",
     "hic_square",
     "hic_triangle",
+    "holonomic_wheels",
     "identify_direct_drive",
     "identify_foam",
     "impact_gradient_names",
@@ -54,10 +94,18 @@ __all__ = [
     "impact_point_speed",
     "impact_simulate",
     "impact_status_words",
+    "impedance_forces",
+    "jittered_sound_delays",
     "law_command",
+    "likeness_curves",
+    "locate_sounds",
     "lyapunov",
+    "microphone_delays",
     "moving_average",
+    "parallel_ray_bearings",
     "pd_gains",
+    "printed_ranges",
+    "record_burst",
     "recorded_metrics",
     "region_radii",
     "search_gains",
@@ -65,9 +113,26 @@ __all__ = [
     "simulate",
     "simulate_batch",
     "simulate_direct_drive",
+    "skirt_closing_gap",
+    "skirt_directions",
+    "skirt_least_sensors",
+    "skirt_printed_gaps",
+    "skirt_run",
+    "skirt_safe_distance",
+    "skirt_states",
+    "skirt_test",
+    "sonar_mounts",
+    "sonar_readings",
+    "sound_delays",
+    "speed_of_sound",
+    "steady_gains",
     "stopping_segments",
+    "track",
+    "track_batch",
     "tube_inertia",
     "uniform_links",
+    "wheel_reference",
+    "wheel_response",
 ]
 
 _Pair = tuple[float, float]
@@ -173,6 +238,13 @@ class DifferentialDriveRobot:
         max_speed: float,
         max_acceleration: float,
         max_angular_acceleration: float,
+        reference_speed_share: float,
+        wheel_radius: float,
+        wheel_span: float,
+        winding_resistance: float,
+        wheel_inertia: _Pair,
+        wheel_viscous_friction: _Pair,
+        wheel_static_friction: _Pair,
     ) -> Self: ...
 
 @final
@@ -254,7 +326,7 @@ class Scenario:
     def __new__(
         cls,
         *,
-        robot: HolonomicRobot,
+        robot: HolonomicRobot | DifferentialDriveRobot,
         start: _Pair,
         goal: _Pair,
         obstacles: Sequence[Obstacle],
@@ -306,6 +378,21 @@ class Law:
     @staticmethod
     def reciprocal(*, horizon: float, margin: float, turn: float, reach: float, share: float) -> Law:
         """Return optimal reciprocal collision avoidance."""
+
+    @staticmethod
+    def virtual_impedance(
+        *,
+        attraction_stiffness: float,
+        attraction_damping: float,
+        stiffness: float,
+        damping: float,
+        safe_distance: float,
+        speed_limit: float,
+        reach: float,
+        view: float,
+        active: bool,
+    ) -> Law:
+        """Return virtual impedance with ideal sensing."""
 
     @staticmethod
     def field_d_star(*, resolution: float, margin: float, horizon: float, room: float, look_ahead: float) -> Law:
@@ -950,3 +1037,752 @@ def simulate_direct_drive(
     step: float,
 ) -> _DriveRunFields:
     """Return histories of a direct-drive joint in an impact."""
+
+@final
+class TriOmniKinematics:
+    """Platform with three omni-wheels."""
+
+    def __new__(cls, *, wheel_radius: float, wheel_width: float, chassis_radius: float) -> Self: ...
+    def wheel_speeds(self, velocity: _Array, yaw_rate: _Array) -> _Array:
+        """Return wheel speeds of velocities and yaw rates, row by row."""
+
+    def body_velocity(self, wheel_speeds: _Array) -> tuple[_Array, _Array]:
+        """Return velocities and yaw rates of wheel speeds, row by row."""
+
+@final
+class UltrasonicSkirt:
+    """Ring of sensors with its decisions."""
+
+    def __new__(
+        cls,
+        *,
+        chassis_radius: float,
+        sensor_inset: float,
+        sensors: int,
+        layout: str,
+        wheel_gap: float,
+        safe_distance: float | None,
+        triggering: str,
+        policy: str,
+        beam_width: float,
+        rays: int,
+        least_range: float,
+        most_range: float,
+        range_noise: float,
+        firing_period: float,
+    ) -> Self: ...
+    def bearings(self) -> list[float]:
+        """Return the bearings of the sensors, in rad."""
+
+    def gaps(self) -> list[float]:
+        """Return the gaps between sensors counterclockwise, in rad."""
+
+    def trigger_distances(self) -> list[float]:
+        """Return the triggering distances, in m."""
+
+    def meeting_distance(self) -> float:
+        """Return where the beams beside the largest gap meet, in m from the center."""
+
+    def pattern(self, readings: _Array) -> int:
+        """Return the bits of the sensors that are triggered."""
+
+    def action(self, readings: _Array) -> str:
+        """Return what is done."""
+
+@final
+class SkirtScene:
+    """How discs are laid out."""
+
+    def __new__(
+        cls,
+        *,
+        obstacles: int,
+        disc_radius: _Pair,
+        course_distance: _Pair,
+        course_offset: float,
+        half_size: float,
+        start_clearance: float,
+        spacing: float,
+        unseen_share: float,
+    ) -> Self: ...
+
+@final
+class SkirtMotion:
+    """How the robot moves."""
+
+    def __new__(cls, *, speed: float, acceleration: float, spin_rate: float, duration: float) -> Self: ...
+
+class _SkirtTestFields(TypedDict):
+    direction: npt.NDArray[np.str_]
+    min_clearance: _Array
+    contact_time: _Array
+    nearest_seen: npt.NDArray[np.bool_]
+
+class _SkirtRunFields(TypedDict):
+    time: _Array
+    position: _Array
+    heading: _Array
+    velocity: _Array
+    yaw_rate: _Array
+    readings: _Array
+    action: npt.NDArray[np.str_]
+    disc_center: _Array
+    disc_radius: _Array
+    disc_seen: npt.NDArray[np.bool_]
+    min_clearance: float
+    contact_time: float
+
+def skirt_directions() -> list[tuple[str, float]]:
+    """Return words and angles in rad of the motion directions."""
+
+def skirt_states() -> list[tuple[list[int], str]]:
+    """Return the rows of the state table: sensors that see an obstacle, and the action."""
+
+def skirt_closing_gap(*, sensors: int, wheel_gap: float) -> float:
+    """Return the gap between sensors of a ring that closes, in rad."""
+
+def skirt_printed_gaps(
+    *,
+    sensors: int,
+    wheel_gap: float,
+    chassis_radius: float,
+    sensor_radius: float,
+    wheel_sensor_radius: float,
+    sensor_length: float,
+    correction: float,
+) -> _Triple:
+    """Return the gaps by the printed (3) and (5) in rad, and the factor with which (3) closes the ring."""
+
+def skirt_least_sensors(*, wheel_sensor_radius: float, sensor_radius: float) -> _Pair:
+    """Return the least number of sensors by (6), and the next multiple of three."""
+
+def skirt_safe_distance(*, sensor_radius: float, gap: float) -> float:
+    """Return the distance from the center at which the beams beside a gap in rad meet, in m."""
+
+def skirt_test(
+    skirt: UltrasonicSkirt,
+    scene: SkirtScene,
+    motion: SkirtMotion,
+    *,
+    layouts: int,
+    repeats: int,
+    seed: int,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> _SkirtTestFields:
+    """Return the rows of the avoidance test."""
+
+def skirt_run(
+    skirt: UltrasonicSkirt,
+    scene: SkirtScene,
+    motion: SkirtMotion,
+    *,
+    index: int,
+    repeats: int,
+    seed: int,
+) -> _SkirtRunFields:
+    """Return one test of the avoidance test, step by step."""
+
+# ---- sound ----------------------------------------------------------------------------------
+
+_SoundPlace = tuple[float, float, float, float, float, float, int | None]
+_DelayOptions = tuple[str, list[float] | None, bool, int | None, int | None]
+
+class _SoundDelayFields(TypedDict):
+    delay_12: _Array
+    delay_13: _Array
+
+class _SoundBearingFields(TypedDict):
+    bearing: _Array
+
+class _SoundRangeFields(TypedDict):
+    range: _Array
+
+class _FixFields(TypedDict):
+    range: _Array
+    bearing: _Array
+    range_variance: _Array
+    covariance: _Array
+    bearing_variance: _Array
+    curvature: _Array
+    status_code: npt.NDArray[np.uint8]
+
+class _HeardFields(TypedDict):
+    samples: _Array
+    clipped: list[int]
+
+class _FoundDelayFields(TypedDict):
+    delays: list[float]
+    lags: list[int]
+    likeness: list[float]
+    start: int
+
+class _LikenessFields(TypedDict):
+    values_12: _Array
+    values_13: _Array
+
+@final
+class MicrophoneArray:
+    """Row of three microphones."""
+
+    def __new__(cls, *, spacing: float, speed_of_sound: float) -> Self: ...
+
+@final
+class Burst:
+    """A sound of limited length; its waveform is made when it is heard first."""
+
+    def __new__(
+        cls, *, kind: str, low: float, high: float, duration: float, level: float, ramp: float, seed: int
+    ) -> Self: ...
+
+@final
+class Converter:
+    """Analog-to-digital converter."""
+
+    def __new__(cls, *, sample_rate: float, bits: int | None) -> Self: ...
+
+def fix_status_words() -> list[str]:
+    """Return the words of the codes of fixes."""
+
+def microphone_delays(array: MicrophoneArray, range: _Array, bearing: _Array) -> _SoundDelayFields:
+    """Return exact delays of M2 and M3 against M1."""
+
+def parallel_ray_bearings(array: MicrophoneArray, pair: str, delay_12: _Array, delay_13: _Array) -> _SoundBearingFields:
+    """Return bearings by parallel rays from the delays of one pair."""
+
+def printed_ranges(array: MicrophoneArray, delay_12: _Array, delay_13: _Array) -> _SoundRangeFields:
+    """Return ranges by the printed formula."""
+
+def locate_sounds(
+    array: MicrophoneArray,
+    delay_12: _Array,
+    delay_13: _Array,
+    *,
+    covariance: Sequence[float],
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> _FixFields:
+    """Return fixes from delays; the covariance of the delays is variance, covariance, variance."""
+
+def doppler_frequency(frequency: float, *, speed_of_sound: float, observer_speed: float, source_speed: float) -> float:
+    """Return the frequency that is heard by and from something that moves."""
+
+def record_burst(
+    burst: Burst, array: MicrophoneArray, converter: Converter, place: _SoundPlace, *, seed: int, run: int
+) -> _HeardFields:
+    """Return samples of three microphones that hear a burst."""
+
+def sound_delays(
+    array: MicrophoneArray, samples: _Array, sample_rate: float, options: _DelayOptions
+) -> _FoundDelayFields:
+    """Return delays of M2 and M3 against M1 from samples."""
+
+def likeness_curves(
+    array: MicrophoneArray, samples: _Array, sample_rate: float, options: _DelayOptions
+) -> _LikenessFields:
+    """Return likeness over lag from samples."""
+
+def jittered_sound_delays(
+    array: MicrophoneArray,
+    sources: Sequence[tuple[float, float]],
+    *,
+    arrival_deviation: float,
+    runs: int,
+    seed: int,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> _SoundDelayFields:
+    """Return delays with jitter of the arrivals, the runs of a source side by side."""
+
+def burst_trial_delays(
+    burst: Burst,
+    array: MicrophoneArray,
+    converter: Converter,
+    places: Sequence[_SoundPlace],
+    options: _DelayOptions,
+    *,
+    runs: int,
+    seed: int,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> _SoundDelayFields:
+    """Return delays from full waveforms, the runs of a source side by side."""
+
+# ---- follower ----
+
+@final
+class EchoShape:
+    """Shape that echoes."""
+
+    @staticmethod
+    def rectangle(*, center: _Pair, size: _Pair, angle: float) -> EchoShape: ...
+    @staticmethod
+    def disc(*, center: _Pair, radius: float) -> EchoShape: ...
+    @staticmethod
+    def wall(*, start: _Pair, end: _Pair) -> EchoShape: ...
+
+@final
+class Mover:
+    """Obstacle that moves or stands."""
+
+    def __new__(cls, *, shape: EchoShape, velocity: _Pair, start: float, stop: float) -> Self: ...
+
+@final
+class Sonar:
+    """Ultrasonic sensors of the follower."""
+
+    def __new__(
+        cls,
+        *,
+        forward: float,
+        spacing: float,
+        fan: float,
+        beam_width: float,
+        rays: int,
+        least_range: float,
+        most_range: float,
+        range_noise: float,
+        temperature: float,
+        assumed_temperature: float,
+        firing: str,
+        rear: bool,
+    ) -> Self: ...
+
+@final
+class VirtualImpedance:
+    """Repulsion from collision vectors."""
+
+    def __new__(
+        cls,
+        *,
+        form: str,
+        stiffness: float,
+        damping: float,
+        safe_distance: float,
+        speed_limit: float,
+        reference_stiffness: float,
+        reference_damping: float,
+        clamp: bool,
+        speed: str,
+        filter_time: float,
+        largest_rate: float,
+        outlives_gaps: bool,
+        pairing_gap: float,
+        pairing_share: float,
+        rotation: str,
+        translated_by: _Pair | None,
+    ) -> Self: ...
+
+@final
+class Follower:
+    """The robot and its ear."""
+
+    def __new__(
+        cls,
+        *,
+        sonar: Sonar,
+        drive: Sequence[float],
+        attraction: _Triple,
+        fix_interval: float,
+        fix_noise: bool,
+        mirrored_fixes: bool,
+        velocity_rule: str,
+        step: float,
+    ) -> Self: ...
+
+@final
+class FollowerLayouts:
+    """How random layouts are drawn."""
+
+    def __new__(cls, *, kind: str, obstacle_speed: _Pair, size_factor: float, leader_size: _Pair | None) -> Self: ...
+
+def sonar_mounts(sonar: Sonar) -> dict[str, _Array]:
+    """Return positions (m) and axes (rad) of the sensors on the robot."""
+
+def sonar_readings(
+    sonar: Sonar, shapes: list[EchoShape], poses: _Array, *, seed: int, noise: bool
+) -> dict[str, _Array]:
+    """Return readings (m) of all sensors at poses (x, y, heading), one after the other."""
+
+def cast_rays(shapes: list[EchoShape], origins: _Array, angles: _Array) -> dict[str, _Array]:
+    """Return distances (m) along rays to the first shape; infinite without one."""
+
+def speed_of_sound(temperature: float) -> float:
+    """Return the speed of sound in m/s at a temperature in degrees Celsius."""
+
+def impedance_forces(law: VirtualImpedance, distance: _Array, speed: _Array) -> dict[str, Any]:
+    """Return spring and damper parts (N) at distances (m) and speeds (m/s), and the two scales."""
+
+def collision_feet(one: _Array, other: _Array, *, clamp: bool) -> dict[str, _Array]:
+    """Return feet of perpendiculars from the origin on the lines, or segments, between points."""
+
+def fix_deviations(range: _Array, bearing: _Array) -> dict[str, _Array]:
+    """Return standard deviations of range (m) and bearing (rad) of a fix, by Table 2."""
+
+def follower_layout(layouts: FollowerLayouts, seed: int) -> dict[str, Any]:
+    """Return boxes, leader and length of the layout of a seed."""
+
+def follower_record(
+    follower: Follower,
+    law: VirtualImpedance,
+    obstacles: list[Mover],
+    *,
+    leader_start: _Pair,
+    leader_end: _Pair,
+    leader_speed: float,
+    leader_size: _Pair | None,
+    duration: float,
+    seed: int,
+) -> dict[str, Any]:
+    """Return one run, sample by sample."""
+
+def follower_touching(
+    follower: Follower, layouts: FollowerLayouts, *, first: int, count: int, threads: int | None
+) -> list[int]:
+    """Return the first seeds in whose layouts the robot without repulsion touches an obstacle."""
+
+def follower_batch(
+    follower: Follower,
+    law: VirtualImpedance,
+    layouts: FollowerLayouts,
+    seeds: list[int],
+    *,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> dict[str, Any]:
+    """Return the ends of the runs through the layouts of seeds."""
+
+@final
+class AsBuilt:
+    """How a robot is built."""
+
+    def __new__(
+        cls,
+        *,
+        wheels: Sequence[WheelDrive] | None,
+        kinematics: OmniKinematics,
+        slip: Slip,
+        tracking: Tracking | VirtualTorque,
+        robot_vision: Vision | None,
+        obstacle_vision: Vision | None,
+        position_share: float,
+        heading_share: float,
+        mark_distance: float,
+    ) -> Self: ...
+
+def built_simulate(
+    scenario: Scenario,
+    law: Law,
+    built: AsBuilt,
+    *,
+    step: float,
+    stop_on_contact: bool,
+) -> dict[str, Any]:
+    """Return the fields of a run of a robot as built."""
+
+def built_evaluate(
+    scenario: Scenario,
+    law: Law,
+    built: AsBuilt,
+    weights: tuple[float, float, float],
+    *,
+    step: float,
+) -> tuple[dict[str, float], dict[str, Any], dict[str, Any]]:
+    """Return the score of a run of a robot as built, the run and the nominal run."""
+
+def built_repeat(
+    scenario: Scenario,
+    law: Law,
+    built: AsBuilt,
+    seeds: Sequence[int],
+    *,
+    step: float,
+    stop_on_contact: bool,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> dict[str, Any]:
+    """Return the columns of runs with many seeds."""
+
+class _EstimateFields(TypedDict):
+    position: _Array
+    velocity: _Array
+    measured_at: _Array
+
+class _TrackFields(_EstimateFields):
+    covariance: _Array
+
+class _ObservationFields(_EstimateFields):
+    exposed: _Array
+    measured: _Array
+
+_Rotation = tuple[_Triple, _Triple, _Triple]
+
+@final
+class Camera:
+    """Camera."""
+
+    def __new__(
+        cls,
+        *,
+        focal_length: float,
+        radial_distortion: float,
+        horizontal_scale: float,
+        image_center: _Pair,
+        pixel_size: _Pair,
+        image_size: tuple[int, int],
+        rotation: _Rotation,
+        translation: _Triple,
+    ) -> Self: ...
+    def position(self) -> _Triple:
+        """Where the camera is."""
+
+    def project(self, points: _Array) -> _Array:
+        """Pixels of points; NaN for those without an image."""
+
+    def contains(self, pixels: _Array) -> list[bool]:
+        """Whether pixels lie in the picture."""
+
+    def reconstruct(self, pixels: _Array, heights: _Array) -> _Array:
+        """Points at known heights that pixels show; NaN where there is none."""
+
+    def linearize(self, parameters: Sequence[float], points: _Array) -> tuple[_Array, _Array]:
+        """Pixels of points with other parameters than those of this camera, and derivatives."""
+
+    def turned(self, parameters: Sequence[float]) -> _Rotation:
+        """Rotation matrix after the turn among parameters."""
+
+@final
+class Estimator:
+    """Estimator of position and velocity."""
+
+    @staticmethod
+    def differences() -> Estimator:
+        """Backward differences."""
+
+    @staticmethod
+    def alpha_beta(*, position_gain: float, velocity_gain: float) -> Estimator:
+        """Constant gains."""
+
+    @staticmethod
+    def kalman(*, acceleration_deviation: float, position_deviation: float, speed_deviation: float) -> Estimator:
+        """Kalman filter."""
+
+    def track(self, time: _Array, position: _Array) -> _TrackFields:
+        """Estimates at measured positions; rows of the covariance are position, both, velocity."""
+
+@final
+class ErrorSource:
+    """Error of measured positions."""
+
+    @staticmethod
+    def plane(*, distribution: str, scale: float) -> ErrorSource:
+        """Return an error that is added to x and y."""
+
+    @staticmethod
+    def patch(*, camera: Camera, believed: Camera, height: float, centroid_deviation: float) -> ErrorSource:
+        """Centroid of a color patch."""
+
+@final
+class Vision:
+    """Vision of one body."""
+
+    def __new__(
+        cls,
+        *,
+        period: float,
+        delay: float,
+        error: ErrorSource,
+        drop_probability: float,
+        estimator: Estimator,
+        compensated: bool,
+    ) -> Self: ...
+    def observe(self, time: _Array, position: _Array, seed: int, stream: int) -> _ObservationFields:
+        """Frames of a body on a known path, and what is known at the times of the path."""
+
+def steady_gains(*, acceleration_deviation: float, position_deviation: float, period: float) -> _Pair:
+    """Steady gains of a Kalman filter."""
+
+# ---- two-wheel robot ------------------------------------------------------------------------
+
+@final
+class Tracking:
+    @staticmethod
+    def full_speed(*, position_gain: float, heading_gain: float) -> Tracking: ...
+    @staticmethod
+    def nonlinear(*, damping_ratio: float, gain: float, error_frame: str, reference_turn: str) -> Tracking: ...
+    @staticmethod
+    def exponential(
+        *,
+        position_gain: float,
+        heading_gain: float,
+        distance_gain: float,
+        bearing_gain: float,
+        orientation_gain: float,
+        goal_heading: float | None,
+        capture_radius: float,
+        rest_radius: float,
+    ) -> Tracking: ...
+
+@final
+class VirtualTorque:
+    def __new__(cls, *, torque_gain: float, damping_ratio: float, backward: bool) -> Self: ...
+    @staticmethod
+    def gain_for(robot: DifferentialDriveRobot, frequency: float) -> float: ...
+    def torque(self, heading: float, force: _Pair) -> float: ...
+    def command(
+        self,
+        robot: DifferentialDriveRobot,
+        *,
+        force: _Pair,
+        heading: float,
+        speed: float,
+        turn_rate: float,
+        control_period: float,
+    ) -> _Pair: ...
+
+class _ReferenceFields(TypedDict):
+    position: _Array
+    velocity: _Array
+    acceleration: _Array
+
+@final
+class ReferencePath:
+    @staticmethod
+    def line(*, start: _Pair, velocity: _Pair) -> ReferencePath: ...
+    @staticmethod
+    def circle(*, center: _Pair, radius: float, speed: float, start_angle: float) -> ReferencePath: ...
+    @staticmethod
+    def samples(*, time: _Array, position: _Array, velocity: _Array) -> ReferencePath: ...
+    def at(self, time: _Array) -> _ReferenceFields: ...
+
+class _FollowedFields(TypedDict):
+    time: _Array
+    position: _Array
+    heading: _Array
+    speed: _Array
+    turn_rate: _Array
+    commanded_speed: _Array
+    commanded_turn_rate: _Array
+    reference_position: _Array
+    reference_velocity: _Array
+    goal_phase: npt.NDArray[np.bool_]
+
+def track(
+    reference: ReferencePath,
+    tracking: Tracking,
+    robot: DifferentialDriveRobot,
+    *,
+    start: tuple[float, float, float, float, float],
+    control_period: float,
+    step: float,
+    duration: float,
+    goal: _Pair | None,
+) -> _FollowedFields: ...
+
+class _FollowedColumns(TypedDict):
+    final_error: _Array
+    max_error: _Array
+    final_heading: _Array
+    path_length: _Array
+    settling_time: _Array
+
+def track_batch(
+    references: Sequence[ReferencePath],
+    tracking: Tracking,
+    robot: DifferentialDriveRobot,
+    *,
+    starts: _Array,
+    levels: Sequence[float],
+    control_period: float,
+    step: float,
+    duration: float,
+    goal: _Pair | None,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> _FollowedColumns: ...
+
+class _WheelPreset(TypedDict):
+    inertia: float
+    viscous_friction: float
+    static_friction: float
+    model: _Triple
+    proportional_gain: float
+    derivative_gain: float
+    feedback: Literal["observer", "observed_speed", "differences"]
+    observer_poles: _Pair
+    encoder_counts: float
+    gear_ratio: float
+    amplifier_gain: float
+    winding_resistance: float
+    back_emf: float
+    current_limit: float
+    supply_voltage: float
+    period: float
+
+class _WheelFields(TypedDict):
+    angle: _Array
+    speed: _Array
+    read_angle: _Array
+    known_angle: _Array
+    known_speed: _Array
+    current: _Array
+    voltage: _Array
+    ideal_current: _Array
+    energy: float
+    ideal_energy: float
+
+@final
+class WheelDrive:
+    def __new__(
+        cls,
+        *,
+        inertia: float,
+        viscous_friction: float,
+        static_friction: float,
+        model: _Triple,
+        proportional_gain: float,
+        derivative_gain: float,
+        feedback: str,
+        observer_poles: _Pair,
+        encoder_counts: float | None,
+        gear_ratio: float,
+        amplifier_gain: float,
+        winding_resistance: float,
+        back_emf: float,
+        current_limit: float,
+        supply_voltage: float,
+        period: float,
+    ) -> Self: ...
+    def open_loop_angles(self, *, command: float, start_angle: float, periods: int) -> _Array: ...
+    def follow(
+        self,
+        *,
+        angle: _Array,
+        speed: _Array,
+        acceleration: _Array,
+        start_angle: float,
+        start_speed: float,
+    ) -> _WheelFields: ...
+
+@final
+class OmniKinematics:
+    def __new__(cls, *, wheel_radius: float, center_distance: float) -> Self: ...
+    def wheel_speeds(self, velocity: _Array, heading: _Array) -> _Array: ...
+    def body_velocity(self, speeds: _Array, heading: _Array) -> _Array: ...
+
+@final
+class DifferentialKinematics:
+    def __new__(cls, *, wheel_radius: float, span: float) -> Self: ...
+    def wheel_speeds(self, motion: _Array) -> _Array: ...
+    def body_velocity(self, speeds: _Array) -> _Array: ...
+    def world_velocity(self, speeds: _Array, heading: _Array) -> _Array: ...
+
+@final
+class Slip:
+    def __new__(cls, *, creep: float, grip: float) -> Self: ...
+    def ground_speeds(self, rim_speed: _Array, *, start: float, period: float) -> _Array: ...
+
+def holonomic_wheels() -> list[_WheelPreset]: ...
+def differential_wheels() -> list[_WheelPreset]: ...
+def wheel_reference(speed: _Array, period: float) -> tuple[_Array, _Array]: ...
+def wheel_response(time: _Array, *, dynamics: _Triple, current: float) -> _Array: ...

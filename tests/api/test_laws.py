@@ -27,6 +27,7 @@ LAWS: dict[str, nav.Law] = {
     "OptimalReciprocalCollisionAvoidance": nav.OptimalReciprocalCollisionAvoidance(horizon=3.0, reciprocal=True),
     "RapidlyExploringRandomTree": nav.RapidlyExploringRandomTree(goal_probability=0.2, draws=500, keeps_path=False),
     "FieldDStar": nav.FieldDStar(margin=0.1),
+    "VirtualImpedanceLaw": nav.VirtualImpedanceLaw(form="conventional", view=2.0),
 }
 C1 = scenarios.configuration("c1")
 PLACE: dict[str, Any] = {"position": (3.5, 0.6), "velocity": (0.0, 0.0)}
@@ -93,7 +94,7 @@ def test_law_does_the_same_after_a_pickle(law: nav.Law) -> None:
 
 
 def test_laws_of_different_kinds_are_not_equal() -> None:
-    assert len({repr(law) for law in LAWS.values()}) == len(set(LAWS.values())) == 9
+    assert len({repr(law) for law in LAWS.values()}) == len(set(LAWS.values())) == 10
     gains = {"attractive_gain": 3.0, "repulsive_gain": 0.5, "gain_ratio": 1.0}
     one: nav.Law = nav.Khatib().replaced(**gains)
     assert one != nav.GeCui().replaced(**gains)
@@ -139,6 +140,12 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
     "FieldDStar": {
         **dict.fromkeys(("resolution", "room", "look_ahead"), POSITIVE),
         **dict.fromkeys(("margin", "horizon"), NOT_NEGATIVE),
+    },
+    "VirtualImpedanceLaw": {
+        "form": WORD,
+        **dict.fromkeys(("attraction_stiffness", "attraction_damping"), NOT_NEGATIVE),
+        **dict.fromkeys(("stiffness", "damping", "safe_distance", "speed_limit", "reach"), POSITIVE),
+        "view": (*POSITIVE, math.nextafter(math.pi, 4.0), 7.0),
     },
 }
 SPOILED = [

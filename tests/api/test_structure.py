@@ -20,20 +20,26 @@ from typing import Any
 import pytest
 
 import hrsafety
-from hrsafety import impact
+from hrsafety import impact, reactive
 from hrsafety import navigation as nav
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "python" / "hrsafety"
-CORES = ("vff_core", "impact_core")
+CORES = ("vff_core", "impact_core", "reactive_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
 NATIVE_USERS = ("navigation", "impact", "reactive")
 COMPUTING = {
     *("simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"),
     *("optimize_gains", "pareto_front", "gain_sensitivity", "gain_gradient"),
+    *("calibrate_camera", "calibration_study", "observe", "track_positions"),
+    *("track", "track_batch"),
 }
 COMPUTING_IMPACT = {"simulate", "simulate_direct_drive", "metrics", "metrics_batch", "gradients", "hic", "design_foam"}
+COMPUTING_REACTIVE = {
+    *("skirt_test", "skirt_run", "smallest_skirt"),
+    *("locate", "locate_batch", "estimate_delays", "likeness", "record_burst", "jittered_fixes", "localize_bursts"),
+}
 VAGUE_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "types", "manager"}
 
 SOURCES = sorted(PACKAGE.rglob("*.py"))
@@ -162,9 +168,20 @@ def test_plotting_computes_no_impact(path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("path", [path for path in SOURCES if "plotting" in path.parts], ids=module_name)
+def test_plotting_computes_nothing_reactive(path: Path) -> None:
+    called = {
+        ast.unparse(node.func).split(".")[-1]
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).startswith(("reactive.", "hrsafety.reactive."))
+    }
+    assert not called & COMPUTING_REACTIVE
+    assert not [name for name in imported(path) if name.split(".")[-1] in COMPUTING_REACTIVE]
+
+
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "distributed", "numba", "pandas"}
-    parts = ("navigation", "impact", "scenarios", "datasets", "plotting", "sweep", "cli")
+    parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -221,7 +238,7 @@ def fields_of(kind: Any) -> list[str]:
 
 def public_fields() -> list[tuple[str, str]]:
     """Return (class, field) for every public record of the packages that compute."""
-    kinds = {name: getattr(module, name) for module in (nav, impact) for name in module.__all__}
+    kinds = {name: getattr(module, name) for module in (nav, impact, reactive) for name in module.__all__}
     return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
 
 
@@ -240,7 +257,7 @@ def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
 # ---- docstrings -----------------------------------------------------------------------------
 
 # Modules whose public names users call. Examples stand where a call makes sense on its own.
-DOCUMENTED = ("navigation", "impact", "scenarios", "datasets", "plotting", "reproduce", "sweep", "errors")
+DOCUMENTED = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "reproduce", "sweep", "errors")
 NEEDS_NO_EXAMPLE = {
     "reproduce",  # runs for minutes
 }

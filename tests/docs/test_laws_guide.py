@@ -23,6 +23,7 @@ LAWS: tuple[type[nav.Law], ...] = (
     nav.OptimalReciprocalCollisionAvoidance,
     nav.RapidlyExploringRandomTree,
     nav.FieldDStar,
+    nav.VirtualImpedanceLaw,
 )
 
 

@@ -14,7 +14,11 @@ use vff_core::planners::tree::RapidlyExploringRandomTree;
 use vff_core::planners::velocity_obstacle::{Selection, VelocityObstacle};
 use vff_core::simulate::AnyLaw;
 
+use reactive_core::impedance::attraction::Attraction;
+use reactive_core::impedance::law::{Form, Impedance};
+
 use crate::errors::{CoreError, CoreResult, InvalidParameterError};
+use crate::reactive::arena::ImpedanceFamily;
 
 /// A law of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -219,5 +223,47 @@ impl Law {
             look_ahead,
             safety_draws,
         }))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, attraction_stiffness, attraction_damping, stiffness, damping,
+        safe_distance, speed_limit, reach, view, active))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn virtual_impedance(
+        attraction_stiffness: f64,
+        attraction_damping: f64,
+        stiffness: f64,
+        damping: f64,
+        safe_distance: f64,
+        speed_limit: f64,
+        reach: f64,
+        view: f64,
+        active: bool,
+    ) -> CoreResult<Self> {
+        let form = if active {
+            Form::Active
+        } else {
+            Form::Conventional
+        };
+        let family = ImpedanceFamily {
+            impedance: Impedance {
+                form,
+                stiffness,
+                damping,
+                safe_distance,
+                speed_limit,
+                reference_stiffness: std::f64::consts::E * stiffness,
+                reference_damping: damping / std::f64::consts::E,
+                clamp: true,
+            },
+            attraction: Attraction {
+                stiffness: attraction_stiffness,
+                damping: attraction_damping,
+                standoff: 0.0,
+            },
+            reach,
+            view,
+        };
+        Self::checked(AnyLaw::one_by_one(family))
     }
 }

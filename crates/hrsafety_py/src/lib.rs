@@ -1,16 +1,21 @@
-//! Python binding: registration. The module is private; `hrsafety.navigation` and
-//! `hrsafety.impact` are its faces.
+//! Python binding: registration. The module is private; `hrsafety.navigation`,
+//! `hrsafety.impact` and `hrsafety.reactive` are its faces.
 
 mod arrays;
 mod batch;
+mod built;
+mod differential;
 mod errors;
 mod gains;
 mod impact;
 mod laws;
 mod parameters;
+mod reactive;
 mod run;
+mod sensing;
 mod signals;
 mod watch;
+mod wheels;
 
 use pyo3::prelude::*;
 
@@ -30,6 +35,10 @@ mod _hrsafety {
 
     #[pymodule_export]
     use crate::batch::simulate_batch;
+    #[pymodule_export]
+    use crate::built::{AsBuilt, built_evaluate, built_repeat, built_simulate};
+    #[pymodule_export]
+    use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]
     use crate::gains::problem::GainProblem;
     #[pymodule_export]
@@ -71,5 +80,40 @@ mod _hrsafety {
         DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, region_radii,
     };
     #[pymodule_export]
+    use crate::reactive::follower::echoes::{
+        EchoShape, Sonar, cast_rays, sonar_mounts, sonar_readings, speed_of_sound,
+    };
+    #[pymodule_export]
+    use crate::reactive::follower::runs::{
+        FollowerLayouts, follower_batch, follower_layout, follower_record, follower_touching,
+    };
+    #[pymodule_export]
+    use crate::reactive::follower::{
+        Follower, Mover, VirtualImpedance, collision_feet, fix_deviations, impedance_forces,
+    };
+    #[pymodule_export]
+    use crate::reactive::localization::bursts::{
+        Burst, Converter, burst_trial_delays, doppler_frequency, jittered_sound_delays,
+        likeness_curves, record_burst, sound_delays,
+    };
+    #[pymodule_export]
+    use crate::reactive::localization::{
+        MicrophoneArray, fix_status_words, locate_sounds, microphone_delays, parallel_ray_bearings,
+        printed_ranges,
+    };
+    #[pymodule_export]
+    use crate::reactive::skirt::{
+        SkirtMotion, SkirtScene, TriOmniKinematics, UltrasonicSkirt, skirt_closing_gap,
+        skirt_directions, skirt_least_sensors, skirt_printed_gaps, skirt_run, skirt_safe_distance,
+        skirt_states, skirt_test,
+    };
+    #[pymodule_export]
     use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, simulate};
+    #[pymodule_export]
+    use crate::sensing::{Camera, ErrorSource, Estimator, Vision, steady_gains};
+    #[pymodule_export]
+    use crate::wheels::{
+        DifferentialKinematics, OmniKinematics, Slip, WheelDrive, differential_wheels,
+        holonomic_wheels, wheel_reference, wheel_response,
+    };
 }

@@ -19,6 +19,7 @@ LAW_NAMES = (
     "borenstein-koren",
     "masoud",
     "ge-cui",
+    "virtual-impedance",
     "velocity-obstacle",
     "rapidly-exploring-random-tree",
     "field-d-star",

@@ -21,6 +21,7 @@ LAWS: Mapping[str, type[nav.Law]] = MappingProxyType(
         "borenstein_koren": nav.BorensteinKoren,
         "masoud": nav.Masoud,
         "ge_cui": nav.GeCui,
+        "virtual_impedance": nav.VirtualImpedanceLaw,
         "velocity_obstacle": nav.VelocityObstacle,
         "rapidly_exploring_random_tree": nav.RapidlyExploringRandomTree,
         "field_d_star": nav.FieldDStar,
