@@ -111,7 +111,7 @@ def first_crossing(shapes: list[Any], origin: np.ndarray, angle: float) -> float
         edges = np.roll(points, -1, axis=0) - points
         to = points - origin
         cross = direction[0] * edges[:, 1] - direction[1] * edges[:, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # an edge along the ray
             along = (to[:, 0] * edges[:, 1] - to[:, 1] * edges[:, 0]) / cross
             share = (to[:, 0] * direction[1] - to[:, 1] * direction[0]) / cross
         hit = (along >= 0.0) & (share >= 0.0) & (share <= 1.0)
