@@ -1,9 +1,9 @@
 //! Two-wheel robot that follows a reference.
 
+use groundwork::error::{Failure, Given};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::error::{Given, NavigationError};
 use vff_core::motion::Motion;
 use vff_core::robots::differential::{
     self, DifferentialLimits, ErrorFrame, ExponentialGoal, FullSpeed, Nonlinear, Pose,
@@ -97,7 +97,7 @@ impl Tracking {
 }
 
 fn unknown<T>(name: &str, rule: &'static str, word: &str) -> CoreResult<T> {
-    Err(NavigationError::invalid(name, rule, Given::Word(word.into())).into())
+    Err(Failure::invalid(name, rule, Given::Word(word.into())).into())
 }
 
 /// Torque that turns the robot toward the force.

@@ -1,7 +1,7 @@
 //! Navigation laws.
 
+use groundwork::error::Result;
 use pyo3::prelude::*;
-use vff_core::error::Result;
 use vff_core::forces::side::SideRules;
 use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::gains::Gains;

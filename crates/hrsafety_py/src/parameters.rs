@@ -1,7 +1,7 @@
 //! Checked parameter objects behind the Python dataclasses.
 
+use groundwork::error::{Failure, Given};
 use pyo3::prelude::*;
-use vff_core::error::{Given, NavigationError};
 use vff_core::measurement::{self, Distribution, Noisy};
 use vff_core::motion::{Motion, Segment};
 use vff_core::obstacle::{self, Limits};
@@ -258,7 +258,7 @@ pub fn word<T: Copy>(
         .or_else(|_| given.repr().map(|shown| shown.to_string()))?;
     let known = meanings.iter().find(|(key, _)| *key == text);
     known.map(|(_, meaning)| *meaning).ok_or_else(|| {
-        let error = NavigationError::invalid(name, requirement, Given::Word(text));
+        let error = Failure::invalid(name, requirement, Given::Word(text));
         crate::errors::CoreError::from(error).into()
     })
 }

@@ -1,9 +1,9 @@
 //! Sensing: conversion of arguments and results.
 
+use groundwork::error::Failure;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::error::NavigationError;
 use vff_core::measurement::Distribution;
 use vff_core::sensing::{
     self, Estimate, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, VisionSensor,
@@ -263,7 +263,7 @@ fn observed(
     positions: &[[f64; 2]],
     (seed, stream): (u64, u64),
     control: &Control,
-) -> Result<(Estimates, Vec<f64>, Vec<f64>), NavigationError> {
+) -> Result<(Estimates, Vec<f64>, Vec<f64>), Failure> {
     let mut sensor = VisionSensor::new(vision, seed, stream)?;
     let mut estimates = Estimates::with_capacity(times.len());
     let (mut exposed, mut measured) = (Vec::new(), Vec::new());
@@ -275,7 +275,7 @@ fn observed(
         }
         estimates.push(sensor.estimate(*time));
         if control.interrupted() {
-            return Err(NavigationError::Interrupted);
+            return Err(Failure::Interrupted);
         }
     }
     Ok((estimates, exposed, measured))

@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use impact_core::error::ImpactError;
+use groundwork::error::Failure;
 use pyo3::prelude::*;
 
 use crate::errors::CoreError;
@@ -94,12 +94,12 @@ where
 pub fn watched_each<T: Send>(
     py: Python<'_>,
     items: &[f64],
-    work: impl Fn(f64) -> Result<T, ImpactError> + Sync,
+    work: impl Fn(f64) -> Result<T, Failure> + Sync,
 ) -> PyResult<Vec<T>> {
     let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
     let next = AtomicUsize::new(0);
     watched(py, Report::none(), |control| {
-        let share = || -> Result<Vec<(usize, T)>, ImpactError> {
+        let share = || -> Result<Vec<(usize, T)>, Failure> {
             let mut done = Vec::new();
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
@@ -107,7 +107,7 @@ pub fn watched_each<T: Send>(
                     return Ok(done);
                 };
                 if control.interrupted() {
-                    return Err(ImpactError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
                 done.push((index, work(*item)?));
             }
@@ -119,11 +119,11 @@ pub fn watched_each<T: Send>(
             let own = share();
             let others = workers
                 .into_iter()
-                .map(|worker| worker.join().unwrap_or(Err(ImpactError::Interrupted)));
+                .map(|worker| worker.join().unwrap_or(Err(Failure::Interrupted)));
             others.chain([own]).collect::<Result<Vec<_>, _>>()
         })?;
         let mut all: Vec<_> = shares.into_iter().flatten().collect();
         all.sort_by_key(|(index, _)| *index);
-        Ok::<_, ImpactError>(all.into_iter().map(|(_, found)| found).collect())
+        Ok::<_, Failure>(all.into_iter().map(|(_, found)| found).collect())
     })
 }

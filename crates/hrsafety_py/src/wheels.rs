@@ -1,9 +1,9 @@
 //! Wheels: conversion of arguments and results.
 
+use groundwork::error::{Failure, Given};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::error::{Given, NavigationError};
 use vff_core::robots::wheels::{
     self, Encoder, Feedback, Motor, OpenLoopTest, WheelController, WheelDynamics, WheelState,
     WheelWish,
@@ -35,7 +35,7 @@ fn feedback_of(word: &str, poles: [f64; 2]) -> CoreResult<Feedback> {
         other => {
             let rule = "be one of \"observer\", \"observed_speed\", \"differences\"";
             let given = Given::Word(other.to_owned());
-            Err(NavigationError::invalid("feedback", rule, given).into())
+            Err(Failure::invalid("feedback", rule, given).into())
         }
     }
 }

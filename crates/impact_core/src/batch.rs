@@ -4,10 +4,11 @@ mod kernel;
 
 pub(crate) use kernel::usual;
 
+use groundwork::threads::on_threads;
 use rayon::prelude::*;
 
 use crate::criteria::{MetricOptions, Metrics, Status};
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::parameters::{Foam, GRAVITY, Head, Manipulator, System, Target};
 
 /// Rows of a task; the bits of a row do not depend on it.
@@ -107,7 +108,7 @@ impl<'a> Columns<'a> {
             if let Column::Array(values) = column {
                 if rows.is_some_and(|rows| rows != values.len()) {
                     let given = Given::Count(values.len() as u64);
-                    return Err(ImpactError::invalid("columns", "have one length", given));
+                    return Err(Failure::invalid("columns", "have one length", given));
                 }
                 rows = Some(values.len());
             }
@@ -191,7 +192,7 @@ impl Width {
             16 => Ok(Self::Sixteen),
             other => {
                 let given = Given::Count(other as u64);
-                Err(ImpactError::invalid("lanes", "be 1, 4, 8 or 16", given))
+                Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))
             }
         }
     }
@@ -348,23 +349,13 @@ pub fn metrics_batch(
     let work = || {
         blocks.into_par_iter().try_for_each(|mut block| {
             if interrupted() {
-                return Err(ImpactError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             kernel::fill(columns, options, &mut block);
             progress(block.status.len());
             Ok(())
         })
     };
-    match options.threads {
-        None => work()?,
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| ImpactError::Threads {
-                threads,
-                reason: error.to_string(),
-            })?
-            .install(work)?,
-    }
+    on_threads(options.threads, work)?;
     Ok(result)
 }

@@ -10,7 +10,7 @@ mod modes;
 mod tests;
 
 use crate::batch::Interrupted;
-use crate::error::{Given, ImpactError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::parameters::{Foam, Head, Manipulator};
 use modes::{Machine, Quantities};
 
@@ -61,7 +61,7 @@ impl DirectDrive {
         if self.voltage_limit > 0.0 {
             Ok(self)
         } else {
-            Err(ImpactError::invalid(
+            Err(Failure::invalid(
                 "voltage_limit",
                 "be positive",
                 Given::Number(self.voltage_limit),
@@ -176,7 +176,7 @@ pub fn simulate_direct_drive_until(
     positive("step", impact.step)?;
     let samples = (impact.duration / impact.step * (1.0 + 1e-12)).floor() + 1.0;
     if samples > MOST_SAMPLES {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "step",
             "leave at most 1e7 samples",
             Given::Number(impact.step),
@@ -187,7 +187,7 @@ pub fn simulate_direct_drive_until(
         .ceil()
         .max(1.0);
     if parts * samples > 10.0 * MOST_SAMPLES {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "duration",
             "leave at most 1e8 internal steps for so stiff a system",
             Given::Number(impact.duration),
@@ -209,7 +209,7 @@ pub fn simulate_direct_drive_until(
             machine.advance(impact.step * share);
             steps += 1;
             if steps.is_multiple_of(CHECK) && interrupted() {
-                return Err(ImpactError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             if machine.impact_end().is_none() {
                 peaks.see(&machine.quantities());

@@ -1,6 +1,6 @@
 //! How the set-point of the manipulator moves during an impact.
 
-use crate::error::{Given, ImpactError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
 /// Constant acceleration of the set-point from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,11 +52,7 @@ impl SetPoint {
         positive("rest", stop.rest)?;
         if stop.rest <= stop.detection {
             let given = Given::Number(stop.rest);
-            return Err(ImpactError::invalid(
-                "rest",
-                "come after the detection",
-                given,
-            ));
+            return Err(Failure::invalid("rest", "come after the detection", given));
         }
         Ok(Self {
             segments: vec![
@@ -84,7 +80,7 @@ impl SetPoint {
             not_negative("start", segment.start)?;
             if segment.start < last {
                 let given = Given::Number(segment.start);
-                return Err(ImpactError::invalid("start", "not decrease", given));
+                return Err(Failure::invalid("start", "not decrease", given));
             }
             last = segment.start;
         }

@@ -1,6 +1,6 @@
 //! Effective mass, damping and stiffness at the impact point.
 
-use crate::error::{Given, ImpactError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::parameters::Manipulator;
 
 /// One moving joint that hits at a lever arm (scenarios 1 and 2).
@@ -147,7 +147,7 @@ impl TwoJoints {
         if m12 != m21 || m11 <= 0.0 || determinant <= 0.0 {
             let rule = "be symmetric and positive definite";
             let given = Given::Word(format!("{:?}", self.mass_matrix));
-            return Err(ImpactError::invalid("mass_matrix", rule, given));
+            return Err(Failure::invalid("mass_matrix", rule, given));
         }
         for (damping, stiffness) in self.damping.into_iter().zip(self.stiffness) {
             not_negative("damping", damping)?;

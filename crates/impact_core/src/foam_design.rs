@@ -6,7 +6,7 @@
 //! therefore found on a grid, closed in by halving, and told apart by what the metric does there.
 
 use crate::criteria::{INJURY_WINDOWS, Impact};
-use crate::error::{Given, ImpactError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::parameters::{Foam, GRAVITY, Manipulator, System, Target};
 
 /// Stiffnesses that are looked at by default, in N/m.
@@ -267,11 +267,11 @@ fn check(problem: &DesignProblem, requirements: &[Requirement]) -> Result<()> {
     positive("range", high)?;
     if low >= high {
         let given = Given::Number(high);
-        return Err(ImpactError::invalid("range", "increase", given));
+        return Err(Failure::invalid("range", "increase", given));
     }
     if requirements.is_empty() {
         let given = Given::Word("no limit".into());
-        return Err(ImpactError::invalid("limits", "hold at least one", given));
+        return Err(Failure::invalid("limits", "hold at least one", given));
     }
     for requirement in requirements {
         positive(requirement.quantity.word(), requirement.limit)?;
@@ -288,7 +288,7 @@ fn check(problem: &DesignProblem, requirements: &[Requirement]) -> Result<()> {
                     let rule = "not be limited for a constrained head";
                     let given = Given::Number(requirement.limit);
                     let name = requirement.quantity.word();
-                    return Err(ImpactError::invalid(name, rule, given));
+                    return Err(Failure::invalid(name, rule, given));
                 }
             }
         }

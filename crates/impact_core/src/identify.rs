@@ -18,7 +18,7 @@ pub use drop_test::{DropContact, DropModel, drop_trajectory};
 pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam, identify_foam_until};
 pub use line::{Line, fit_static, student_quantile};
 
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::signal::check_finite;
 
 /// Passes finite samples, as many as another argument has and not fewer than `least`.
@@ -31,7 +31,7 @@ fn check_samples(
 ) -> Result<()> {
     if values.len() != partner || values.len() < least {
         let count = Given::Count(values.len() as u64);
-        return Err(ImpactError::invalid(name, requirement, count));
+        return Err(Failure::invalid(name, requirement, count));
     }
     check_finite(name, values)
 }
@@ -41,7 +41,7 @@ fn check_confidence(confidence: f64) -> Result<f64> {
     if confidence > 0.0 && confidence < 1.0 {
         Ok(confidence)
     } else {
-        Err(ImpactError::invalid(
+        Err(Failure::invalid(
             "confidence",
             "lie between 0 and 1",
             Given::Number(confidence),

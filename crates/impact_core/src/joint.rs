@@ -1,6 +1,6 @@
 //! A joint with a mechanical and a control compliance in series, and its reduction.
 
-use crate::error::{Given, ImpactError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 
 /// A driven joint: transmission (mechanical) in series with the servo loop (control).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,7 @@ impl Joint {
         if ratio.is_finite() {
             Ok(ratio)
         } else {
-            Err(ImpactError::invalid(
+            Err(Failure::invalid(
                 "frequency",
                 "be within the range of double numbers",
                 Given::Number(frequency),

@@ -6,6 +6,8 @@
 
 #![forbid(unsafe_code)]
 
+pub use groundwork::error;
+
 pub mod batch;
 pub mod contact;
 pub mod criteria;
@@ -13,7 +15,6 @@ pub mod direct_drive;
 pub mod drive;
 pub mod dual;
 pub mod effective;
-pub mod error;
 pub mod fast;
 pub mod foam_design;
 pub mod gradients;

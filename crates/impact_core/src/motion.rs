@@ -1,6 +1,6 @@
 //! The linear motion of an impact, evaluated at any time.
 
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::series::{CELL_ANGLE, Cell, Drive, Plant, Recurrence, State, derivatives, integrated};
 use lanes::Real;
 
@@ -153,7 +153,7 @@ pub fn cell_length(plant: &Plant<f64>, duration: f64) -> Result<f64> {
     if duration / length <= MAX_CELLS as f64 {
         Ok(length)
     } else {
-        Err(ImpactError::invalid(
+        Err(Failure::invalid(
             "system",
             "have no root faster than 2e5 per time of interest",
             Given::Number(fastest),

@@ -7,7 +7,7 @@ mod runge_kutta;
 use crate::batch::Interrupted;
 use crate::contact::{Bodies, Event, Phase, Stretch};
 use crate::drive::SetPoint;
-use crate::error::{Given, ImpactError, Result, finite, positive};
+use crate::error::{Failure, Given, Result, finite, positive};
 use crate::motion::cell_length;
 use crate::parameters::{System, Target};
 use crate::series::{Drive, Plant, State};
@@ -152,7 +152,7 @@ pub fn simulate_until(
     let samples = (options.duration / options.step + 1e-9).floor();
     if samples > MAX_SAMPLES as f64 {
         let given = Given::Number(options.step);
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "step",
             "give fewer than 1e8 samples",
             given,
@@ -182,7 +182,7 @@ pub fn simulate_until(
     let samples = samples as usize;
     run.response.reserve(samples + 1).ok_or_else(|| {
         let given = Given::Number(options.step);
-        ImpactError::invalid("step", "give samples that fit into memory", given)
+        Failure::invalid("step", "give samples that fit into memory", given)
     })?;
     match options.method {
         Method::Exact => run.exact(samples, interrupted)?,
@@ -199,7 +199,7 @@ impl SimulationOptions {
         if plain || self.equations == Equations::Corrected {
             return Ok(());
         }
-        Err(ImpactError::invalid(
+        Err(Failure::invalid(
             "equations",
             "be \"corrected\" unless method, contact and set-point are the usual ones",
             Given::Word("as_printed".to_owned()),
@@ -267,7 +267,7 @@ impl Run<'_> {
         let mut next = 0;
         while next <= samples {
             if interrupted() {
-                return Err(ImpactError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             let (drive, change) = self.drive();
             let length = longest.min(change - self.time);
@@ -285,7 +285,7 @@ impl Run<'_> {
                 self.record(time, &stretch.state(time - self.time), stretch.phase);
                 next += 1;
                 if next.is_multiple_of(CHECK) && interrupted() {
-                    return Err(ImpactError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
             }
             self.state = stretch.state(stretch.used);

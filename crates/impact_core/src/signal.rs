@@ -16,7 +16,7 @@ pub use injury::{HeadInjury, hic};
 pub use recorded::Recording;
 pub use windows::{Level, contiguous_level, moving_average};
 
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 
 /// Share of the window by which rounding of the sample times may lengthen it: 150 intervals of
 /// 0.1 ms are a window of 15 ms, whatever the last bits of their difference say.
@@ -33,7 +33,7 @@ impl<'a> Signal<'a> {
     fn new(time: &'a [f64], acceleration_g: &'a [f64]) -> Result<Self> {
         check_time("time", time)?;
         if acceleration_g.len() != time.len() {
-            return Err(ImpactError::invalid(
+            return Err(Failure::invalid(
                 "acceleration_g",
                 "have as many samples as time",
                 Given::Count(acceleration_g.len() as u64),
@@ -72,7 +72,7 @@ impl<'a> Signal<'a> {
 /// Passes at least two finite times in rising order.
 pub(crate) fn check_time(name: &str, time: &[f64]) -> Result<()> {
     if time.len() < 2 {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             name,
             "have at least 2 samples",
             Given::Count(time.len() as u64),
@@ -85,7 +85,7 @@ pub(crate) fn check_time(name: &str, time: &[f64]) -> Result<()> {
         return Ok(());
     }
     let fallen = time.windows(2).find(|pair| !rises(pair));
-    Err(ImpactError::invalid(
+    Err(Failure::invalid(
         name,
         "rise from sample to sample",
         Given::Number(fallen.map_or(f64::NAN, |pair| pair[1])),
@@ -101,7 +101,7 @@ pub(crate) fn check_finite(name: &str, values: &[f64]) -> Result<()> {
         return Ok(());
     }
     let culprit = values.iter().find(|value| !value.is_finite());
-    Err(ImpactError::invalid(
+    Err(Failure::invalid(
         name,
         "be finite",
         Given::Number(culprit.copied().unwrap_or(f64::NAN)),

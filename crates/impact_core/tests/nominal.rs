@@ -2,7 +2,7 @@
 
 use impact_core::criteria::{MetricOptions, Status, metrics};
 use impact_core::drive::SetPoint;
-use impact_core::error::ImpactError;
+use impact_core::error::Failure;
 use impact_core::parameters::{
     FOAM_1, FOAM_3, Foam, HEAD_APPARATUS, HEAD_MINIMUM, MANIPULATOR_1, MANIPULATOR_2, System,
     Target,
@@ -221,6 +221,6 @@ fn simulation_stops_when_asked() {
             ..exact(Contact::Linear, SetPoint::default())
         };
         let error = simulate_until(&nominal(), &approach(1.25), &options, &|| true).unwrap_err();
-        assert_eq!(error, ImpactError::Interrupted);
+        assert_eq!(error, Failure::Interrupted);
     }
 }

@@ -5,7 +5,8 @@
 
 #![forbid(unsafe_code)]
 
-pub mod error;
+pub use groundwork::error;
+
 pub mod follower;
 pub mod impedance;
 pub mod localization;

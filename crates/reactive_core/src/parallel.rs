@@ -3,9 +3,10 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use groundwork::threads::on_threads;
 use rayon::prelude::*;
 
-use crate::error::{ReactiveError, Result};
+use crate::error::{Failure, Result};
 
 /// Most runs that a thread does before it takes others.
 const MOST_IN_BLOCK: usize = 64;
@@ -36,13 +37,13 @@ pub fn each_run<T: Send>(
     on_threads(work.threads, || {
         let share = count / (BLOCKS_OF_THREAD * rayon::current_num_threads());
         let size = share.clamp(1, MOST_IN_BLOCK);
-        let failure = Failure::new();
+        let failure = First::new();
         let block = |block: usize| -> Result<Vec<T>> {
             let runs = block * size..count.min((block + 1) * size);
             let mut found = Vec::with_capacity(runs.len());
             for index in runs {
                 if (work.interrupted)() {
-                    return Err(ReactiveError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
                 // Runs before a failure go on: which one is met first depends on the threads.
                 if failure.before(index) {
@@ -63,12 +64,12 @@ pub fn each_run<T: Send>(
 }
 
 /// The failure of the first run by index.
-struct Failure {
+struct First {
     index: AtomicUsize,
-    error: Mutex<Option<ReactiveError>>,
+    error: Mutex<Option<Failure>>,
 }
 
-impl Failure {
+impl First {
     fn new() -> Self {
         Self {
             index: AtomicUsize::new(usize::MAX),
@@ -81,7 +82,7 @@ impl Failure {
         self.index.load(Ordering::Relaxed) < index
     }
 
-    fn add(&self, index: usize, error: ReactiveError) {
+    fn add(&self, index: usize, error: Failure) {
         // A thread that panics while it holds the lock ends the whole batch.
         if let Ok(mut kept) = self.error.lock()
             && index < self.index.load(Ordering::Relaxed)
@@ -99,28 +100,10 @@ impl Failure {
     }
 }
 
-/// Does the work on a number of threads of its own, or on those that are there.
-fn on_threads<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce() -> Result<T> + Send,
-) -> Result<T> {
-    match threads {
-        None => work(),
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| ReactiveError::Threads {
-                threads,
-                reason: error.to_string(),
-            })?
-            .install(work),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::{Work, each_run};
-    use crate::error::ReactiveError;
+    use crate::error::Failure;
 
     fn work(threads: Option<usize>) -> Work<'static> {
         Work {
@@ -145,21 +128,21 @@ mod tests {
             interrupted: &|| true,
             ..work(None)
         };
-        assert_eq!(each_run(10, asked, Ok), Err(ReactiveError::Interrupted));
+        assert_eq!(each_run(10, asked, Ok), Err(Failure::Interrupted));
     }
 
     #[test]
     fn an_error_names_its_run() {
         let failing = |index| {
             if index >= 7 {
-                Err(ReactiveError::NonFinite { run: 0, time: 0.5 })
+                Err(Failure::NonFinite { run: 0, time: 0.5 })
             } else {
                 Ok(index)
             }
         };
         for count in [10, 5000] {
             let found = each_run(count, work(Some(2)), failing);
-            assert_eq!(found, Err(ReactiveError::NonFinite { run: 7, time: 0.5 }));
+            assert_eq!(found, Err(Failure::NonFinite { run: 7, time: 0.5 }));
         }
     }
 }

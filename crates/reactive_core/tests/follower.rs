@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use reactive_core::error::ReactiveError;
+use reactive_core::error::Failure;
 use reactive_core::follower::{
     Drive, FixNoise, Follower, Layouts, Leader, Mover, Scene, Setting, Settings, record, run_batch,
     touching_layouts,
@@ -157,7 +157,7 @@ fn every_kept_layout_touches_without_repulsion() {
     // Nothing ever touches without obstacles.
     let none = Layouts::of(Setting::Tracking);
     let found = touching_layouts(&Settings::default(), &none, 0, 1, quiet(1));
-    assert!(matches!(found, Err(ReactiveError::InvalidParameter { .. })));
+    assert!(matches!(found, Err(Failure::InvalidParameter { .. })));
 }
 
 #[test]
@@ -217,7 +217,7 @@ fn batch_stops_when_told_and_counts() {
         ..quiet(1)
     };
     let found = run_batch(&Settings::default(), &layouts, &seeds, stopped);
-    assert_eq!(found, Err(ReactiveError::Interrupted));
+    assert_eq!(found, Err(Failure::Interrupted));
 }
 
 #[test]

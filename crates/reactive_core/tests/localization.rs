@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use reactive_core::error::ReactiveError;
+use reactive_core::error::Failure;
 use reactive_core::localization::batch::locate_many;
 use reactive_core::localization::burst::{Burst, Signal, Sound, doppler_factor};
 use reactive_core::localization::correlation::Method;
@@ -330,7 +330,7 @@ fn batch_is_the_single_fixes_for_any_number_of_threads() {
     }
     let (a, b) = (&delays.delay_12, &delays.delay_13);
     let stopped = locate_many(&ARRAY, a, b, &covariance, work(None, &|| true));
-    assert_eq!(stopped, Err(ReactiveError::Interrupted));
+    assert_eq!(stopped, Err(Failure::Interrupted));
 }
 
 #[test]
@@ -575,7 +575,7 @@ fn trials_are_the_same_for_any_number_of_threads() {
         &repetition,
         work(None, &|| true),
     );
-    assert_eq!(stopped, Err(ReactiveError::Interrupted));
+    assert_eq!(stopped, Err(Failure::Interrupted));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The avoidance test of the ultrasonic skirt: shares, determinism, symmetry.
 
-use reactive_core::error::ReactiveError;
+use reactive_core::error::Failure;
 use reactive_core::parallel::Work;
 use reactive_core::random::Stream;
 use reactive_core::skirt::ring::PUBLISHED_WHEEL_GAP;
@@ -146,7 +146,7 @@ fn a_batch_stops_when_asked() {
         ..work(None)
     };
     let stopped = test_batch(&skirt(OPTIONS), &plan(3), asked);
-    assert_eq!(stopped, Err(ReactiveError::Interrupted));
+    assert_eq!(stopped, Err(Failure::Interrupted));
 }
 
 fn alone(center: [f64; 2], seen: bool) -> Scene {

@@ -6,8 +6,9 @@
 
 #![forbid(unsafe_code)]
 
+pub use groundwork::error;
+
 pub mod angle;
-pub mod error;
 pub mod forces;
 pub mod gains;
 pub mod lanes;

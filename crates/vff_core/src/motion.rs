@@ -1,6 +1,6 @@
 //! How an obstacle moves: pieces of constant acceleration, or a recording.
 
-use crate::error::{Given, NavigationError, Result, finite_pair};
+use crate::error::{Failure, Given, Result, finite_pair};
 
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
@@ -96,7 +96,7 @@ impl Motion {
             finite_pair("stop", stop)?;
             if acceleration != [0.0; 2] {
                 let rule = "be zero for a body with a stop";
-                return Err(NavigationError::invalid(
+                return Err(Failure::invalid(
                     "acceleration",
                     rule,
                     Given::Pair(acceleration),
@@ -108,7 +108,7 @@ impl Motion {
             let across = way[0] * velocity[1] - way[1] * velocity[0];
             if !(along > 0.0 && across.abs() <= STOP_OFFSET * speed_squared.sqrt()) {
                 let rule = "lie ahead of the start along the velocity";
-                return Err(NavigationError::invalid("stop", rule, Given::Pair(stop)));
+                return Err(Failure::invalid("stop", rule, Given::Pair(stop)));
             }
             motion.pieces.push(Piece {
                 start: along / speed_squared,
@@ -128,7 +128,7 @@ impl Motion {
         finite_pair("start", start)?;
         if segments.is_empty() {
             let none = Given::Word("an empty list".into());
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "segments",
                 "hold at least one segment",
                 none,
@@ -144,7 +144,7 @@ impl Motion {
                 .map_err(|error| error.within(&owner))?;
             if segment.duration.is_nan() || segment.duration <= 0.0 {
                 let name = format!("{owner}.duration");
-                return Err(NavigationError::invalid(
+                return Err(Failure::invalid(
                     name,
                     "be positive",
                     Given::Number(segment.duration),
@@ -182,15 +182,11 @@ impl Motion {
     pub fn recorded(time: &[f64], position: &[[f64; 2]]) -> Result<Self> {
         let (Some(first), Some(last)) = (time.first(), time.last()) else {
             let none = Given::Word("an empty recording".into());
-            return Err(NavigationError::invalid(
-                "time",
-                "hold at least one sample",
-                none,
-            ));
+            return Err(Failure::invalid("time", "hold at least one sample", none));
         };
         if time.len() != position.len() {
             let count = Given::Count(position.len() as u64);
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "position",
                 "have one row for each time",
                 count,
@@ -198,7 +194,7 @@ impl Motion {
         }
         for (index, (&instant, &place)) in time.iter().zip(position).enumerate() {
             if !instant.is_finite() {
-                return Err(NavigationError::invalid(
+                return Err(Failure::invalid(
                     format!("time[{index}]"),
                     "be finite",
                     Given::Number(instant),
@@ -208,7 +204,7 @@ impl Motion {
             if index > 0 && instant <= time[index - 1] {
                 let rule = "be later than the sample before";
                 let name = format!("time[{index}]");
-                return Err(NavigationError::invalid(name, rule, Given::Number(instant)));
+                return Err(Failure::invalid(name, rule, Given::Number(instant)));
             }
         }
         let mut pieces: Vec<Piece> = time

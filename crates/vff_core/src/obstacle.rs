@@ -1,6 +1,6 @@
 //! Obstacles: shape, motion and the radii of their regions.
 
-use crate::error::{Given, NavigationError, Result, finite, finite_pair, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative, positive};
 use crate::motion::Motion;
 
 /// Outline of an obstacle.
@@ -68,7 +68,7 @@ impl Limits {
                 .is_some_and(|critical| active <= critical)
             {
                 let rule = "be larger than critical_radius";
-                return Err(NavigationError::invalid(
+                return Err(Failure::invalid(
                     "active_radius",
                     rule,
                     Given::Number(active),
@@ -134,11 +134,7 @@ impl Obstacle {
         finite("heading", heading)?;
         if let Some(speed) = limits.max_speed.filter(|speed| *speed != 0.0) {
             let rule = "be absent or zero for a rectangle, which does not move";
-            return Err(NavigationError::invalid(
-                "max_speed",
-                rule,
-                Given::Number(speed),
-            ));
+            return Err(Failure::invalid("max_speed", rule, Given::Number(speed)));
         }
         let shape = Shape::Rectangle {
             half_length: 0.5 * sides[0],

@@ -1,6 +1,6 @@
 //! Sizes of the critical and active regions from the limits of robot and obstacle.
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::obstacle::{Obstacle, Regions, Shape};
 
 /// Limits of a robot that size the regions.
@@ -41,11 +41,7 @@ pub fn radii(
         Shape::Disc { radius } => {
             if let Some(side) = faced_side {
                 let rule = "be given for a rectangle only";
-                return Err(NavigationError::invalid(
-                    "faced_side",
-                    rule,
-                    Given::Number(side),
-                ));
+                return Err(Failure::invalid("faced_side", rule, Given::Number(side)));
             }
             let obstacle_speed = obstacle.max_speed();
             let obstacle_way = obstacle_speed * (stopping_time + period);

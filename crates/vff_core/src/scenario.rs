@@ -1,6 +1,6 @@
 //! A scenario: robot, start, goal, obstacles and the rules of a run.
 
-use crate::error::{Given, NavigationError, Result, finite, finite_pair, positive};
+use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::measurement::Measurement;
 use crate::obstacle::{Obstacle, Regions};
 use crate::region::{self, RobotLimits};
@@ -117,7 +117,7 @@ impl Scenario {
         finite("heading", rules.heading)?;
         if (start[0] - goal[0]).hypot(start[1] - goal[1]) <= rules.arrival_tolerance {
             let rule = "be farther from the start than the arrival tolerance";
-            return Err(NavigationError::invalid("goal", rule, Given::Pair(goal)));
+            return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
         }
         let obstacles = obstacles
             .into_iter()
@@ -222,7 +222,7 @@ impl Scenario {
         }
         let rule = "be a HolonomicRobot here, where robots move as point masses";
         let given = Given::Word("a DifferentialDriveRobot".into());
-        Err(NavigationError::invalid("robot", rule, given))
+        Err(Failure::invalid("robot", rule, given))
     }
 
     /// Mass of the robot in kg.
@@ -249,7 +249,7 @@ fn place(robot: &RobotLimits, obstacle: Obstacle, control_period: f64) -> Result
     };
     if regions.active_radius <= regions.critical_radius {
         let rule = "be larger than critical_radius";
-        return Err(NavigationError::invalid(
+        return Err(Failure::invalid(
             "active_radius",
             rule,
             Given::Number(regions.active_radius),
@@ -258,7 +258,7 @@ fn place(robot: &RobotLimits, obstacle: Obstacle, control_period: f64) -> Result
     let contact_distance = robot.radius + obstacle.shape.inner_radius();
     if regions.active_radius <= contact_distance {
         let rule = "be larger than the radii of robot and obstacle together";
-        return Err(NavigationError::invalid(
+        return Err(Failure::invalid(
             "active_radius",
             rule,
             Given::Number(regions.active_radius),
@@ -280,12 +280,12 @@ fn check_ends(placed: &PlacedObstacle, start: [f64; 2], goal: [f64; 2]) -> Resul
     let distance = placed.obstacle.distance(state.position, start);
     if state.present && distance <= placed.contact_distance {
         let rule = "not be in contact with an obstacle";
-        return Err(NavigationError::invalid("start", rule, Given::Pair(start)));
+        return Err(Failure::invalid("start", rule, Given::Pair(start)));
     }
     let distance = placed.obstacle.distance(state.position, goal);
     if placed.stationary && distance < placed.regions.active_radius {
         let rule = "lie outside the active region of every stationary obstacle";
-        return Err(NavigationError::invalid("goal", rule, Given::Pair(goal)));
+        return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
     }
     Ok(())
 }

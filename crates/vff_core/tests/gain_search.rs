@@ -3,7 +3,7 @@
 mod configurations;
 
 use configurations::{crossing, law, obstacles};
-use vff_core::error::NavigationError;
+use vff_core::error::Failure;
 use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::gains::Gains;
 use vff_core::measurement::{Distribution, Measurement, Noisy};
@@ -395,9 +395,9 @@ fn gain_options_out_of_range_are_refused() {
     assert!(GainProblem::new(vec![open], law, clear).is_err());
     let problem = make(&[1], mean_performance()).unwrap();
     let bad = evaluate_all(&problem, &[1.0, -1.0, 1.0, 1.0], None, &|| false);
-    assert!(matches!(bad, Err(NavigationError::InvalidParameter { .. })));
+    assert!(matches!(bad, Err(Failure::InvalidParameter { .. })));
     let stopped = evaluate_all(&problem, &PUBLISHED, None, &|| true);
-    assert_eq!(stopped, Err(NavigationError::Interrupted));
+    assert_eq!(stopped, Err(Failure::Interrupted));
     for metric in Metric::ALL {
         assert_eq!(Metric::of(metric.word()).unwrap(), metric);
     }

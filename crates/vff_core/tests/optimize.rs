@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use hock_schittkowski::{Case, cases};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use vff_core::error::{NavigationError, Result};
+use vff_core::error::{Failure, Result};
 use vff_core::optimize::{
     Bounds, Candidate, Control, Evaluation, FrontOptions, GlobalMethod, GlobalOptions, GridOptions,
     LocalMethod, LocalOptions, LocalStatus, Observer, Problem, Report, Score, SearchOptions,
@@ -194,10 +194,7 @@ fn options_out_of_range_are_refused() {
         grid(&[2], 0, 0),
         grid(&[usize::MAX], 0, 1),
     ] {
-        assert!(matches!(
-            run(&bad),
-            Err(NavigationError::InvalidParameter { .. })
-        ));
+        assert!(matches!(run(&bad), Err(Failure::InvalidParameter { .. })));
     }
     for (radius, tolerance, evaluations) in [(0.0, 1e-3, 9), (0.1, 0.2, 9), (0.1, 1e-3, 0)] {
         let local = LocalOptions {
@@ -227,18 +224,18 @@ fn an_error_of_the_problem_ends_the_search() {
         }
         fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
             if points.iter().any(|x| *x > 0.9) {
-                return Err(NavigationError::NonFinite { run: 0, time: 1.0 });
+                return Err(Failure::NonFinite { run: 0, time: 1.0 });
             }
             into.values.copy_from_slice(points);
             Ok(())
         }
     }
     let result = search(&Broken, &unit_box(1), &grid(&[11], 0, 1), &(), None);
-    assert!(matches!(result, Err(NavigationError::NonFinite { .. })));
+    assert!(matches!(result, Err(Failure::NonFinite { .. })));
     let starts = [vec![0.85], vec![0.1]];
     let options = LocalOptions::default();
     let result = local_search(&Broken, &unit_box(1), &starts, &options, None, &(), None);
-    assert!(matches!(result, Err(NavigationError::NonFinite { .. })));
+    assert!(matches!(result, Err(Failure::NonFinite { .. })));
 }
 
 // --- constrained local search ---------------------------------------------------------------

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use configurations::{crossing, gains, law, limits, obstacles};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use vff_core::error::NavigationError;
+use vff_core::error::Failure;
 use vff_core::forces::side::SideRules;
 use vff_core::forces::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::{FieldTerms, VirtualForceField};
@@ -395,7 +395,7 @@ proptest! {
                 prop_assert!(run.end_time.is_finite() && run.path_length >= 0.0);
                 prop_assert!(run.min_distance.iter().all(|distance| *distance >= 0.0));
             }
-            Err(NavigationError::NonFinite { run, time }) => {
+            Err(Failure::NonFinite { run, time }) => {
                 prop_assert!(run == 0 && (0.0..=3.1).contains(&time));
             }
             Err(other) => prop_assert!(false, "{}", other),

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use draws::Draws;
 use proptest::prelude::*;
-use vff_core::error::NavigationError;
+use vff_core::error::Failure;
 use vff_core::motion::Motion;
 use vff_core::robots::DifferentialDriveRobot;
 use vff_core::robots::differential::{
@@ -182,7 +182,7 @@ fn threads_change_no_bit_and_every_run_is_counted() {
     .unwrap();
     assert_eq!(counted.into_inner(), STARTS);
     let stopped = track(&paths[0], law, &starts[0], &options, &|| true);
-    assert_eq!(stopped.unwrap_err(), NavigationError::Interrupted);
+    assert_eq!(stopped.unwrap_err(), Failure::Interrupted);
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn arguments_out_of_range_are_named() {
     let named = |tracking: Tracking, start: TrackStart, options: TrackOptions| {
         let error = track(&path, (&tracking, &limits), &start, &options, &|| false).unwrap_err();
         match error {
-            NavigationError::InvalidParameter { name, .. } => name,
+            Failure::InvalidParameter { name, .. } => name,
             other => panic!("{other}"),
         }
     };

@@ -5,7 +5,7 @@ mod draws;
 
 use draws::Draws;
 use proptest::prelude::*;
-use vff_core::error::NavigationError;
+use vff_core::error::Failure;
 use vff_core::robots::wheels::{
     DifferentialKinematics, Feedback, OmniKinematics, WheelDrive, WheelDynamics, WheelHistory,
     WheelState, WheelWish, differential_wheels, follow, holonomic_wheels,
@@ -311,7 +311,7 @@ fn a_weak_supply_limits_the_speed() {
 fn a_caller_can_stop_it_and_runs_repeat() {
     let drive = holonomic_wheels()[1];
     let stopped = follow(&drive, WheelState::default(), sine(1e-3), &|| true);
-    assert_eq!(stopped, Err(NavigationError::Interrupted));
+    assert_eq!(stopped, Err(Failure::Interrupted));
     assert_eq!(run(&drive), run(&drive));
     let beyond = WheelWish {
         angle: 1e308,
@@ -320,5 +320,5 @@ fn a_caller_can_stop_it_and_runs_repeat() {
     };
     let start = WheelState::default();
     let lost = follow(&drive, start, vec![beyond; 3].into_iter(), &|| false);
-    assert_eq!(lost, Err(NavigationError::NonFinite { run: 0, time: 0.0 }));
+    assert_eq!(lost, Err(Failure::NonFinite { run: 0, time: 0.0 }));
 }

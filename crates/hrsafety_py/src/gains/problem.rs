@@ -3,10 +3,10 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use groundwork::error::Result;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::error::Result;
 use vff_core::metrics::Weights;
 use vff_core::optimize::{
     Evaluated, Evaluation, GainOptions, Limit, Metric, MetricConstraint, Objective, Over, Problem,

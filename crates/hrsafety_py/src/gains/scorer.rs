@@ -2,10 +2,10 @@
 
 use std::sync::Mutex;
 
+use groundwork::error::{Failure, Result};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use vff_core::error::{NavigationError, Result};
 use vff_core::optimize::Evaluation;
 use vff_core::scenario::Scenario;
 use vff_core::simulate::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
@@ -49,7 +49,7 @@ impl Scorer {
             if let Ok(mut slot) = self.raised.lock() {
                 slot.get_or_insert(error);
             }
-            NavigationError::Interrupted
+            Failure::Interrupted
         })
     }
 

@@ -1,8 +1,8 @@
 //! Searches over a gain problem.
 
+use groundwork::error::Result;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::error::Result;
 use vff_core::optimize::{
     Bounds, FrontOptions, GlobalMethod, GlobalOptions, GridOptions, LocalOptions, Problem,
     SearchOptions, SearchState, front_search, global_search, hypervolume, search,

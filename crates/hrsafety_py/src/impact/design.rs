@@ -1,6 +1,6 @@
 //! Boundaries of foam stiffness and what follows from them.
 
-use impact_core::error::{ImpactError, Result};
+use groundwork::error::{Failure, Result};
 use impact_core::foam_design::{
     DesignProblem, FoamBoundary, Quantity, Requirement, stiffness_lower, stiffness_upper,
 };
@@ -28,8 +28,8 @@ fn requirements(given: Vec<(String, f64, Target)>) -> PyResult<Vec<Requirement>>
         .map(|(word, limit, head)| {
             let known = QUANTITIES.into_iter().find(|known| known.word() == word);
             let quantity = known.ok_or_else(|| {
-                let given = impact_core::error::Given::Word(word);
-                CoreError::from(ImpactError::invalid("limits", "have known names", given))
+                let given = groundwork::error::Given::Word(word);
+                CoreError::from(Failure::invalid("limits", "have known names", given))
             })?;
             Ok(Requirement {
                 quantity,

@@ -1,10 +1,10 @@
 //! Loads of many impacts: one crossing of the boundary.
 
+use groundwork::error::{Failure, finite};
 use impact_core::batch::{
     BatchOptions, Column, Columns, FieldSet, HeadColumns, Width, metrics_batch,
 };
 use impact_core::criteria::Status;
-use impact_core::error::{ImpactError, finite};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -66,7 +66,7 @@ fn invalid_code(columns: &Columns<'_>, row: usize) -> Option<u8> {
         .checked()
         .and(finite("closing_speed", closing_speed))
         .and(finite("manipulator_speed", manipulator_speed));
-    let Err(ImpactError::InvalidParameter { name, .. }) = refused else {
+    let Err(Failure::InvalidParameter { name, .. }) = refused else {
         return None;
     };
     let place = NUMBERS.iter().position(|(known, _)| *known == name)?;
@@ -78,13 +78,13 @@ fn name_bad_numbers(
     columns: &Columns<'_>,
     status: &mut [u8],
     control: &Control,
-) -> Result<(), ImpactError> {
+) -> Result<(), Failure> {
     let invalid = Status::ALL
         .iter()
         .position(|each| *each == Status::InvalidParameter);
     for (row, code) in status.iter_mut().enumerate() {
         if row.is_multiple_of(CHECK) && control.interrupted() {
-            return Err(ImpactError::Interrupted);
+            return Err(Failure::Interrupted);
         }
         if Some(usize::from(*code)) == invalid {
             *code = invalid_code(columns, row).unwrap_or(*code);
@@ -150,7 +150,7 @@ pub fn impact_metrics_batch<'py>(
         let count = |rows| control.count(rows);
         let mut found = metrics_batch(&columns, &options, &interrupted, &count)?;
         name_bad_numbers(&columns, &mut found.status, control)?;
-        Ok::<_, ImpactError>(found)
+        Ok::<_, Failure>(found)
     })?;
     let fields = Fields::new(py);
     let named = [

@@ -1,9 +1,8 @@
 //! Virtual impedance as a navigation law with ideal sensing: the place where both cores meet.
 
-use reactive_core::error::{Given as ReactiveGiven, ReactiveError};
+use groundwork::error::Result;
 use reactive_core::impedance::attraction::Attraction;
 use reactive_core::impedance::law::{Impedance, Prepared};
-use vff_core::error::{Given, NavigationError, Result};
 use vff_core::forces::geometry::RobotState;
 use vff_core::lanes::{Real, Vec2};
 use vff_core::laws::{Command, Law, LawFamily, Situation};
@@ -58,30 +57,10 @@ impl ImpedanceFamily {
             standoff: 0.0,
         };
         Ok(Self {
-            impedance: impedance.checked().map_err(navigation)?,
-            attraction: attraction.checked().map_err(navigation)?,
+            impedance: impedance.checked()?,
+            attraction: attraction.checked()?,
             ..*self
         })
-    }
-}
-
-/// The same error of the other core.
-fn navigation(error: ReactiveError) -> NavigationError {
-    match error {
-        ReactiveError::InvalidParameter {
-            name,
-            requirement,
-            value,
-        } => {
-            let value = match value {
-                ReactiveGiven::Number(number) => Given::Number(number),
-                ReactiveGiven::Pair(pair) => Given::Pair(pair),
-                ReactiveGiven::Count(count) => Given::Count(count),
-                ReactiveGiven::Word(word) => Given::Word(word),
-            };
-            NavigationError::invalid(name, requirement, value)
-        }
-        other => NavigationError::invalid("law", "work", Given::Word(other.to_string())),
     }
 }
 

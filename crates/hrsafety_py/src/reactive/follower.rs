@@ -3,11 +3,11 @@
 pub mod echoes;
 pub mod runs;
 
+use groundwork::error::{Failure, Given};
 use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::error::{Given, ReactiveError};
 use reactive_core::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
 use reactive_core::impedance::collision::Pairing;
 use reactive_core::impedance::{
@@ -29,9 +29,9 @@ fn word<T: Copy>(
     kinds: &[(&str, T)],
 ) -> CoreResult<T> {
     let known = kinds.iter().find(|(kind, _)| *kind == given);
-    known.map(|(_, meaning)| *meaning).ok_or_else(|| {
-        ReactiveError::invalid(name, rule, Given::Word(format!("\"{given}\""))).into()
-    })
+    known
+        .map(|(_, meaning)| *meaning)
+        .ok_or_else(|| Failure::invalid(name, rule, Given::Word(format!("\"{given}\""))).into())
 }
 
 /// Pairs of a contiguous array of two columns.

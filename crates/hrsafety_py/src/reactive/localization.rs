@@ -2,10 +2,10 @@
 
 pub mod bursts;
 
+use groundwork::error::{Failure, Given};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::error::{Given, ReactiveError};
 use reactive_core::localization::batch::{FixColumns, locate_many};
 use reactive_core::localization::fix::{self, Covariance, FixStatus};
 use reactive_core::localization::microphones::{self, Pair};
@@ -73,7 +73,7 @@ pub fn parallel_ray_bearings<'py>(
         "13" => Pair::Outer,
         _ => {
             let rule = "be one of \"12\", \"23\", \"13\"";
-            let error = ReactiveError::invalid("pair", rule, Given::Word(pair.into()));
+            let error = Failure::invalid("pair", rule, Given::Word(pair.into()));
             return Err(CoreError::from(error).into());
         }
     };

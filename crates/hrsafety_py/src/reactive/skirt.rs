@@ -1,9 +1,9 @@
 //! Skirt: conversion of arguments and results.
 
+use groundwork::error::{Failure, Given};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::error::{Given, ReactiveError};
 use reactive_core::parallel::Work;
 use reactive_core::skirt::ring::{
     Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
@@ -228,7 +228,7 @@ impl UltrasonicSkirt {
 }
 
 fn unknown(name: &str, requirement: &'static str, word: &str) -> CoreError {
-    ReactiveError::invalid(name, requirement, Given::Word(word.into())).into()
+    Failure::invalid(name, requirement, Given::Word(word.into())).into()
 }
 
 fn rule_of(word: &str) -> CoreResult<Rule> {

@@ -3,7 +3,7 @@
 use super::check_samples;
 use super::least_squares::{Start, minimize};
 use super::line::{CONFIDENCE, fit_line, student_quantile};
-use crate::error::{Given, ImpactError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::signal::check_time;
 
 /// Response of the joint to a constant command, `theta'' = A - kappa theta'` from rest.
@@ -40,7 +40,7 @@ pub fn fit_open_loop(time: &[f64], angle: &[f64]) -> Result<OpenLoop> {
         let largest = angle
             .iter()
             .fold(0.0_f64, |most, angle| most.max(angle.abs()));
-        ImpactError::invalid("angle", "move away from 0", Given::Number(largest))
+        Failure::invalid("angle", "move away from 0", Given::Number(largest))
     };
     let acceleration = product / square;
     if acceleration == 0.0 {
@@ -236,7 +236,7 @@ pub fn tube_inertia(tube: &Tube) -> Result<TubeInertia> {
     positive("wall", tube.wall)?;
     let (width, height) = (tube.width - 2.0 * tube.wall, tube.height - 2.0 * tube.wall);
     if width < 0.0 || height < 0.0 {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "wall",
             "leave room inside the tube",
             Given::Number(tube.wall),

@@ -9,7 +9,7 @@ use super::drop_test::DropContact;
 use super::line::{CONFIDENCE, fit_static};
 use super::{check_confidence, check_samples};
 use crate::batch::Interrupted;
-use crate::error::{Given, ImpactError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::parameters::GRAVITY;
 use crate::signal::check_time;
 use measured::Tests;
@@ -135,7 +135,7 @@ pub fn identify_foam_until(
     let line = fit_static(static_force, static_compression, false)?;
     positive("slope of static_force", line.slope)?;
     if drops.is_empty() {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "drops",
             "hold at least one drop",
             Given::Count(0),
@@ -197,7 +197,7 @@ fn moving_part<'a>(drop: &Drop<'a>) -> Result<Drop<'a>> {
         } else {
             lowest
         };
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "drop_position",
             "start above the foam and reach into it",
             Given::Number(value),

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{check_confidence, check_samples};
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 
 /// Confidence of the intervals that have no setting of their own.
 pub(super) const CONFIDENCE: f64 = 0.95;
@@ -68,7 +68,7 @@ pub(super) fn fit_line(name: &str, x: &[f64], y: &[f64], intercept: bool) -> Res
     let spread: f64 = x.iter().map(|x| (x - center).powi(2)).sum();
     let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if spread <= count * (f64::EPSILON * largest).powi(2) {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             name,
             "hold different values",
             Given::Number(x[0]),
@@ -115,7 +115,7 @@ pub(super) fn fit_line(name: &str, x: &[f64], y: &[f64], intercept: bool) -> Res
 pub fn student_quantile(confidence: f64, degrees_of_freedom: usize) -> Result<f64> {
     check_confidence(confidence)?;
     if degrees_of_freedom == 0 {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "degrees_of_freedom",
             "be at least 1",
             Given::Count(0),

@@ -3,7 +3,7 @@
 use super::{CHECK, Run};
 use crate::batch::Interrupted;
 use crate::contact::{Bodies, Event, Phase};
-use crate::error::{ImpactError, Result};
+use crate::error::{Failure, Result};
 use crate::roots::root;
 use crate::series::{Drive, State};
 
@@ -16,7 +16,7 @@ impl Run<'_> {
         self.record(0.0, &self.state.clone(), self.bodies.phase);
         for sample in 1..=samples {
             if sample.is_multiple_of(CHECK) && interrupted() {
-                return Err(ImpactError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             let target = self.options.step * sample as f64;
             while self.time < target {

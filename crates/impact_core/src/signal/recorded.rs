@@ -2,7 +2,7 @@
 
 use super::{Signal, check_finite, contiguous_level, hic, moving_average};
 use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS, Metrics, Status};
-use crate::error::{Given, ImpactError, Result, finite, positive};
+use crate::error::{Failure, Given, Result, finite, positive};
 
 /// A recorded impact; signals that were not recorded are `None`.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +83,7 @@ impl Recording<'_> {
             if values.len() != self.time.len() {
                 let given = Given::Count(values.len() as u64);
                 let rule = "have as many samples as time";
-                return Err(ImpactError::invalid(name, rule, given));
+                return Err(Failure::invalid(name, rule, given));
             }
             check_finite(name, values)?;
         }
@@ -92,7 +92,7 @@ impl Recording<'_> {
         if self.start < self.time[0] || self.start >= self.time[self.time.len() - 1] {
             let given = Given::Number(self.start);
             let rule = "lie in the record, before its last sample";
-            return Err(ImpactError::invalid("start", rule, given));
+            return Err(Failure::invalid("start", rule, given));
         }
         Ok(())
     }

@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 
 use super::{Signal, WINDOW_SLACK};
-use crate::error::{Given, ImpactError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 
 /// Value of a criterion and the window it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ fn fitting_width(signal: &Signal<'_>, width: f64) -> Result<f64> {
     positive("width", width)?;
     let span = signal.span();
     if width > span * (1.0 + WINDOW_SLACK) {
-        return Err(ImpactError::invalid(
+        return Err(Failure::invalid(
             "time",
             "span at least the width of the window",
             Given::Number(span),

@@ -1,6 +1,6 @@
 //! Many layouts over all cores.
 
-use crate::error::{Given, ReactiveError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::follower::episode::{Follower, Outcome};
 use crate::follower::layouts::Layouts;
 use crate::follower::settings::Settings;
@@ -66,7 +66,7 @@ pub fn touching_layouts(
         if tried > MOST_TRIED * count as u64 {
             let rule = "leave layouts in which a robot without repulsion touches an obstacle";
             let given = Given::Count(tried);
-            return Err(ReactiveError::invalid("layouts", rule, given));
+            return Err(Failure::invalid("layouts", rule, given));
         }
         let seeds: Vec<u64> = (next..next + (count - found.len()).max(TOGETHER) as u64).collect();
         let ends = outcomes(&follower, &layouts, &seeds, quiet)?;

@@ -1,6 +1,6 @@
 //! One run of the follower.
 
-use crate::error::{ReactiveError, Result};
+use crate::error::{Failure, Result};
 use crate::follower::scene::Scene;
 use crate::follower::settings::{Settings, VelocityRule};
 use crate::impedance::bank::{Bank, BankLayout};
@@ -180,7 +180,7 @@ impl Follower {
         };
         for step in 0..=steps {
             if step % CHECK == CHECK - 1 && interrupted() {
-                return Err(ReactiveError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             let time = step as f64 * self.settings.step;
             let source = scene.leader.at(time);
@@ -199,7 +199,7 @@ impl Follower {
             }
             self.advance(&mut state, wheels, &mut outcome);
             if !(state.pose.position[0] + state.pose.position[1]).is_finite() {
-                return Err(ReactiveError::NonFinite { run: 0, time });
+                return Err(Failure::NonFinite { run: 0, time });
             }
         }
         outcome.least_clearance = outcome.least_clearance.sqrt() - self.settings.drive.body_radius;

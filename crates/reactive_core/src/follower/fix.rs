@@ -1,6 +1,6 @@
 //! Range and bearing of the source once per burst.
 
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::sonar::ranging::Normals;
 
 /// Scatter of range and bearing on a grid of range and bearing.
@@ -53,13 +53,13 @@ impl FixNoise {
             if grid.is_empty() || !grid.is_sorted_by(|one, next| one < next) {
                 let given = Given::Count(grid.len() as u64);
                 let rule = "ascend and hold at least one number";
-                return Err(ReactiveError::invalid(name, rule, given));
+                return Err(Failure::invalid(name, rule, given));
             }
         }
         if deviations.len() != ranges.len() * bearings.len() {
             let given = Given::Count(deviations.len() as u64);
             let rule = "hold one pair for each range and bearing";
-            return Err(ReactiveError::invalid("deviations", rule, given));
+            return Err(Failure::invalid("deviations", rule, given));
         }
         for deviation in deviations.iter().flatten() {
             not_negative("deviations", *deviation)?;

@@ -1,6 +1,6 @@
 //! Random layouts of the experiments.
 
-use crate::error::{Given, ReactiveError, Result, finite, positive};
+use crate::error::{Failure, Given, Result, finite, positive};
 use crate::follower::scene::{Leader, Mover, Scene};
 use crate::random::Stream;
 use crate::sonar::{Rectangle, Shape};
@@ -54,7 +54,7 @@ impl Layouts {
         positive("obstacle_speed[0]", self.speeds[0])?;
         finite("obstacle_speed[1]", self.speeds[1])?;
         if self.speeds[1] < self.speeds[0] {
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "obstacle_speed",
                 "ascend",
                 Given::Pair(self.speeds),

@@ -1,6 +1,6 @@
 //! What is around the follower: obstacles and the leader, as functions of time.
 
-use crate::error::{Given, ReactiveError, Result, finite_pair, not_negative};
+use crate::error::{Failure, Given, Result, finite_pair, not_negative};
 use crate::sonar::Shape;
 
 /// An obstacle that moves straight for a while, or stands.
@@ -38,11 +38,7 @@ impl Mover {
         not_negative("start", self.start)?;
         if self.stop.is_nan() || self.stop < self.start {
             let rule = "not be before start";
-            return Err(ReactiveError::invalid(
-                "stop",
-                rule,
-                Given::Number(self.stop),
-            ));
+            return Err(Failure::invalid("stop", rule, Given::Number(self.stop)));
         }
         Ok(self)
     }

@@ -1,6 +1,6 @@
 //! Settings of the follower.
 
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::follower::drive::Drive;
 use crate::follower::fix::Fixes;
 use crate::impedance::bank::BankLayout;
@@ -159,11 +159,7 @@ impl Settings {
         let steps = (duration / self.step).round();
         if !(1.0..=MOST_STEPS).contains(&steps) {
             let rule = "be from one step to ten million steps";
-            return Err(ReactiveError::invalid(
-                "duration",
-                rule,
-                Given::Number(duration),
-            ));
+            return Err(Failure::invalid("duration", rule, Given::Number(duration)));
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1e7
         Ok(steps as usize)

@@ -1,6 +1,6 @@
 //! Repulsive force of a collision vector.
 
-use crate::error::{Given, ReactiveError, Result, finite, positive};
+use crate::error::{Failure, Given, Result, finite, positive};
 
 /// Which law gives the repulsive force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +65,7 @@ impl Impedance {
         positive("speed_limit", self.speed_limit)?;
         finite("reference_stiffness", self.reference_stiffness)?;
         if self.reference_stiffness <= self.stiffness {
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "reference_stiffness",
                 "be above stiffness",
                 Given::Number(self.reference_stiffness),
@@ -73,7 +73,7 @@ impl Impedance {
         }
         positive("reference_damping", self.reference_damping)?;
         if self.reference_damping >= self.damping {
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "reference_damping",
                 "be below damping",
                 Given::Number(self.reference_damping),

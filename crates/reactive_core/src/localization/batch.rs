@@ -2,7 +2,7 @@
 
 use super::fix::{Covariance, Fix, FixStatus, locate};
 use super::microphones::MicrophoneArray;
-use crate::error::{Given, ReactiveError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::parallel::{Work, each_run};
 
 /// Rows of a task; the bits of a row do not depend on it.
@@ -42,7 +42,7 @@ pub fn locate_many(
     let rows = delay_12.len();
     if rows != delay_13.len() {
         let given = Given::Count(delay_13.len() as u64);
-        return Err(ReactiveError::invalid(
+        return Err(Failure::invalid(
             "delay_13",
             "be as many as delay_12",
             given,

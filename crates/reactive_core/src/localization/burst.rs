@@ -6,7 +6,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::interpolation::Interpolator;
-use crate::error::{Given, ReactiveError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::random::Stream;
 
 /// Samples of the noise for each period of its highest frequency; half of the Nyquist frequency is
@@ -68,7 +68,7 @@ impl Burst {
         not_negative("ramp", self.ramp)?;
         if 2.0 * self.ramp > self.duration {
             let given = Given::Number(self.ramp);
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "ramp",
                 "be at most half of duration",
                 given,
@@ -83,7 +83,7 @@ impl Burst {
                 positive("high", high)?;
                 if low >= high {
                     let given = Given::Number(high);
-                    return Err(ReactiveError::invalid("high", "be above low", given));
+                    return Err(Failure::invalid("high", "be above low", given));
                 }
             }
         }
@@ -92,12 +92,12 @@ impl Burst {
             if samples > MOST_SAMPLES {
                 let given = Given::Number(self.duration);
                 let rule = "be shorter for so high a frequency";
-                return Err(ReactiveError::invalid("duration", rule, given));
+                return Err(Failure::invalid("duration", rule, given));
             }
             if self.bins().is_none() {
                 let given = Given::Number(self.duration);
                 let rule = "be long enough for a frequency of the band";
-                return Err(ReactiveError::invalid("duration", rule, given));
+                return Err(Failure::invalid("duration", rule, given));
             }
         }
         Ok(self)
@@ -236,7 +236,7 @@ pub fn doppler_factor(speed_of_sound: f64, observer_speed: f64, source_speed: f6
     ] {
         if speed.is_nan() || speed.abs() >= speed_of_sound {
             let rule = "be finite and slower than sound";
-            return Err(ReactiveError::invalid(name, rule, Given::Number(speed)));
+            return Err(Failure::invalid(name, rule, Given::Number(speed)));
         }
     }
     Ok((speed_of_sound + observer_speed) / (speed_of_sound - source_speed))

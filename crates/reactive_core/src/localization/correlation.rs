@@ -10,7 +10,7 @@ use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
 use super::Interrupted;
-use crate::error::{ReactiveError, Result};
+use crate::error::{Failure, Result};
 
 /// Lanes of the sums, for speed; part of the result's last bits.
 const LANES: usize = 8;
@@ -55,7 +55,7 @@ pub fn mean_square(
     let count = first.len();
     let mean = |place: usize| {
         if interrupted() {
-            return Err(ReactiveError::Interrupted);
+            return Err(Failure::Interrupted);
         }
         let shift = place.abs_diff(limit);
         let sum = if place < limit {

@@ -3,7 +3,7 @@
 use super::Interrupted;
 use super::correlation::{Correlator, Method, PhaseBins, mean_square};
 use super::microphones::MicrophoneArray;
-use crate::error::{Given, ReactiveError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 
 /// Most samples that are compared: their transforms take a fraction of a second.
 const MOST_COMPARED: usize = 1 << 22;
@@ -76,7 +76,7 @@ impl DelayFinder {
         {
             let rule = "rise from 0 or more to half the sample rate or less";
             let given = Given::Pair([low, high]);
-            return Err(ReactiveError::invalid("band", rule, given));
+            return Err(Failure::invalid("band", rule, given));
         }
         let by_transform = options.method != Method::MeanSquare;
         Ok(Self {
@@ -140,11 +140,11 @@ impl DelayFinder {
             if channel.len() != self.count {
                 let given = Given::Count(channel.len() as u64);
                 let rule = "have channels of the length that the finder is for";
-                return Err(ReactiveError::invalid("samples", rule, given));
+                return Err(Failure::invalid("samples", rule, given));
             }
             if let Some(value) = channel.iter().find(|value| !value.is_finite()) {
                 let given = Given::Number(*value);
-                return Err(ReactiveError::invalid("samples", "be finite", given));
+                return Err(Failure::invalid("samples", "be finite", given));
             }
         }
         let start = self
@@ -221,29 +221,21 @@ fn check_window(options: &DelayOptions, window: usize, count: usize, limit: usiz
             None => ("samples", count),
         };
         let rule = "have more samples than the longest lag that is searched";
-        return Err(ReactiveError::invalid(
-            name,
-            rule,
-            Given::Count(given as u64),
-        ));
+        return Err(Failure::invalid(name, rule, Given::Count(given as u64)));
     }
     if window > MOST_COMPARED {
         let given = Given::Count(window as u64);
         let rule = "be at most 4194304 samples";
-        return Err(ReactiveError::invalid("window", rule, given));
+        return Err(Failure::invalid("window", rule, given));
     }
     if window > count {
         let given = Given::Count(window as u64);
-        return Err(ReactiveError::invalid(
-            "window",
-            "fit into the recording",
-            given,
-        ));
+        return Err(Failure::invalid("window", "fit into the recording", given));
     }
     match options.start {
         Some(start) if start > count - window => {
             let given = Given::Count(start as u64);
-            Err(ReactiveError::invalid(
+            Err(Failure::invalid(
                 "start",
                 "leave room for the window",
                 given,

@@ -3,7 +3,7 @@
 use super::Interrupted;
 use super::burst::{Signal, doppler_factor};
 use super::microphones::MicrophoneArray;
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::random::Stream;
 
 /// Most samples of a channel.
@@ -31,7 +31,7 @@ impl Converter {
         match self.bits {
             Some(bits) if !(2..=MOST_BITS).contains(&bits) => {
                 let given = Given::Count(u64::from(bits));
-                Err(ReactiveError::invalid("bits", "be 2 to 32 or None", given))
+                Err(Failure::invalid("bits", "be 2 to 32 or None", given))
             }
             _ => Ok(self),
         }
@@ -93,7 +93,7 @@ impl Hearing {
         if let Some(samples) = self.samples {
             if samples as f64 > MOST_SAMPLES {
                 let given = Given::Count(samples as u64);
-                return Err(ReactiveError::invalid("samples", "be at most 1e8", given));
+                return Err(Failure::invalid("samples", "be at most 1e8", given));
             }
             return Ok(samples);
         }
@@ -103,7 +103,7 @@ impl Hearing {
         if !(1.0..=MOST_SAMPLES).contains(&count) {
             let given = Given::Number(self.lead);
             let rule = "leave at least one and at most 1e8 samples";
-            return Err(ReactiveError::invalid("lead", rule, given));
+            return Err(Failure::invalid("lead", rule, given));
         }
         Ok(count as usize)
     }
@@ -136,17 +136,13 @@ pub fn record(
     if signal.burst().highest() * factor >= 0.5 * rate {
         let given = Given::Number(rate);
         let rule = "be more than twice the highest frequency that arrives";
-        return Err(ReactiveError::invalid("sample_rate", rule, given));
+        return Err(Failure::invalid("sample_rate", rule, given));
     }
     let distances = array.distances(hearing.range, hearing.bearing);
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
     if nearest <= 0.0 {
         let given = Given::Number(hearing.range);
-        return Err(ReactiveError::invalid(
-            "range",
-            "keep off the microphones",
-            given,
-        ));
+        return Err(Failure::invalid("range", "keep off the microphones", given));
     }
     let mut samples = Vec::with_capacity(3 * count);
     let mut clipped = [0; 3];
@@ -157,7 +153,7 @@ pub fn record(
         let mut noise = [0.0; 2];
         for k in 0..count {
             if k % CHECK == 0 && interrupted() {
-                return Err(ReactiveError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             if hearing.noise > 0.0 && k % 2 == 0 {
                 noise = stream.normals();

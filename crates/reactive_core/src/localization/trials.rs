@@ -4,7 +4,7 @@ use super::burst::Signal;
 use super::delays::{DelayFinder, DelayOptions};
 use super::microphones::MicrophoneArray;
 use super::recording::{Converter, Hearing, record};
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::parallel::{Work, each_run};
 use crate::random::Stream;
 
@@ -53,7 +53,7 @@ impl Repetition {
     fn rows(&self, sources: usize) -> Result<usize> {
         sources.checked_mul(self.runs).ok_or_else(|| {
             let given = Given::Count(self.runs as u64);
-            ReactiveError::invalid("runs", "be fewer", given)
+            Failure::invalid("runs", "be fewer", given)
         })
     }
 }

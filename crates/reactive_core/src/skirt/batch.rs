@@ -1,6 +1,6 @@
 //! The avoidance test: eight directions, several times each, in many random layouts.
 
-use crate::error::{Given, ReactiveError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::parallel::{Work, each_run};
 use crate::random::Stream;
 use crate::skirt::robot::{Course, Moment, Motion, Skirt, run, steps_of};
@@ -59,23 +59,19 @@ impl TestPlan {
     pub fn checked(self, skirt: &Skirt) -> Result<Self> {
         for (name, count) in [("layouts", self.layouts), ("repeats", self.repeats)] {
             if count == 0 {
-                return Err(ReactiveError::invalid(
-                    name,
-                    "be at least 1",
-                    Given::Count(0),
-                ));
+                return Err(Failure::invalid(name, "be at least 1", Given::Count(0)));
             }
         }
         if self.runs() > MOST_RUNS {
             let given = Given::Count(self.layouts as u64);
             let rule = "lead to at most ten million tests";
-            return Err(ReactiveError::invalid("layouts", rule, given));
+            return Err(Failure::invalid("layouts", rule, given));
         }
         self.motion.checked()?;
         if steps_of(self.motion.duration, skirt.options().firing_period) > MOST_STEPS {
             let given = Given::Number(self.motion.duration);
             let rule = "be at most ten million firing periods";
-            return Err(ReactiveError::invalid("duration", rule, given));
+            return Err(Failure::invalid("duration", rule, given));
         }
         self.scene.checked(skirt.ring().chassis_radius())?;
         Ok(self)

@@ -1,6 +1,6 @@
 //! Three omni-wheels at 90, 210 and 330 deg: (11) to (14) with signs and columns restored.
 
-use crate::error::{Given, ReactiveError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 
 /// Half of the square root of 3.
 const HALF_ROOT_3: f64 = 0.866_025_403_784_438_6;
@@ -30,7 +30,7 @@ impl TriOmni {
         positive("chassis_radius", self.chassis_radius)?;
         if self.arm() <= 0.0 {
             let rule = "be smaller than twice chassis_radius";
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "wheel_width",
                 rule,
                 Given::Number(self.wheel_width),

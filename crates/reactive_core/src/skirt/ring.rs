@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
 /// Most sensors of a ring: a pattern has one bit for each.
 pub const MOST_SENSORS: usize = 64;
@@ -32,11 +32,7 @@ impl Ring {
         not_negative("sensor_inset", inset)?;
         if inset >= chassis_radius {
             let rule = "be smaller than chassis_radius";
-            return Err(ReactiveError::invalid(
-                "sensor_inset",
-                rule,
-                Given::Number(inset),
-            ));
+            return Err(Failure::invalid("sensor_inset", rule, Given::Number(inset)));
         }
         check_count(bearings.len())?;
         for (index, bearing) in bearings.iter().enumerate() {
@@ -59,7 +55,7 @@ impl Ring {
         check_count(count)?;
         if count < 6 || !count.is_multiple_of(3) {
             let rule = "be a multiple of 3 of at least 6 beside three wheels";
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "sensors",
                 rule,
                 Given::Count(count as u64),
@@ -142,7 +138,7 @@ fn check_count(count: usize) -> Result<()> {
         return Ok(());
     }
     let rule = "be from 1 to 64";
-    Err(ReactiveError::invalid(
+    Err(Failure::invalid(
         "sensors",
         rule,
         Given::Count(count as u64),
@@ -154,7 +150,7 @@ fn check_wheel_gap(wheel_gap: f64) -> Result<f64> {
         return Ok(wheel_gap);
     }
     let rule = "be below 60 deg";
-    Err(ReactiveError::invalid(
+    Err(Failure::invalid(
         "wheel_gap",
         rule,
         Given::Number(wheel_gap),
@@ -177,7 +173,7 @@ fn sensors_between(count: usize) -> Result<f64> {
         return Ok((count - 3) as f64);
     }
     let rule = "be at least 4";
-    Err(ReactiveError::invalid(
+    Err(Failure::invalid(
         "sensors",
         rule,
         Given::Count(count as u64),
@@ -235,7 +231,7 @@ impl Circumference {
         let scale = sensors_between(count)? * self.sensor_radius - 3.0 * self.wheel_sensor_radius;
         if scale <= 0.0 {
             let rule = "exceed 3 (1 + r_1/r) by (6)";
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "sensors",
                 rule,
                 Given::Count(count as u64),

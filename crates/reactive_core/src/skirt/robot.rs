@@ -1,6 +1,6 @@
 //! A robot with a skirt of sensors that fire in turn, among discs.
 
-use crate::error::{ReactiveError, Result, positive};
+use crate::error::{Failure, Result, positive};
 use crate::random::Stream;
 use crate::skirt::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
 use crate::skirt::scene::Scene;
@@ -201,7 +201,7 @@ pub fn run(
         });
         let now = robot.nearest(scene, skirt.ring.chassis_radius());
         if !now.min_clearance.is_finite() {
-            return Err(ReactiveError::NonFinite { run: 0, time });
+            return Err(Failure::NonFinite { run: 0, time });
         }
         if now.min_clearance < found.min_clearance {
             found = now;

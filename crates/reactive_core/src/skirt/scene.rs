@@ -1,6 +1,6 @@
 //! Random layouts of discs: one on the course, the others anywhere.
 
-use crate::error::{Given, ReactiveError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::random::Stream;
 use crate::sonar::Disc;
 
@@ -51,7 +51,7 @@ impl SceneOptions {
     pub fn checked(self, chassis_radius: f64) -> Result<Self> {
         if self.obstacles == 0 {
             let given = Given::Count(0);
-            return Err(ReactiveError::invalid("obstacles", "be at least 1", given));
+            return Err(Failure::invalid("obstacles", "be at least 1", given));
         }
         ascending("disc_radius", self.radius)?;
         ascending("course_distance", self.course_distance)?;
@@ -62,12 +62,12 @@ impl SceneOptions {
         if !(0.0..=1.0).contains(&self.unseen_share) {
             let given = Given::Number(self.unseen_share);
             let rule = "be a share from 0 to 1";
-            return Err(ReactiveError::invalid("unseen_share", rule, given));
+            return Err(Failure::invalid("unseen_share", rule, given));
         }
         if self.course_distance[0] <= chassis_radius + self.radius[1] {
             let given = Given::Pair(self.course_distance);
             let rule = "exceed the radii of robot and disc together";
-            return Err(ReactiveError::invalid("course_distance", rule, given));
+            return Err(Failure::invalid("course_distance", rule, given));
         }
         Ok(self)
     }
@@ -78,7 +78,7 @@ fn ascending(name: &str, range: [f64; 2]) -> Result<()> {
         return Ok(());
     }
     let rule = "be two finite positive numbers, the smaller one first";
-    Err(ReactiveError::invalid(name, rule, Given::Pair(range)))
+    Err(Failure::invalid(name, rule, Given::Pair(range)))
 }
 
 /// Discs of one test.
@@ -131,7 +131,7 @@ impl Scene {
             } else if tries == MOST_TRIES {
                 let given = Given::Count(options.obstacles as u64);
                 let rule = "leave room for each other";
-                return Err(ReactiveError::invalid("obstacles", rule, given));
+                return Err(Failure::invalid("obstacles", rule, given));
             } else {
                 tries += 1;
             }

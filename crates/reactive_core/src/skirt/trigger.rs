@@ -1,6 +1,6 @@
 //! Readings at which a sensor counts as triggered.
 
-use crate::error::{Given, ReactiveError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::skirt::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
 
 /// Which triggering distances are used.
@@ -26,7 +26,7 @@ pub fn trigger_distances(ring: &Ring, safe_distance: f64, rule: Rule) -> Result<
     let face = ring.face_radius();
     if positive("safe_distance", safe_distance)? <= face {
         let rule = "exceed the distance of the sensors from the center";
-        return Err(ReactiveError::invalid(
+        return Err(Failure::invalid(
             "safe_distance",
             rule,
             Given::Number(safe_distance),
@@ -38,7 +38,7 @@ pub fn trigger_distances(ring: &Ring, safe_distance: f64, rule: Rule) -> Result<
         if count != PUBLISHED_SENSORS {
             let given = Given::Count(count as u64);
             let needed = "be 9 for the printed triggering distances";
-            return Err(ReactiveError::invalid("sensors", needed, given));
+            return Err(Failure::invalid("sensors", needed, given));
         }
         distances[..4].fill(2.0 * safe_distance - face);
         let gap = std::f64::consts::FRAC_PI_3 - PUBLISHED_WHEEL_GAP;

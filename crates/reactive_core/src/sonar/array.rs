@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::error::{Given, ReactiveError, Result, finite_pair, positive};
+use crate::error::{Failure, Given, Result, finite_pair, positive};
 use crate::sonar::beam::{Beam, Pose};
 use crate::sonar::ranging::{Normals, Ranging};
 use crate::sonar::shapes::Shape;
@@ -52,7 +52,7 @@ impl SonarArray {
         if mounts.is_empty() {
             let given = Given::Count(0);
             let rule = "hold at least one sensor";
-            return Err(ReactiveError::invalid("sensors", rule, given));
+            return Err(Failure::invalid("sensors", rule, given));
         }
         for (index, mount) in mounts.iter().enumerate() {
             let owner = format!("sensors[{index}]");

@@ -1,6 +1,6 @@
 //! Beam of an ultrasonic sensor: a fan of rays.
 
-use crate::error::{Given, ReactiveError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::sonar::shapes::Shape;
 
 /// Where a sensor is, and where it looks.
@@ -70,15 +70,11 @@ impl Beam {
     pub fn new(width: f64, rays: usize) -> Result<Self> {
         if !(0.0..=std::f64::consts::PI).contains(&width) {
             let rule = "be an angle from 0 to pi";
-            return Err(ReactiveError::invalid(
-                "beam_width",
-                rule,
-                Given::Number(width),
-            ));
+            return Err(Failure::invalid("beam_width", rule, Given::Number(width)));
         }
         if rays == 0 {
             let rule = "be at least 1";
-            return Err(ReactiveError::invalid("rays", rule, Given::Count(0)));
+            return Err(Failure::invalid("rays", rule, Given::Count(0)));
         }
         let gaps = (rays - 1) as f64;
         let ray = |index: usize| {

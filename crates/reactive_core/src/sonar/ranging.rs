@@ -1,6 +1,6 @@
 //! From a distance to a reading: temperature, limits, noise.
 
-use crate::error::{Given, ReactiveError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::random::Stream;
 
 /// Temperature at which sound has 340 m/s by [`speed_of_sound`], in degrees Celsius.
@@ -49,7 +49,7 @@ impl Ranging {
         positive("most_range", self.most)?;
         if self.most <= self.least {
             let rule = "be above least_range";
-            return Err(ReactiveError::invalid(
+            return Err(Failure::invalid(
                 "most_range",
                 rule,
                 Given::Number(self.most),
@@ -63,7 +63,7 @@ impl Ranging {
             finite(name, value)?;
             if speed_of_sound(value) <= 0.0 {
                 let rule = "be above -552.5 degrees";
-                return Err(ReactiveError::invalid(name, rule, Given::Number(value)));
+                return Err(Failure::invalid(name, rule, Given::Number(value)));
             }
         }
         Ok(self)

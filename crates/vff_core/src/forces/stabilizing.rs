@@ -1,6 +1,6 @@
 //! Stabilizing force: what makes the Lyapunov function descend.
 
-use crate::error::{Given, NavigationError, Result, not_negative};
+use crate::error::{Failure, Given, Result, not_negative};
 use crate::forces::detour::Turning;
 use crate::forces::geometry::{Approach, Body};
 use crate::forces::repulsive::Repulsion;
@@ -59,11 +59,7 @@ impl Stabilizing {
             (Some(_), Some(share)) => {
                 let rule = "be absent when stabilizing_force_cap is given";
                 let given = Given::Number(share);
-                return Err(NavigationError::invalid(
-                    "stabilizing_momentum_cap",
-                    rule,
-                    given,
-                ));
+                return Err(Failure::invalid("stabilizing_momentum_cap", rule, given));
             }
             (Some(force), None) => Some(Cap::Force(force).checked()?),
             (None, Some(share)) => Some(Cap::Momentum(share).checked()?),
@@ -75,7 +71,7 @@ impl Stabilizing {
             ("full", None) => Ok(Self::Full),
             ("off" | "full", Some(_)) => {
                 let rule = "be \"capped\" when a cap is given";
-                Err(NavigationError::invalid(
+                Err(Failure::invalid(
                     "stabilizing",
                     rule,
                     Given::Word(mode.into()),
@@ -83,7 +79,7 @@ impl Stabilizing {
             }
             _ => {
                 let rule = "be \"off\", \"capped\" or \"full\"";
-                Err(NavigationError::invalid(
+                Err(Failure::invalid(
                     "stabilizing",
                     rule,
                     Given::Word(mode.into()),

@@ -1,6 +1,6 @@
 //! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
 
-use crate::error::{Given, NavigationError, Result, not_negative};
+use crate::error::{Failure, Given, Result, not_negative};
 use crate::forces::attractive::attractive_force;
 use crate::forces::detour::Turning;
 use crate::forces::geometry::{Approach, Body, Offset, RobotState};
@@ -34,7 +34,7 @@ impl VirtualForceField {
         let angle = rules.hysteresis;
         if angle != f64::INFINITY && !(0.0..std::f64::consts::PI).contains(&angle) {
             let rule = "be an angle from 0 to below pi";
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "side_hysteresis",
                 rule,
                 Given::Number(angle),

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::SearchState;
 use crate::optimize::meeting::{Asker, meet};
 use crate::optimize::observe::{Control, Observer, Report, Stage};
 use crate::optimize::problem::{Candidate, Problem, Score};
-use crate::simulate::on_threads;
+use groundwork::threads::on_threads;
 
 /// Blocks that a list of points is cut into at least, so that threads share the work evenly.
 const LEAST_BLOCKS: usize = 64;
@@ -262,7 +262,7 @@ pub fn evaluate_all(
             .par_chunks(block * dimension)
             .map(|points| {
                 if interrupted() {
-                    return Err(NavigationError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
                 Evaluated::of(problem, points)
             })

@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::{Parts, Session};
 use crate::optimize::grid::{Grid, GridOptions};
 use crate::optimize::ledger::SearchState;
@@ -11,7 +11,7 @@ use crate::optimize::observe::{Observer, Stage};
 use crate::optimize::pareto::non_dominated;
 use crate::optimize::problem::{Bounds, Problem};
 use crate::optimize::search::fingerprint;
-use crate::simulate::on_threads;
+use groundwork::threads::on_threads;
 
 /// Options of a search for the best compromises.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub fn front_search(
     if problem.objectives() < 2 {
         let rule = "be at least two for a set of compromises";
         let given = Given::Count(problem.objectives() as u64);
-        return Err(NavigationError::invalid("objectives", rule, given));
+        return Err(Failure::invalid("objectives", rule, given));
     }
     let grid = GridOptions {
         shape: options.shape.clone(),

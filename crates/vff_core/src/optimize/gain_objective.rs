@@ -1,6 +1,6 @@
 //! What a search over gains is for: metrics of runs, objectives and constraints built from them.
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::metrics::Performance;
 use crate::simulate::{Outcome, RunTotals};
 
@@ -46,7 +46,7 @@ impl Metric {
         let known = Self::ALL.into_iter().find(|metric| metric.word() == word);
         known.ok_or_else(|| {
             let rule = "be the word of a metric";
-            NavigationError::invalid("metric", rule, Given::Word(word.into()))
+            Failure::invalid("metric", rule, Given::Word(word.into()))
         })
     }
 

@@ -1,6 +1,6 @@
 //! How gains are judged.
 
-use crate::error::{Given, NavigationError, Result, finite, positive};
+use crate::error::{Failure, Given, Result, finite, positive};
 use crate::metrics::Weights;
 use crate::optimize::gain_objective::{
     Limit, Metric, MetricConstraint, Objective, Over, Robustness,
@@ -36,7 +36,7 @@ impl GainOptions {
     pub(crate) fn check(&self, scenarios: &[Scenario]) -> Result<()> {
         let empty = |name: &str, rule| {
             let given = Given::Word("an empty list".into());
-            Err(NavigationError::invalid(name, rule, given))
+            Err(Failure::invalid(name, rule, given))
         };
         if scenarios.is_empty() {
             return empty("scenarios", "hold at least one scenario");
@@ -78,13 +78,13 @@ fn check_metric(
         None => scenarios,
         Some(index) => scenarios.get(index..=index).ok_or_else(|| {
             let rule = "name a scenario that is there";
-            NavigationError::invalid(name, rule, Given::Count(index as u64))
+            Failure::invalid(name, rule, Given::Count(index as u64))
         })?,
     };
     let clear = |scenario: &Scenario| scenario.obstacle_count() == 0;
     if metric == Metric::MinClearance && concerned.iter().any(clear) {
         let rule = "be a metric that every scenario has";
-        return Err(NavigationError::invalid(
+        return Err(Failure::invalid(
             name,
             rule,
             Given::Word(metric.word().into()),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::metrics::{Nominal, score};
 use crate::optimize::gain_objective::{Judged, Metric, MetricConstraint, Objective, Over};
 use crate::optimize::gain_options::GainOptions;
@@ -309,8 +309,8 @@ impl Problem for GainProblem {
 }
 
 /// Another thread has panicked.
-fn lost() -> NavigationError {
-    NavigationError::Interrupted
+fn lost() -> Failure {
+    Failure::Interrupted
 }
 
 /// Cuts gain sets into teams; where many neighbours share the gains that act without obstacles, a

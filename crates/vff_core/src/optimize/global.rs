@@ -4,7 +4,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::Session;
 use crate::optimize::ledger::{Fingerprint, SearchState};
 use crate::optimize::meeting::Asker;
@@ -12,7 +12,7 @@ use crate::optimize::observe::{Observer, Stage};
 use crate::optimize::problem::{Bounds, Candidate, Problem, single_objective};
 use crate::optimize::search::fingerprint;
 use crate::optimize::solvers::{Found, Halt, Oracle, cma_es, differential_evolution};
-use crate::simulate::on_threads;
+use groundwork::threads::on_threads;
 
 /// First standard deviation of CMA-ES in shares of the sides of the box.
 const SPREAD: f64 = 0.3;
@@ -80,12 +80,12 @@ pub fn global_search(
     if islands == 0 || islands > MOST_ISLANDS {
         let rule = "be from 1 to 256";
         let given = Given::Count(islands as u64);
-        return Err(NavigationError::invalid("islands", rule, given));
+        return Err(Failure::invalid("islands", rule, given));
     }
     if options.evaluations < islands as u64 {
         let rule = "be at least one for each island";
         let given = Given::Count(options.evaluations);
-        return Err(NavigationError::invalid("evaluations", rule, given));
+        return Err(Failure::invalid("evaluations", rule, given));
     }
     let sum = options.fingerprint(fingerprint(problem, bounds));
     let session = Session::new(observer, SearchState::resumed(resume, sum.value())?);

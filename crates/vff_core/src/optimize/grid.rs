@@ -1,6 +1,6 @@
 //! Coarse-to-fine grid: the best points of one grid span the next, Zeng (2011), C.2, steps 1-6.
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::{Parts, Session};
 use crate::optimize::ledger::Fingerprint;
 use crate::optimize::observe::Stage;
@@ -54,11 +54,7 @@ pub(crate) struct Grids {
 impl GridOptions {
     pub(crate) fn check(&self, bounds: &Bounds) -> Result<()> {
         let refuse = |name: &str, rule, count: usize| {
-            Err(NavigationError::invalid(
-                name,
-                rule,
-                Given::Count(count as u64),
-            ))
+            Err(Failure::invalid(name, rule, Given::Count(count as u64)))
         };
         if self.shape.len() != bounds.dimension() {
             let rule = "have a number of points for every axis";

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::observe::Stage;
 
@@ -126,9 +126,9 @@ impl SearchState {
     }
 }
 
-fn refused(requirement: &'static str) -> NavigationError {
+fn refused(requirement: &'static str) -> Failure {
     let given = Given::Word("another one".into());
-    NavigationError::invalid("checkpoint", requirement, given)
+    Failure::invalid("checkpoint", requirement, given)
 }
 
 fn code(stage: Stage) -> (u64, usize) {

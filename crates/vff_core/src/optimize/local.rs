@@ -1,6 +1,6 @@
 //! Constrained local searches from several starts, C.2, step 8.
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::Session;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::{Fingerprint, SearchState};
@@ -9,7 +9,7 @@ use crate::optimize::observe::{Observer, Stage};
 use crate::optimize::problem::{Bounds, Candidate, Problem, Score, single_objective};
 use crate::optimize::search::fingerprint;
 use crate::optimize::solvers::{Found, Halt, Oracle, cobyla, mads};
-use crate::simulate::on_threads;
+use groundwork::threads::on_threads;
 
 /// Local method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,9 +51,8 @@ impl Default for LocalOptions {
 
 impl LocalOptions {
     pub(crate) fn check(&self) -> Result<()> {
-        let refuse = |name: &str, rule, value| {
-            Err(NavigationError::invalid(name, rule, Given::Number(value)))
-        };
+        let refuse =
+            |name: &str, rule, value| Err(Failure::invalid(name, rule, Given::Number(value)));
         if self.evaluations == 0 {
             return refuse("evaluations", "be at least one", 0.0);
         }
@@ -170,7 +169,7 @@ pub fn local_search(
             let name = format!("starts[{index}]");
             let rule = "lie inside the bounds";
             let outside = Given::Word("a point outside".into());
-            return Err(NavigationError::invalid(name, rule, outside));
+            return Err(Failure::invalid(name, rule, outside));
         }
         sum = sum.numbers(start);
     }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::error::{Given, NavigationError, Result, finite};
+use crate::error::{Failure, Given, Result, finite};
 
 /// A constraint may miss its limit by this much, in its own unit: rounding, and the last steps
 /// of a local search towards an active constraint.
@@ -129,7 +129,7 @@ impl Bounds {
         if lower.is_empty() || lower.len() != upper.len() {
             let rule = "have as many upper as lower values, at least one";
             let given = Given::Count(upper.len() as u64);
-            return Err(NavigationError::invalid("bounds", rule, given));
+            return Err(Failure::invalid("bounds", rule, given));
         }
         for (axis, (low, high)) in lower.iter().zip(&upper).enumerate() {
             finite(&format!("bounds[{axis}].lower"), *low)?;
@@ -138,7 +138,7 @@ impl Bounds {
                 let name = format!("bounds[{axis}]");
                 let rule = "have its lower value first";
                 let given = Given::Pair([*low, *high]);
-                return Err(NavigationError::invalid(name, rule, given));
+                return Err(Failure::invalid(name, rule, given));
             }
         }
         Ok(Self { lower, upper })
@@ -202,7 +202,7 @@ impl Bounds {
         }
         let rule = "have as many sides as the problem has coordinates";
         let given = Given::Count(self.dimension() as u64);
-        Err(NavigationError::invalid("bounds", rule, given))
+        Err(Failure::invalid("bounds", rule, given))
     }
 }
 
@@ -213,5 +213,5 @@ pub(crate) fn single_objective(problem: &dyn Problem) -> Result<()> {
     }
     let rule = "be a single one for this search";
     let given = Given::Count(problem.objectives() as u64);
-    Err(NavigationError::invalid("objective", rule, given))
+    Err(Failure::invalid("objective", rule, given))
 }

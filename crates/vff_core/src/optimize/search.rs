@@ -7,7 +7,7 @@ use crate::optimize::ledger::{Fingerprint, SearchState};
 use crate::optimize::local::{LocalOptions, LocalSearch, local_searches};
 use crate::optimize::observe::Observer;
 use crate::optimize::problem::{Bounds, Candidate, Problem, single_objective};
-use crate::simulate::on_threads;
+use groundwork::threads::on_threads;
 
 /// Options of the search.
 #[derive(Clone, Debug, PartialEq)]

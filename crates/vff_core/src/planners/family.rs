@@ -1,7 +1,7 @@
 //! Planners as laws: robots in lanes, each with a planner of its own, and the numbers that a
 //! search may choose.
 
-use crate::error::{Given, NavigationError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::forces::geometry::RobotState;
 use crate::lanes::{Real, Vec2};
 use crate::laws::{Command, Law, LawFamily, Situation};
@@ -115,7 +115,7 @@ fn above_zero_or_infinite(name: &str, value: f64) -> Result<()> {
         return Ok(());
     }
     let rule = "be positive, or infinite";
-    Err(NavigationError::invalid(name, rule, Given::Number(value)))
+    Err(Failure::invalid(name, rule, Given::Number(value)))
 }
 
 impl PlannerFamily for VelocityObstacle {
@@ -142,7 +142,7 @@ impl PlannerFamily for VelocityObstacle {
         if !(0.0..=std::f64::consts::PI).contains(&numbers[3]) {
             let rule = "be an angle from 0 to pi";
             let given = Given::Number(numbers[3]);
-            return Err(NavigationError::invalid("sector", rule, given));
+            return Err(Failure::invalid("sector", rule, given));
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! A grid of cells that obstacles cover, updated where something changed.
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::planners::footprint::Footprint;
 
 /// Most cells of a grid.
@@ -37,7 +37,7 @@ impl Frame {
         if !fits {
             let rule = "give a grid of at most 4,000,000 cells";
             let given = Given::Number(resolution);
-            return Err(NavigationError::invalid("resolution", rule, given));
+            return Err(Failure::invalid("resolution", rule, given));
         }
         Ok(Self {
             resolution,

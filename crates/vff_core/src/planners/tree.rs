@@ -6,7 +6,7 @@ pub mod buckets;
 pub mod growth;
 pub mod safety;
 
-use crate::error::{Given, NavigationError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::forces::geometry::Body;
 use crate::laws::Situation;
 use crate::planners::Planner;
@@ -88,12 +88,12 @@ impl RapidlyExploringRandomTree {
             not_negative(name, value)?;
             if value + others > 1.0 {
                 let rule = "leave a sum of the probabilities of at most 1";
-                return Err(NavigationError::invalid(name, rule, Given::Number(value)));
+                return Err(Failure::invalid(name, rule, Given::Number(value)));
             }
         }
         if self.draws == 0 {
             let rule = "be at least 1";
-            return Err(NavigationError::invalid("draws", rule, Given::Count(0)));
+            return Err(Failure::invalid("draws", rule, Given::Count(0)));
         }
         not_negative("margin", self.margin)?;
         not_negative("horizon", self.horizon)?;

@@ -6,7 +6,7 @@ pub mod wheels;
 
 pub use holonomic::{HolonomicRobot, WheelModel, Wheels};
 
-use crate::error::{Given, NavigationError, Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::region::RobotLimits;
 
 /// Driven wheels and motors of a two-wheel robot.
@@ -83,11 +83,7 @@ impl DifferentialDriveRobot {
         if share > 1.0 {
             let rule = "be positive and at most 1";
             let given = Given::Number(share);
-            return Err(NavigationError::invalid(
-                "reference_speed_share",
-                rule,
-                given,
-            ));
+            return Err(Failure::invalid("reference_speed_share", rule, given));
         }
         positive("wheel_radius", self.wheels.radius)?;
         positive("wheel_span", self.wheels.span)?;

@@ -5,7 +5,7 @@
 //! (6.4.2): the radius has to be squared, and the factor stands on the other side in Tsai's model.
 //! With it on the printed side the goal (0, 0.6) m would lie outside the picture.
 
-use crate::error::{Given, NavigationError, Result, finite, finite_pair, positive};
+use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::sensing::rotation::{self, Matrix};
 
 /// Largest departure of `R R^T` from the identity.
@@ -88,7 +88,7 @@ impl Pose {
         }
         let departure = rotation::departure(&self.rotation);
         if departure > ORTHONORMAL {
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "rotation",
                 "be a rotation matrix, to 1e-9 (nearest_rotation makes one of rounded numbers)",
                 Given::Number(departure),

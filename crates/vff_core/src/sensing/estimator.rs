@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 
 /// Standard deviations whose squares and ratios stay inside the range of numbers.
 const DEVIATIONS: RangeInclusive<f64> = 1e-100..=1e100;
@@ -45,11 +45,7 @@ impl Estimator {
                 velocity_gain,
             } => {
                 let refuse = |name, requirement, value| {
-                    Err(NavigationError::invalid(
-                        name,
-                        requirement,
-                        Given::Number(value),
-                    ))
+                    Err(Failure::invalid(name, requirement, Given::Number(value)))
                 };
                 if !(position_gain > 0.0 && position_gain <= 1.0) {
                     return refuse("position_gain", "be above 0 and at most 1", position_gain);
@@ -101,11 +97,7 @@ fn with_square(name: &str, value: f64) -> Result<f64> {
         Ok(value)
     } else {
         let requirement = "be between 1e-100 and 1e100";
-        Err(NavigationError::invalid(
-            name,
-            requirement,
-            Given::Number(value),
-        ))
+        Err(Failure::invalid(name, requirement, Given::Number(value)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::error::{Given, NavigationError, Result, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::measurement::{Distribution, Measurement, Noise, Noisy};
 use crate::sensing::camera::Camera;
 use crate::sensing::estimator::{Estimate, Estimator, Track};
@@ -119,7 +119,7 @@ impl Vision {
         not_negative("delay", self.delay)?;
         self.error.check()?;
         if !(self.drop_probability >= 0.0 && self.drop_probability < 1.0) {
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "drop_probability",
                 "be at least 0 and below 1",
                 Given::Number(self.drop_probability),

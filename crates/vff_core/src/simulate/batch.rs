@@ -1,8 +1,9 @@
 //! Many runs: gain sets side by side in lanes, lane groups and scenarios over all cores.
 
+use groundwork::threads::on_threads;
 use rayon::prelude::*;
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::metrics::{Weights, score};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
@@ -37,7 +38,7 @@ impl Width {
             16 => Ok(Self::Sixteen),
             other => {
                 let given = Given::Count(other as u64);
-                Err(NavigationError::invalid("lanes", "be 1, 4, 8 or 16", given))
+                Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))
             }
         }
     }
@@ -116,27 +117,9 @@ pub fn run_batch(
     on_threads(options.threads, || batch.run())
 }
 
-/// Does the work on a number of threads of its own, or on those that are there.
-pub(crate) fn on_threads<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce() -> Result<T> + Send,
-) -> Result<T> {
-    match threads {
-        None => work(),
-        Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| NavigationError::Threads {
-                threads,
-                reason: error.to_string(),
-            })?
-            .install(work),
-    }
-}
-
 fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) -> Result<()> {
     let empty = |name: &str, rule| {
-        Err(NavigationError::invalid(
+        Err(Failure::invalid(
             name,
             rule,
             Given::Word("an empty list".into()),
@@ -152,7 +135,7 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
     if !points.len().is_multiple_of(dimension) {
         let rule = "hold a whole number of gain sets";
         let given = Given::Count(points.len() as u64);
-        return Err(NavigationError::invalid("gains", rule, given));
+        return Err(Failure::invalid("gains", rule, given));
     }
     for (index, set) in points.chunks_exact(dimension).enumerate() {
         law.driven()

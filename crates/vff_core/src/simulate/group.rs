@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
 use crate::laws::compared::{BorensteinKoren, GeCui, Khatib, Masoud, Pairwise};
 use crate::laws::{Command, Law, LawFamily, Situation, VirtualForceField};
@@ -246,7 +246,7 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
 
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
         if (group.interrupted)() {
-            return Err(NavigationError::Interrupted);
+            return Err(Failure::Interrupted);
         }
         let exact = group.scenario.measurement.is_none();
         let plan = Plan {
@@ -289,7 +289,7 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
             |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
         )?;
         let [member] = team;
-        let summary = summary.ok_or(NavigationError::Interrupted)?;
+        let summary = summary.ok_or(Failure::Interrupted)?;
         Ok((summary, member.recorder.finish()))
     }
 }

@@ -19,7 +19,6 @@ pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use batch::on_threads;
 pub(crate) use group::{Group, Plan};
 pub(crate) use nominal::{Key, Ways, key_of, nominal_runs};
 pub(crate) use table::min_clearance;

@@ -1,6 +1,6 @@
 //! How a run is integrated.
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::scenario::Scenario;
 
 /// Largest number of motion steps of one run.
@@ -72,23 +72,19 @@ impl Options {
         let count = (scenario.rules.time_limit / step - WHOLE_STEPS).ceil();
         if count > MAX_STEPS {
             let rule = "be so long that the time limit is at most 1e8 steps";
-            return Err(NavigationError::invalid("step", rule, Given::Number(step)));
+            return Err(Failure::invalid("step", rule, Given::Number(step)));
         }
         let (mut steps_per_sample, mut interval) = (1, step);
         if self.hold {
             let whole = (period / step).round();
             if whole < 1.0 || (whole * step - period).abs() > WHOLE_STEPS * period {
                 let rule = "divide the control period when the force is held";
-                return Err(NavigationError::invalid("step", rule, Given::Number(step)));
+                return Err(Failure::invalid("step", rule, Given::Number(step)));
             }
             (steps_per_sample, interval) = (count_of(whole), period);
         } else if scenario.measurement.is_some() {
             let rule = "be true with a measurement, which is taken every control period";
-            return Err(NavigationError::invalid(
-                "hold",
-                rule,
-                Given::Word("False".into()),
-            ));
+            return Err(Failure::invalid("hold", rule, Given::Word("False".into())));
         }
         Ok(Clock {
             step,

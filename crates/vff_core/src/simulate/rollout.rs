@@ -1,6 +1,6 @@
 //! The time loop: one kernel for one robot and for robots side by side.
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Mask, Real, Vec2};
 use crate::laws::{Law, Situation};
@@ -102,7 +102,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         if L::THINKS || until_question == 0 {
             until_question = BLOCKS_PER_QUESTION;
             if interrupted() {
-                return Err(NavigationError::Interrupted);
+                return Err(Failure::Interrupted);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::{Mask, Real, Vec2};
 use crate::laws::Command;
@@ -332,7 +332,7 @@ impl<'a, R: Real> Runs<'a, R> {
         let lost = self.running & !sound;
         if lost.any() {
             let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
-            return Err(NavigationError::NonFinite { run, time });
+            return Err(Failure::NonFinite { run, time });
         }
         Ok(())
     }

@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
+use groundwork::error::{Failure, Given};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::error::{Given, ReactiveError};
 use reactive_core::localization::burst::{self, Signal, Sound};
 use reactive_core::localization::correlation::Method;
 use reactive_core::localization::delays::{DelayFinder, DelayOptions};
@@ -50,11 +50,11 @@ impl Burst {
             "tone" if low == high => Sound::Tone { frequency: low },
             "tone" => {
                 let rule = "equal low for a tone";
-                return Err(ReactiveError::invalid("high", rule, Given::Number(high)).into());
+                return Err(Failure::invalid("high", rule, Given::Number(high)).into());
             }
             _ => {
                 let rule = "be one of \"noise\", \"sweep\", \"tone\"";
-                return Err(ReactiveError::invalid("kind", rule, Given::Word(kind.into())).into());
+                return Err(Failure::invalid("kind", rule, Given::Word(kind.into())).into());
             }
         };
         let burst = burst::Burst {
@@ -161,7 +161,7 @@ fn delay_options(options: Options, sample_rate: f64) -> CoreResult<DelayOptions>
         },
         _ => {
             let rule = "be one of \"mean_square\", \"cross_correlation\", \"phase\"";
-            return Err(ReactiveError::invalid("method", rule, Given::Word(method)).into());
+            return Err(Failure::invalid("method", rule, Given::Word(method)).into());
         }
     };
     Ok(DelayOptions {

@@ -7,7 +7,7 @@ use super::super::drop_test::trajectory;
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
 use crate::batch::Interrupted;
-use crate::error::{ImpactError, Result};
+use crate::error::{Failure, Result};
 
 /// Residuals that the bootstrap keeps together: rounding repeats itself while the slide is slow.
 const RUN: usize = 8;
@@ -24,7 +24,7 @@ impl Tests<'_> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.settings.seed);
         for repeat in 0..repeats {
             if interrupted() {
-                return Err(ImpactError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             generator.set_stream(repeat as u64);
             let refit = self

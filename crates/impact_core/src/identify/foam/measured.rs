@@ -4,7 +4,7 @@ use super::super::drop_test::{DropModel, trajectory};
 use super::super::least_squares::{Minimum, Start, minimize};
 use super::super::line::student_quantile;
 use super::FoamFitSettings;
-use crate::error::{Given, ImpactError, Result};
+use crate::error::{Failure, Given, Result};
 
 /// Damping ratios from which the search may start.
 const FIRST_RATIOS: [f64; 12] = [
@@ -147,7 +147,7 @@ impl Tests<'_> {
             lower,
         };
         minimize(&start, |parameters| self.residuals(parameters)).ok_or_else(|| {
-            ImpactError::invalid(
+            Failure::invalid(
                 "drop_position",
                 "determine stiffness, damping and friction",
                 Given::Count(self.positions() as u64),

@@ -3,7 +3,7 @@
 use super::cost::corner_cost;
 use super::queue::{Key, Queue};
 use super::surroundings::{Neighbor, Triangle, bound, neighbors, triangles};
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 
 /// Rings of blocked cells around the grid, so that every neighbor exists.
 const RINGS: usize = 2;
@@ -99,7 +99,7 @@ impl IncrementalSearch {
         self.check_cell("cell", cell)?;
         if cost.is_nan() || cost < 1.0 {
             let given = Given::Number(cost);
-            return Err(NavigationError::invalid("cost", "be at least 1", given));
+            return Err(Failure::invalid("cost", "be at least 1", given));
         }
         self.change(cell, cost);
         Ok(())
@@ -344,7 +344,7 @@ impl IncrementalSearch {
     }
 }
 
-fn outside(name: &str, place: [usize; 2]) -> NavigationError {
+fn outside(name: &str, place: [usize; 2]) -> Failure {
     let given = Given::Pair(place.map(|number| number as f64));
-    NavigationError::invalid(name, "lie on the grid", given)
+    Failure::invalid(name, "lie on the grid", given)
 }

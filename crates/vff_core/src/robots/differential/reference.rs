@@ -1,7 +1,7 @@
 //! The robot that is followed, and paths for it.
 
 use super::full_speed::STANDSTILL;
-use crate::error::{Given, NavigationError, Result, finite, finite_pair, positive};
+use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::motion::Motion;
 
 /// State of the robot that is followed.
@@ -94,13 +94,13 @@ impl ReferencePath {
         if time.is_empty() {
             let none = Given::Word("an empty path".into());
             let rule = "hold at least one sample";
-            return Err(NavigationError::invalid("time", rule, none));
+            return Err(Failure::invalid("time", rule, none));
         }
         for (name, count) in [("position", position.len()), ("velocity", velocity.len())] {
             if count != time.len() {
                 let rule = "have one row for each time";
                 let given = Given::Count(count as u64);
-                return Err(NavigationError::invalid(name, rule, given));
+                return Err(Failure::invalid(name, rule, given));
             }
         }
         for (index, instant) in time.iter().enumerate() {
@@ -108,11 +108,7 @@ impl ReferencePath {
             finite(&name, *instant)?;
             if index > 0 && *instant <= time[index - 1] {
                 let rule = "be later than the sample before";
-                return Err(NavigationError::invalid(
-                    name,
-                    rule,
-                    Given::Number(*instant),
-                ));
+                return Err(Failure::invalid(name, rule, Given::Number(*instant)));
             }
             finite_pair(&format!("position[{index}]"), position[index])?;
             finite_pair(&format!("velocity[{index}]"), velocity[index])?;

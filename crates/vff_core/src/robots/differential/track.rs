@@ -5,8 +5,9 @@ use rayon::prelude::*;
 use super::drive::{DifferentialDrive, DifferentialLimits, Pose, Twist};
 use super::reference::{Reference, ReferencePath};
 use super::tracker::{Tracker, Tracking};
-use crate::error::{Given, NavigationError, Result, finite_pair, positive};
-use crate::simulate::{Interrupted, on_threads};
+use crate::error::{Failure, Given, Result, finite_pair, positive};
+use crate::simulate::Interrupted;
+use groundwork::threads::on_threads;
 
 /// Largest number of motion steps of one run.
 const MAX_STEPS: f64 = 1e8;
@@ -55,7 +56,7 @@ impl TrackOptions {
         if duration / step > MAX_STEPS {
             let rule = "be at most 1e8 motion steps";
             let given = Given::Number(duration);
-            return Err(NavigationError::invalid("duration", rule, given));
+            return Err(Failure::invalid("duration", rule, given));
         }
         Ok((periods, steps))
     }
@@ -66,7 +67,7 @@ impl TrackOptions {
 fn whole(ratio: f64, name: &str, rule: &'static str, value: f64) -> Result<usize> {
     let count = ratio.round();
     if count < 1.0 || (count - ratio).abs() > WHOLE * ratio {
-        return Err(NavigationError::invalid(name, rule, Given::Number(value)));
+        return Err(Failure::invalid(name, rule, Given::Number(value)));
     }
     Ok(count as usize)
 }
@@ -177,7 +178,7 @@ impl<'a> Course<'a> {
             let reference = path.at(time, &mut cursor);
             if index.is_multiple_of(self.steps) {
                 if (index / self.steps).is_multiple_of(LOOK) && (self.interrupted)() {
-                    return Err(NavigationError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
                 wish = tracker.command(&drive.pose, &reference, goal);
             }
@@ -190,7 +191,7 @@ impl<'a> Course<'a> {
                 goal_phase: tracker.in_goal_phase(),
             };
             if !instant.error().is_finite() {
-                return Err(NavigationError::NonFinite { run: 0, time });
+                return Err(Failure::NonFinite { run: 0, time });
             }
             show(&instant);
             drive.step(wish, self.options.step);
@@ -287,11 +288,11 @@ pub fn track_batch(
     if paths.len() != 1 && paths.len() != starts.len() {
         let given = Given::Count(paths.len() as u64);
         let rule = "be one, or one for each start";
-        return Err(NavigationError::invalid("reference", rule, given));
+        return Err(Failure::invalid("reference", rule, given));
     }
     for (index, start) in starts.iter().enumerate() {
         let owner = format!("starts[{index}]");
-        let within = |error: NavigationError| error.within(&owner);
+        let within = |error: Failure| error.within(&owner);
         start.pose.checked().map_err(within)?;
         start.twist.checked().map_err(within)?;
     }
@@ -304,7 +305,7 @@ pub fn track_batch(
             .enumerate()
             .map(|(index, start)| {
                 if interrupted() {
-                    return Err(NavigationError::Interrupted);
+                    return Err(Failure::Interrupted);
                 }
                 let path = &paths[if paths.len() == 1 { 0 } else { index }];
                 let row = course

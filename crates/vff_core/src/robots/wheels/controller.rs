@@ -3,7 +3,7 @@
 
 use super::dynamics::{Response, WheelDynamics};
 use super::reference::WheelWish;
-use crate::error::{Given, NavigationError, Result, not_negative};
+use crate::error::{Failure, Given, Result, not_negative};
 
 /// Where the controller takes angle and speed of the wheel from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl WheelController {
         if let Feedback::Observer { poles } | Feedback::ObservedSpeed { poles } = self.feedback {
             for pole in poles {
                 if !(pole.is_finite() && pole < 0.0) {
-                    return Err(NavigationError::invalid(
+                    return Err(Failure::invalid(
                         "observer_poles",
                         "be finite and negative",
                         Given::Number(pole),

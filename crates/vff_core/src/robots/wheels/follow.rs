@@ -4,7 +4,7 @@ use super::control_loop::WheelLoop;
 use super::drive::WheelDrive;
 use super::dynamics::WheelState;
 use super::reference::WheelWish;
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 
 /// Periods between two looks at whether to stop.
 const LOOK: usize = 1 << 14;
@@ -67,13 +67,13 @@ pub fn follow(
     let mut history = WheelHistory::with_capacity(wishes.len());
     for (index, wish) in wishes.enumerate() {
         if index % LOOK == 0 && interrupted() {
-            return Err(NavigationError::Interrupted);
+            return Err(Failure::Interrupted);
         }
         let WheelState { angle, speed } = wheel.state();
         let sample = wheel.step(&wish);
         if !(sample.angle.is_finite() && sample.speed.is_finite()) {
             let time = index as f64 * drive.period;
-            return Err(NavigationError::NonFinite { run: 0, time });
+            return Err(Failure::NonFinite { run: 0, time });
         }
         history.angle.push(angle);
         history.speed.push(speed);

@@ -1,6 +1,6 @@
 //! How the ground speed of a wheel differs from the speed of its rim.
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 
 /// Slip of a wheel: a share of the rim speed that is always lost, and grip that limits how fast the
 /// ground speed can change.
@@ -33,7 +33,7 @@ impl Slip {
     /// Names the value that is out of range.
     pub fn checked(self) -> Result<Self> {
         if !(self.creep > -1.0 && self.creep < 1.0) {
-            return Err(NavigationError::invalid(
+            return Err(Failure::invalid(
                 "creep",
                 "be above -1 and below 1",
                 Given::Number(self.creep),

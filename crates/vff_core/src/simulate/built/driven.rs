@@ -1,6 +1,6 @@
 //! Wheels with their own controllers, several periods of them in a motion step.
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::robots::wheels::{Slip, WheelDrive, WheelLoop, WheelReference};
 use crate::simulate::built::motion::WHEELS;
 
@@ -54,7 +54,7 @@ fn periods_of(drives: &[WheelDrive], step: f64) -> Result<usize> {
         if !shared || whole < 1.0 || (whole * period - step).abs() > WHOLE_PERIODS * step {
             let rule = "be the same for all wheels and divide the motion step";
             let name = format!("{wheel}.period");
-            return Err(NavigationError::invalid(name, rule, Given::Number(period)));
+            return Err(Failure::invalid(name, rule, Given::Number(period)));
         }
     }
     Ok(count_of(whole))

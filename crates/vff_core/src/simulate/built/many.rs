@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::error::{Given, NavigationError, Result};
+use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::Vec2;
 use crate::scenario::Scenario;
@@ -12,8 +12,8 @@ use crate::simulate::built::history::Listener;
 use crate::simulate::built::motion::Reading;
 use crate::simulate::built::run::{clock_of, robot_of, run};
 use crate::simulate::group::AnyLaw;
-use crate::simulate::on_threads;
 use crate::simulate::outcome::RunSummary;
+use groundwork::threads::on_threads;
 
 /// What is kept of a run once every control period, and at its end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -88,7 +88,7 @@ pub fn repeat_built(
     if seeds.is_empty() {
         let none = Given::Word("an empty list".into());
         let rule = "hold at least one seed";
-        return Err(NavigationError::invalid("seeds", rule, none));
+        return Err(Failure::invalid("seeds", rule, none));
     }
     let every = clock_of(scenario, built)?.steps_per_sample;
     let one = |(index, seed): (usize, &u64)| {

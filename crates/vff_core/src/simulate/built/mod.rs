@@ -18,7 +18,7 @@ pub use history::BuiltTrajectory;
 pub use many::{Histories, repeat_built};
 pub use run::{evaluate_built, simulate_built};
 
-use crate::error::{Given, NavigationError, Result, positive};
+use crate::error::{Failure, Given, Result, positive};
 use crate::robots::differential::{Tracking, VirtualTorque};
 use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
 use crate::scenario::Scenario;
@@ -80,13 +80,13 @@ impl Built {
         if let Some(wheels) = self.wheels.as_ref().filter(|wheels| wheels.len() != driven) {
             let rule = "hold one wheel for each of the robot: 3 of a holonomic one, 2 of the other";
             let given = Given::Count(wheels.len() as u64);
-            return Err(NavigationError::invalid("wheels", rule, given));
+            return Err(Failure::invalid("wheels", rule, given));
         }
         let sees = self.robot_vision.is_some() || self.obstacle_vision.is_some();
         if sees && scenario.measurement.is_some() {
             let rule = "be None where a camera measures";
             let given = Given::Word("a Measurement".into());
-            return Err(NavigationError::invalid("measurement", rule, given));
+            return Err(Failure::invalid("measurement", rule, given));
         }
         Ok(self)
     }

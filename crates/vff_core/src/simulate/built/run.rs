@@ -1,6 +1,6 @@
 //! One run of a robot as built.
 
-use crate::error::{NavigationError, Result};
+use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
 use crate::laws::Situation;
 use crate::metrics::{Performance, Weights, performance};
@@ -102,7 +102,7 @@ pub(super) fn run(
                 break;
             }
             if interrupted() {
-                return Err(NavigationError::Interrupted);
+                return Err(Failure::Interrupted);
             }
             let seen = sight.look(time, &reading, &scene.frames[0]);
             let command = law.command(&Situation {

@@ -1,4 +1,4 @@
-//! Errors, with the data needed to act on them.
+//! What can go wrong, with the data needed to act on it.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl fmt::Display for Given {
 
 /// What can go wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReactiveError {
+pub enum Failure {
     /// An argument breaks a rule.
     #[error("{name} must {requirement}, got {value}")]
     InvalidParameter {
@@ -60,10 +60,10 @@ pub enum ReactiveError {
     },
 }
 
-/// Result of this crate.
-pub type Result<T> = std::result::Result<T, ReactiveError>;
+/// Result of the cores.
+pub type Result<T> = std::result::Result<T, Failure>;
 
-impl ReactiveError {
+impl Failure {
     /// An argument breaks a rule.
     pub fn invalid(name: impl Into<String>, requirement: &'static str, value: Given) -> Self {
         Self::InvalidParameter {
@@ -111,11 +111,7 @@ pub fn finite(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(ReactiveError::invalid(
-            name,
-            "be finite",
-            Given::Number(value),
-        ))
+        Err(Failure::invalid(name, "be finite", Given::Number(value)))
     }
 }
 
@@ -127,7 +123,7 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err(ReactiveError::invalid(
+        Err(Failure::invalid(
             name,
             "be finite and positive",
             Given::Number(value),
@@ -143,7 +139,7 @@ pub fn not_negative(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
-        Err(ReactiveError::invalid(
+        Err(Failure::invalid(
             name,
             "be finite and not negative",
             Given::Number(value),
@@ -159,10 +155,6 @@ pub fn finite_pair(name: &str, value: [f64; 2]) -> Result<[f64; 2]> {
     if value.iter().all(|component| component.is_finite()) {
         Ok(value)
     } else {
-        Err(ReactiveError::invalid(
-            name,
-            "be finite",
-            Given::Pair(value),
-        ))
+        Err(Failure::invalid(name, "be finite", Given::Pair(value)))
     }
 }
