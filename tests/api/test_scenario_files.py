@@ -32,6 +32,22 @@ def test_a_file_with_start_and_goal_has_defaults_for_the_rest(tmp_path: Path) ->
     assert law == nav.VirtualForceField()
 
 
+def test_robot_may_have_two_wheels(tmp_path: Path) -> None:
+    table = """
+[robot]
+type = "differential_drive"
+wheel_span = 0.3
+reference_speed_share = 0.8
+wheel_inertia = [0.008, 0.006]
+"""
+    scenario, law = loaded(tmp_path, ROOM + table)
+    robot = nav.DifferentialDriveRobot(wheel_span=0.3, reference_speed_share=0.8, wheel_inertia=(0.008, 0.006))
+    assert scenario.robot == robot
+    run = nav.simulate(scenario, law)
+    assert run.outcome == "arrived"
+    assert run.wheel_current.shape[1] == 2
+
+
 def test_a_full_file_says_what_the_constructors_say(tmp_path: Path) -> None:
     (tmp_path / "walk.csv").write_text("t_s,x_m,y_m\n0,1,3\n2,1,5\n")
     text = f"""{ROOM}
@@ -140,7 +156,10 @@ BAD_FILES = {
         r"law\.type must be virtual_force_field or khatib or .*, got 'astar'",
     ),
     "no law type": (ROOM + "[law]\ngain_ratio = 1\n", r"law\.type must be given"),
-    "unknown robot": (ROOM + '[robot]\ntype = "car"\n', r"robot\.type must be holonomic, got 'car'"),
+    "unknown robot": (
+        ROOM + '[robot]\ntype = "car"\n',
+        r"robot\.type must be holonomic or differential_drive, got 'car'",
+    ),
     "no radius": (ROOM + '[[obstacles]]\ntype = "disc"\ncenter = [1, 1]\n', OBSTACLE + r"\.radius must be given"),
     "second radius": (
         DISC_ROOM + DISC.replace("0.1", "-0.1"),
@@ -173,6 +192,14 @@ BAD_FILES = {
     "robot number": (ROOM + "robot = 1\n", "robot must be a table, got 1"),
     "seed float": (ROOM + "seed = 1.5\n", "seed must be an integer"),
     "seed negative": (ROOM + "seed = -1\n", "seed must be an integer from 0"),
+    "key of another robot": (
+        ROOM + "[robot]\nwheel_span = 0.3\n",
+        r"robot\.wheel_span must be one of the keys",
+    ),
+    "two wheels": (
+        ROOM + '[robot]\ntype = "differential_drive"\nwheel_inertia = [1, 2, 3]\n',
+        r"robot\.wheel_inertia must be an array of 2 numbers",
+    ),
     "wheels": (ROOM + "[robot]\nwheel_inertia = [1, 2]\n", r"robot\.wheel_inertia must be an array of 3 numbers"),
     "mass": (ROOM + "[robot]\nmass = 0\n", r"robot\.mass must be .*positive.*, got 0"),
     "noise": (ROOM + "[measurement]\nscale = -1\n", r"measurement\.scale must"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
@@ -50,18 +50,29 @@ _TOP: Keys = MappingProxyType(
         "law": kind.table,
     }
 )
-_ROBOT: Keys = MappingProxyType(
+_ROBOT: dict[str, kind.Kind] = {
+    "type": kind.word,
+    "mass": kind.number,
+    "radius": kind.number,
+    "max_speed": kind.number,
+    "max_acceleration": kind.number,
+    "wheel_radius": kind.number,
+    "winding_resistance": kind.number,
+}
+_WHEELS = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
+_ROBOTS: Mapping[str, tuple[type[nav.HolonomicRobot] | type[nav.DifferentialDriveRobot], Keys]] = MappingProxyType(
     {
-        "type": kind.word,
-        "mass": kind.number,
-        "radius": kind.number,
-        "max_speed": kind.number,
-        "max_acceleration": kind.number,
-        "wheel_radius": kind.number,
-        "winding_resistance": kind.number,
-        "wheel_inertia": kind.triple,
-        "wheel_viscous_friction": kind.triple,
-        "wheel_static_friction": kind.triple,
+        "holonomic": (nav.HolonomicRobot, {**_ROBOT, **dict.fromkeys(_WHEELS, kind.triple)}),
+        "differential_drive": (
+            nav.DifferentialDriveRobot,
+            {
+                **_ROBOT,
+                **dict.fromkeys(_WHEELS, kind.pair),
+                "max_angular_acceleration": kind.number,
+                "reference_speed_share": kind.number,
+                "wheel_span": kind.number,
+            },
+        ),
     }
 )
 _MEASUREMENT: Keys = MappingProxyType({"scale": kind.number, "distribution": kind.word, "of": kind.word})
@@ -92,7 +103,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
     ``seed`` of `Scenario`. Tables, all optional:
 
-    - ``[robot]`` with the fields of `HolonomicRobot`;
+    - ``[robot]`` with ``type``, ``"holonomic"`` when left out or ``"differential_drive"``, and the
+      fields of `HolonomicRobot` or `DifferentialDriveRobot`;
     - ``[[obstacles]]``, each with ``type`` and the fields of its class: ``"disc"``,
       ``"rectangle"``, ``"moving_disc"``, ``"human"``. The motion of the last two is either
       ``velocity`` with ``stop`` (a moving disc: or ``acceleration``), or ``segments``, an array
@@ -101,8 +113,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
       file;
     - ``[measurement]`` with the fields of `Measurement`;
     - ``[law]`` with ``type`` and the fields of its class: ``"virtual_force_field"``,
-      ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"velocity_obstacle"``,
-      ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
+      ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"virtual_impedance"``,
+      ``"velocity_obstacle"``, ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
       ``"optimal_reciprocal_collision_avoidance"``.
 
     Parameters
@@ -163,11 +175,14 @@ def parsed(path: Path) -> dict[str, Any]:
         raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
 
 
-def _robot(table: dict[str, Any]) -> nav.HolonomicRobot:
-    given = checked("robot", table, _ROBOT)
-    _one_of("robot.type", given.pop("type", "holonomic"), ("holonomic",))
+def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:
+    name = kind.word("robot.type", table.get("type", "holonomic"))
+    _one_of("robot.type", name, tuple(_ROBOTS))
+    robot, keys = _ROBOTS[name]
+    given = checked("robot", table, keys)
+    given.pop("type", None)
     with located("robot"):
-        return nav.HolonomicRobot(**given)
+        return robot(**given)
 
 
 def _one_of(path: str, word: str, words: tuple[str, ...]) -> None:
