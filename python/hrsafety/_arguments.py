@@ -92,6 +92,14 @@ def count(name: str, value: object, *, least: int = 1) -> int:
     return int(value)
 
 
+def checked_seed(name: str, value: object) -> int:
+    """Return ``value`` if random numbers can start from it, or say what it should have been."""
+    given = count(name, value, least=0)
+    if given >= 2**64:
+        raise InvalidParameterError(name, "be an integer from 0 to 2**64 - 1", value)
+    return given
+
+
 def word(name: str, value: object, words: Sequence[str]) -> str:
     """Return ``value`` if it is one of the words, or list them."""
     if not isinstance(value, str) or value not in words:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api.interrupting import LISTEN, needs_signals
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import _OPTIMIZE_EXAMPLE, _parser, main, progress
@@ -319,14 +320,17 @@ sys.exit(cli.main(sys.argv[1:]))
 LONG = SMALL.replace("[3, 3, 3, 3]", "[16, 16, 16, 16]").replace("survivors = 6", "survivors = 50")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
+@needs_signals
 def test_ctrl_c_keeps_the_best_so_far_and_resume_ends_with_the_same_result(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path, out = written(tmp_path / "long.toml", LONG), tmp_path / "out"
     arguments = ["optimize", path, "--out", str(out), "--threads", "1"]
     process = subprocess.Popen(
-        [sys.executable, "-c", INTERRUPTED, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", LISTEN + INTERRUPTED, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout is not None
     begun = next(line for line in process.stdout if int(line.split()[-2]) > 0)

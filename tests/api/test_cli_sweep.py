@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from api.interrupting import LISTEN
 from hrsafety import impact, sweep
 from hrsafety.cli import main
 from hrsafety.cli.sweep_file import load
@@ -154,7 +155,7 @@ def test_damaged_chunk_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureF
 def test_ctrl_c_says_what_is_finished_and_the_same_call_goes_on(tmp_path: Path) -> None:
     slow = CROSSING.replace("points = 3", "points = 40000").replace('"c2"', '"c2", "c3"')
     file, out = written(tmp_path / "a.toml", "chunk_rows = 500\n" + slow), tmp_path / "out"
-    command = [sys.executable, "-c", "import sys; from hrsafety.cli import main; sys.exit(main(sys.argv[1:]))"]
+    command = [sys.executable, "-c", LISTEN + "import sys; from hrsafety.cli import main; sys.exit(main(sys.argv[1:]))"]
     command += ["sweep", file, "--out", str(out), "--threads", "1"]
     child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + PATIENCE

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -12,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api.interrupting import LIMIT, answer_to_ctrl_c, needs_signals
 from api.test_gain_search import assert_same
 from hrsafety import InvalidParameterError, scenarios
 from hrsafety import navigation as nav
@@ -285,11 +283,8 @@ found = nav.{function}(scenes, checkpoint=sys.argv[1], **options)
 print(found.interrupted, time.monotonic(), flush=True)
 """
 
-# Time that the search is given to get going, and the longest that may pass until it ends, in s.
-WARM_UP, LIMIT = 0.8, 2.0
 
-
-@pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
+@needs_signals
 @pytest.mark.parametrize(
     ("function", "options"),
     [
@@ -305,22 +300,5 @@ def test_ctrl_c_ends_the_search_with_a_result_and_a_checkpoint(function: str, op
     # A front keeps a record of its points before the first one is run.
     grid = "(30, 30, 30, 8)" if function == "pareto_front" else "(40, 40, 40, 16)"
     program = PROGRAM.format(function=function, options=options, grid=grid)
-    process = subprocess.Popen(
-        [sys.executable, "-c", program, str(file)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "started\n"
-    time.sleep(WARM_UP)
-    sent = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    try:
-        output, errors = process.communicate(timeout=LIMIT)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        pytest.fail(f"the process did not end within {LIMIT} s of the signal")
-    words = output.split()
-    assert words[:1] == ["True"], (output, errors)
-    assert process.returncode == 0
-    assert float(words[1]) - sent < LIMIT
+    assert answer_to_ctrl_c(program, str(file), word="True") < LIMIT
     assert file.exists()

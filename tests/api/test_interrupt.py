@@ -2,26 +2,13 @@
 
 from __future__ import annotations
 
-import signal
-import subprocess
-import sys
-import time
-
 import pytest
 
-# Every piece of work takes many seconds, so the signal always arrives while it runs.
-PROGRAM = """
-import time
+from api.interrupting import check_work_is_interrupted, needs_signals
+
+IMPORTS = """
 import numpy as np
 from hrsafety import impact, navigation as nav
-{preparation}
-print("started", flush=True)
-try:
-    {work}
-except KeyboardInterrupt:
-    print("interrupted", time.monotonic(), flush=True)
-else:
-    print("finished", flush=True)
 """
 
 # A robot without forces waits for its time limit in each of the long runs; the short runs arrive.
@@ -69,6 +56,7 @@ force = 24250.0 * depth + np.sin(np.arange(17.0))
 BOOTSTRAP = "impact.identify_foam(force, depth, time_, np.round(drop, 4), 1.54, bootstrap=200_000)"
 BOUNDARY = "impact.foam_stiffness_upper(parts[0], damping=np.linspace(0.0, 300.0, 400_000), closing_speed=1.25)"
 
+# Every piece of work takes many seconds, so the signal always arrives while it runs.
 JOBS = {
     "long runs": (LONG, SIMULATE.format(options="threads=2")),
     "long runs, reported": (LONG, SIMULATE.format(options="threads=2, progress=lambda done, total: None")),
@@ -85,38 +73,9 @@ JOBS = {
     "boundary": (PARTS, BOUNDARY),
 }
 
-# Time that the work is given to get going, in s.
-WARM_UP = 0.7
 
-# The promise is 0.2 s; the limit leaves room for a loaded machine and for the end of the
-# interpreter, in s.
-LIMIT = 2.0
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
+@needs_signals
 @pytest.mark.parametrize("job", JOBS)
 def test_running_work_answers_ctrl_c(job: str, capsys: pytest.CaptureFixture[str]) -> None:
     preparation, work = JOBS[job]
-    program = PROGRAM.format(preparation=preparation, work=work)
-    process = subprocess.Popen(
-        [sys.executable, "-c", program],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "started\n"
-    time.sleep(WARM_UP)
-    sent = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    try:
-        output, errors = process.communicate(timeout=LIMIT)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        pytest.fail(f"the process did not end within {LIMIT} s of the signal")
-    words = output.split()
-    assert words[:1] == ["interrupted"], (output, errors)
-    assert process.returncode == 0, errors
-    with capsys.disabled():
-        print(f" [Ctrl-C answered in {1e3 * (float(words[1]) - sent):.0f} ms]", end="")
+    check_work_is_interrupted(IMPORTS + preparation, work, capsys)

@@ -5,10 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 import pickle
-import signal
-import subprocess
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api.interrupting import check_work_is_interrupted, needs_signals
 from hrsafety import reactive
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError
 
@@ -198,7 +195,7 @@ INSTANCES: list[Any] = [
     reactive.Disc(center=(1.0, 2.0), radius=0.5),
     reactive.Wall(start=(0.0, 0.0), end=(1.0, 0.0)),
     reactive.Sonar(rear=True, firing="in_turn"),
-    reactive.VirtualImpedance.conventional(stiffness=80.0),
+    reactive.VirtualImpedance(form="conventional", stiffness=80.0),
     reactive.Follower(standoff=1.2),
     reactive.MovingObstacle(shape=reactive.Disc(center=(1.0, 2.0), radius=0.5), velocity=(0.1, 0.0), stop=3.0),
     reactive.SoundLeader(start=(1.0, 0.0), end=(2.0, 0.0)),
@@ -287,7 +284,7 @@ def test_pictures_and_animation(tmp_path: Path) -> None:
     figures = [
         plotting.follower_runs({"one": run, "two": run, "three": run}, times=[1.0, 99.0]),
         plotting.follower_rates({"a": {"law": reactive.experiment("static", layouts=10).collision_rate}}),
-        plotting.impedance_forces({"active": reactive.VirtualImpedance.active()}),
+        plotting.impedance_forces({"active": reactive.VirtualImpedance()}),
     ]
     for figure, name in zip(figures, itertools.count(), strict=False):
         figure.savefig(tmp_path / f"{name}.png")
@@ -306,32 +303,10 @@ def test_pictures_and_animation(tmp_path: Path) -> None:
 
 # ---- Ctrl-C ---------------------------------------------------------------------------------
 
-# Takes minutes, so the signal always arrives while it runs.
-PROGRAM = """
-import time
-from hrsafety import reactive
-print("started", flush=True)
-try:
-    reactive.experiment("static", "active", layouts=2_000_000, touching={touching}, threads=1)
-except KeyboardInterrupt:
-    print("interrupted", time.monotonic(), flush=True)
-else:
-    print("finished", flush=True)
-"""
-LIMIT = 60.0  # s, far below what the work would take
 
-
-@pytest.mark.skipif(sys.platform == "win32", reason="the signal cannot be sent to one process on Windows")
+@needs_signals
 @pytest.mark.parametrize("touching", [True, False])
 def test_ctrl_c_stops_selection_and_runs(touching: bool, capsys: pytest.CaptureFixture[str]) -> None:
-    command = [sys.executable, "-c", PROGRAM.format(touching=touching)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "started\n"
-        time.sleep(0.4)
-        sent = time.monotonic()
-        process.send_signal(signal.SIGINT)
-        word, stopped = process.communicate(timeout=LIMIT)[0].split()
-    assert word == "interrupted"
-    with capsys.disabled():
-        print(f" [Ctrl-C answered in {1e3 * (float(stopped) - sent):.0f} ms]", end="")
+    # Takes minutes, so the signal always arrives while it runs.
+    work = f'reactive.experiment("static", "active", layouts=2_000_000, touching={touching}, threads=1)'
+    check_work_is_interrupted("from hrsafety import reactive", work, capsys)

@@ -82,6 +82,10 @@ def test_numbers_of_the_kernels_depend_on_nothing() -> None:
     assert run_time_dependencies("lanes") <= {"lanes"}
 
 
+def test_what_the_cores_share_knows_no_core() -> None:
+    assert run_time_dependencies("groundwork").isdisjoint(PYTHON_CRATES | set(CORES) | {"hrsafety_py", "lanes"})
+
+
 @pytest.mark.parametrize("crate", CORES)
 def test_core_is_free_of_python_in_its_tests_too(crate: str) -> None:
     package = next(entry for entry in cargo_metadata()["packages"] if entry["name"] == crate)
@@ -92,7 +96,7 @@ def test_binding_crate_is_the_one_that_knows_python() -> None:
     assert {"pyo3", "vff_core"} <= run_time_dependencies("hrsafety_py")
 
 
-@pytest.mark.parametrize("crate", [*CORES, "lanes"])
+@pytest.mark.parametrize("crate", [*CORES, "groundwork", "lanes"])
 def test_core_forbids_unsafe_code(crate: str) -> None:
     text = (REPOSITORY / "crates" / crate / "src" / "lib.rs").read_text(encoding="utf-8")
     assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)

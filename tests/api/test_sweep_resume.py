@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from api.interrupting import LISTEN
 from hrsafety import impact, sweep
 
 ROWS = 1_000_000
@@ -51,7 +52,7 @@ print(memory())
 
 
 def started(out: Path, pause: float = 0.0, rows: int = ROWS) -> subprocess.Popen[str]:
-    command = [sys.executable, "-W", "error", "-c", CHILD, str(out), str(pause), str(math.isqrt(rows))]
+    command = [sys.executable, "-W", "error", "-c", LISTEN + CHILD, str(out), str(pause), str(math.isqrt(rows))]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 

@@ -8,6 +8,7 @@ import pickle
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -223,6 +224,15 @@ def test_progress_reaches_the_number_of_runs() -> None:
     assert seen[-1] == (40, 40)
 
 
+@pytest.fixture
+def listening() -> Iterator[None]:
+    """Answer Ctrl-C, also if whoever started the tests ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("listening")
 def test_interrupt_ends_a_batch_soon() -> None:
     starts = np.tile(STARTS, (500, 1))
     sent: list[float] = []

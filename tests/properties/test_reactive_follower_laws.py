@@ -79,7 +79,7 @@ def test_laws_are_their_equations(
 
 @given(st.floats(0.05, 2.0), st.floats(1.05, 6.0))
 def test_spring_peaks_at_its_scale(safe_distance: float, reference: float) -> None:
-    law = reactive.VirtualImpedance.active(safe_distance=safe_distance, reference_stiffness=40.0 * reference)
+    law = reactive.VirtualImpedance(safe_distance=safe_distance, reference_stiffness=40.0 * reference)
     alpha = law.distance_scale
     peak = 40.0 * reference * alpha / math.e
     grid = np.linspace(0.0, 6.0 * alpha, 1001)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import datetime
 from collections.abc import Iterator
 from html import escape
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety import __version__
+from hrsafety.reproduce.markup import figure
 
 if TYPE_CHECKING:
     from hrsafety import impact
@@ -68,7 +68,7 @@ def html(report: FoamReport, picture: bytes) -> str:
             f"<style>{style}</style></head><body><main>",
             f"<h1>{title}</h1>",
             *_answer(report),
-            *_picture(picture),
+            figure("Boundaries of the foam stiffness over the foam damping, and the foams of the file.", picture),
             *_foams(report),
             *_statuses(report),
             *_foot(report),
@@ -103,12 +103,6 @@ def _answer(report: FoamReport) -> Iterator[str]:
         f'<p class="banner"><strong>There are foams that fit.</strong> {widest}'
         f"Some foam fits up to a closing speed of {fastest}.</p>"
     )
-
-
-def _picture(picture: bytes) -> Iterator[str]:
-    data = base64.b64encode(picture).decode("ascii")
-    words = "Boundaries of the foam stiffness over the foam damping, and the foams of the file"
-    yield f'<figure><img alt="{words}" src="data:image/png;base64,{data}"><figcaption>{words}.</figcaption></figure>'
 
 
 def _foams(report: FoamReport) -> Iterator[str]:

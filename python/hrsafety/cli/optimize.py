@@ -294,5 +294,5 @@ def _write(report: GainReport, place: Path) -> Iterator[Path]:
     if report.front is not None:
         yield output.write_csv(place / "front.csv", *optimize_record.front_table(report.front))
     yield output.write_text(place / "results.json", optimize_record.results(report))
-    shown = {name: (picture.caption, drawn[name].read_bytes()) for name, picture in pictures.items()}
+    shown = {name: (f"{picture.caption}.", drawn[name].read_bytes()) for name, picture in pictures.items()}
     yield output.write_text(place / "summary.html", optimize_page.html(report, shown))

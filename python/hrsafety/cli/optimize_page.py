@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import datetime
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -23,7 +22,7 @@ from hrsafety.cli.optimize_report import (
     set_table,
     shortcoming,
 )
-from hrsafety.reproduce.markup import scroll
+from hrsafety.reproduce.markup import figure, scroll
 
 __all__ = ["html"]
 
@@ -97,7 +96,7 @@ def _answer(report: GainReport) -> Iterator[str]:
 
 def _paths(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
     yield "<h2>Paths</h2>"
-    yield from (_figure(*pictures[f"paths-{name}"]) for name in report.study.names[:MOST_PATHS])
+    yield from (figure(*pictures[f"paths-{name}"]) for name in report.study.names[:MOST_PATHS])
     if len(report.study.names) > MOST_PATHS:
         yield f"<p>Of {len(report.study.names)} scenarios the first {MOST_PATHS} are drawn.</p>"
 
@@ -126,15 +125,15 @@ def _flatness(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Itera
     ]
     titles = ("Gain", "Best", "As good", "Bounds", "Sensitivity of mean H, average (%)", "largest (%)")
     yield _table((titles, ("",) * len(titles)), rows)
-    yield _figure(*pictures["flatness"])
-    yield _figure(*pictures["sensitivity"])
+    yield figure(*pictures["flatness"])
+    yield figure(*pictures["sensitivity"])
 
 
 def _history(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
     """Yield the rounds of the grid and the local searches."""
     search = report.search
     yield "<h2>History</h2>"
-    yield _figure(*pictures["history"])
+    yield figure(*pictures["history"])
     if search.history:
         titles = ("Grid", "Gain sets", "Failed", "Best", "Worst survivor", *GAIN_TITLES)
         rows = [
@@ -179,7 +178,7 @@ def _front(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator
     )
     if "front" not in pictures:
         return
-    yield _figure(*pictures["front"])
+    yield figure(*pictures["front"])
     titles = (*GAIN_TITLES, *(f"{name} ({METRIC_UNITS[name]})".replace(" ()", "") for name in front.objectives))
     rows = [
         (*(f"{gain:.4g}" for gain in gains), *(f"{value:.4f}" for value in values))
@@ -210,12 +209,6 @@ def _foot(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[
 
 
 # ---- fragments --------------------------------------------------------------------------------------
-
-
-def _figure(caption: str, png: bytes) -> str:
-    data = base64.b64encode(png).decode("ascii")
-    words = escape(caption)
-    return f'<figure><img alt="{words}" src="data:image/png;base64,{data}"><figcaption>{words}.</figcaption></figure>'
 
 
 def _table(header: tuple[Sequence[str], Sequence[str]], rows: Iterable[Sequence[str]]) -> str:

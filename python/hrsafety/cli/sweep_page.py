@@ -8,7 +8,6 @@ from html import escape
 from importlib import resources
 
 from hrsafety.cli.sweep_summary import Numbers, Summary
-from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.markup import figure, head, scroll
 from hrsafety.sweep import Axis, SweepResult
 
@@ -67,7 +66,7 @@ def html(title: str, summary: Summary, show: Sequence[str], pictures: Mapping[st
             f"<style>{style}</style></head><body><main>",
             f"<h1>{escape(title)}</h1>",
             *_design(summary.result),
-            *(figure(Picture(name=name, caption=f"{words}.", png=png)) for name, (words, png) in pictures.items()),
+            *(figure(f"{words}.", png, name=name) for name, (words, png) in pictures.items()),
             *_extremes(summary, show),
             *_columns(summary),
             *_foot(summary.result),

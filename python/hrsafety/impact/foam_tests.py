@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, columns, count, flag, number, vector, word
+from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import Foam
 
@@ -227,15 +227,9 @@ def identify_foam(
         confidence=number("confidence", confidence),
         attached=word("contact", contact, _CONTACTS) == "attached",
         bootstrap=count("bootstrap", bootstrap, least=0),
-        seed=_seed(seed),
+        seed=checked_seed("seed", seed),
     )
     return FoamFit(**result)
-
-
-def _seed(seed: int) -> int:
-    if count("seed", seed, least=0) >= 2**64:
-        raise InvalidParameterError("seed", "be below 2^64", seed)
-    return int(seed)
 
 
 def _drops(drop_time: object, drop_position: object) -> list[tuple[Array, Array]]:

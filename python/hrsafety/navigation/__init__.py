@@ -13,6 +13,7 @@ from hrsafety.navigation.calibration_study import (
 )
 from hrsafety.navigation.camera import Camera, nearest_rotation
 from hrsafety.navigation.estimators import AlphaBeta, Differences, Kalman, TrackedPositions, track_positions
+from hrsafety.navigation.forces import ForceField, ForceTerms, Lyapunov, command, force_field, force_terms, lyapunov
 from hrsafety.navigation.gain_changes import GainSensitivity, gain_sensitivity
 from hrsafety.navigation.gain_confidence import Confidence
 from hrsafety.navigation.gain_front import pareto_front
@@ -34,19 +35,7 @@ from hrsafety.navigation.references import CircleReference, LineReference, PathR
 from hrsafety.navigation.repeated import Band, Repeated, repeat
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Measurement, Regions, Scenario, region_radii
-from hrsafety.navigation.simulation import (
-    ForceField,
-    ForceTerms,
-    Lyapunov,
-    Performance,
-    Trajectory,
-    command,
-    evaluate,
-    force_field,
-    force_terms,
-    lyapunov,
-    simulate,
-)
+from hrsafety.navigation.simulation import Performance, Trajectory, evaluate, simulate
 from hrsafety.navigation.tracking import TrackingRun, TrackingSummary, track, track_batch
 from hrsafety.navigation.tracking_laws import (
     ExponentialTracking,

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import callback, count, flag, number, numbers, sequence
+from hrsafety._arguments import Array, callback, count, flag, number, numbers, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Array, Integrator, check_weights
+from hrsafety.navigation.simulation import Integrator, check_weights
 
 __all__ = ["BatchSummary", "simulate_batch"]
 

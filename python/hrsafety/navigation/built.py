@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, flag, instance, number, sequence
+from hrsafety._arguments import Array, Parameters, flag, instance, number, sequence
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.kinematics import OmniKinematics, Slip
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Array, Performance, Trajectory, check_weights, without_obstacles
+from hrsafety.navigation.simulation import Performance, Trajectory, check_weights, without_obstacles
 from hrsafety.navigation.tracking_laws import (
     ExponentialTracking,
     FullSpeedTracking,

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import vector
+from hrsafety._arguments import Array, vector
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Array, Integrator
+from hrsafety.navigation.simulation import Integrator
 
 __all__ = ["GainSensitivity", "gain_sensitivity"]
 

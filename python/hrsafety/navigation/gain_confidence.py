@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from hrsafety.navigation.simulation import Array
+from hrsafety._arguments import Array
 
 __all__ = ["Confidence", "confidence_of", "student_quantile"]
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from hrsafety._arguments import word
+from hrsafety._arguments import Array, word
 from hrsafety.navigation.batch import BatchSummary
-from hrsafety.navigation.simulation import Array
 
 __all__ = ["METRICS", "Metric", "check_metric", "is_maximized", "metric_values"]
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import numbers
+from hrsafety._arguments import Array, numbers
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import BatchSummary
 from hrsafety.navigation.gain_confidence import student_quantile
 from hrsafety.navigation.gain_settings import GainConstraint, Judge, SearchSettings
 from hrsafety.navigation.laws import Law
-from hrsafety.navigation.simulation import Array
 
 __all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
 

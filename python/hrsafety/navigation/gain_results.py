@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import count, positive
+from hrsafety._arguments import Array, count, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gain_confidence import Confidence
 from hrsafety.navigation.gain_problem import gain_problem, with_gains
 from hrsafety.navigation.gain_settings import SearchSettings
 from hrsafety.navigation.laws import Law
-from hrsafety.navigation.simulation import Array
 
 __all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "ParetoFront", "SearchRound"]
 

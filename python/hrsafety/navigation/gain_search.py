@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import callback, count, word
+from hrsafety._arguments import Array, callback, count, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads, simulate_batch
 from hrsafety.navigation.gain_checkpoint import Checkpoint
@@ -29,7 +29,7 @@ from hrsafety.navigation.gain_settings import (
 )
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.simulation import Array, Integrator
+from hrsafety.navigation.simulation import Integrator
 
 __all__ = ["optimize_gains"]
 

@@ -10,14 +10,14 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Parameters, count, flag, numbers, positive, sequence, word
+from hrsafety._arguments import Array, Parameters, checked_seed, count, flag, numbers, positive, sequence, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios
 from hrsafety.navigation.gain_metrics import METRICS, check_metric
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.planners import RapidlyExploringRandomTree
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Array, Integrator, check_weights
+from hrsafety.navigation.simulation import Integrator, check_weights
 
 __all__ = ["Constraint", "GainConstraint", "Method", "Objective", "Robustness", "SearchSettings"]
 
@@ -273,13 +273,6 @@ def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario
     return number
 
 
-def check_seed(seed: int) -> int:
-    """Return the seed of the search."""
-    if count("seed", seed, least=0) >= 2**64:
-        raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
-    return int(seed)
-
-
 def search_settings(
     scenarios: Sequence[Scenario],
     law: Law | None,
@@ -321,7 +314,7 @@ def search_settings(
         weights=check_weights(weights),
         constraints=limits,
         seeds=check_seeds(seeds, robustness, scenes, searched),
-        seed=check_seed(seed),
+        seed=checked_seed("seed", seed),
         robustness=robustness,
         evaluations=evaluations,
         integrator=integrator,

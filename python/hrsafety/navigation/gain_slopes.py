@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import numbers, positive
+from hrsafety._arguments import Array, numbers, positive
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.gain_metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Array, Integrator
+from hrsafety.navigation.simulation import Integrator
 
 __all__ = ["GainGradient", "gain_gradient"]
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, flag, number, sequence
+from hrsafety._arguments import Array, callback, checked_seed, count, flag, number, sequence
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.built import AsBuilt, _checked
@@ -296,9 +296,7 @@ def _seeds(seeds: int | Iterable[int]) -> list[int]:
         return list(range(count("seeds", seeds)))
     rule = "be a positive integer or hold integers from 0 to 2**64 - 1"
     given = sequence("seeds", rule, seeds)
-    for index, seed in enumerate(given):
-        if count(f"seeds[{index}]", seed, least=0) >= 2**64:
-            raise InvalidParameterError(f"seeds[{index}]", "be an integer from 0 to 2**64 - 1", seed)
-    if not given:
+    checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]
+    if not checked:
         raise InvalidParameterError("seeds", "hold at least one seed", "an empty list")
-    return [int(seed) for seed in given]
+    return checked

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import os
-import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import inputs, movies, shapes, style
 
 if TYPE_CHECKING:
@@ -25,8 +22,6 @@ __all__ = ["animate"]
 
 DPI = 85
 MARGIN = 1.2  # free space around the path of the robot, in m
-FASTEST_GIF = 50  # frames per second; viewers slow down anything faster
-MOST_FRAMES = 6000
 SMALLEST_BODY_WITH_ID = 0.15  # m, radius of a body into which an id fits
 ROBOT_COLOR = style.RUN_COLORS[0]
 
@@ -95,50 +90,14 @@ def animate(
     ('c2.gif', True)
     """
     run = inputs.checked_trajectory("trajectory", trajectory)
-    target = _checked_target(path)
-    rows = _checked_rows(run, target, frames_per_second, speed)
+    target = movies.checked_target(path)
+    instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
+    rows = [*(inputs.row_at(run, float(instant)) for instant in instants), len(run.time) - 1]
     count = len(run.scenario.obstacles)
     ids = inputs.checked_labels(names if names is not None else [str(i + 1) for i in range(count)], count, name="names")
     frames = _frames(run, rows, ids, regions=regions, title=title)
-    with movies.complete_or_absent(target) as partial:
-        if target.suffix.lower() == ".gif":
-            movies.write_gif(partial, frames, frames_per_second)
-        else:
-            movies.write_mp4(partial, frames, frames_per_second)
+    movies.write(target, frames, frames_per_second)
     return target
-
-
-def _checked_target(path: str | os.PathLike[str]) -> Path:
-    """Return the path of an animation that can be written."""
-    target = Path(path)
-    suffix = target.suffix.lower()
-    if suffix not in {".gif", ".mp4"}:
-        raise InvalidParameterError("path", "end in .gif or .mp4", str(target))
-    if not target.parent.is_dir():
-        raise InvalidParameterError("path", "lie in a folder that exists", str(target))
-    if suffix == ".mp4" and shutil.which("ffmpeg") is None:
-        raise style.MissingExtraError("an MP4 file needs the program ffmpeg, which was not found; a GIF file does not")
-    if suffix == ".gif":
-        try:
-            import PIL  # noqa: F401  # the import is the check
-        except ImportError:
-            raise style.MissingExtraError("a GIF file needs Pillow: pip install hrsafety[plot]") from None
-    return target
-
-
-def _checked_rows(run: Trajectory, target: Path, frames_per_second: float, speed: float) -> list[int]:
-    """Return the rows of a run that are shown, the last one included."""
-    for name, value in (("frames_per_second", frames_per_second), ("speed", speed)):
-        if isinstance(value, (bool, str)) or not (math.isfinite(value) and value > 0.0):
-            raise InvalidParameterError(name, "be finite and positive", value)
-    if target.suffix.lower() == ".gif" and frames_per_second > FASTEST_GIF:
-        raise InvalidParameterError("frames_per_second", f"be at most {FASTEST_GIF} for a GIF", frames_per_second)
-    step = speed / frames_per_second
-    end = float(run.time[-1])
-    if end / step > MOST_FRAMES:
-        raise InvalidParameterError("speed", f"be high enough for at most {MOST_FRAMES} frames", speed)
-    instants = np.arange(0.0, end, step)
-    return [*(inputs.row_at(run, float(instant)) for instant in instants), len(run.time) - 1]
 
 
 class _Stage:

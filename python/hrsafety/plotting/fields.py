@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation.simulation import ForceField
+from hrsafety.navigation.forces import ForceField
 from hrsafety.plotting import inputs, shapes, style
 
 if TYPE_CHECKING:

@@ -278,7 +278,7 @@ def impedance_forces(laws: Mapping[str, VirtualImpedance], *, title: str | None 
     Examples
     --------
     >>> from hrsafety import plotting, reactive
-    >>> figure = plotting.impedance_forces({"active": reactive.VirtualImpedance.active()})
+    >>> figure = plotting.impedance_forces({"active": reactive.VirtualImpedance()})
     """
     if not laws:
         raise InvalidParameterError("laws", "hold at least one law", "none")

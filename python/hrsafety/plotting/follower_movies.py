@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import movies, style
-from hrsafety.plotting.animation import DPI, FASTEST_GIF, MOST_FRAMES, _checked_target
+from hrsafety.plotting.animation import DPI
 from hrsafety.plotting.follower import LEADER_COLOR, ROBOT_COLOR, patch_of, view_of
 
 if TYPE_CHECKING:
@@ -78,22 +77,11 @@ def animate_follower(
     ...     file.stat().st_size > 1000
     True
     """
-    target = _checked_target(path)
-    for name, value in (("frames_per_second", frames_per_second), ("speed", speed)):
-        if isinstance(value, (bool, str)) or not (math.isfinite(value) and value > 0.0):
-            raise InvalidParameterError(name, "be finite and positive", value)
-    if target.suffix.lower() == ".gif" and frames_per_second > FASTEST_GIF:
-        raise InvalidParameterError("frames_per_second", f"be at most {FASTEST_GIF} for a GIF", frames_per_second)
-    step = speed / frames_per_second
-    if run.time[-1] / step > MOST_FRAMES:
-        raise InvalidParameterError("speed", f"be high enough for at most {MOST_FRAMES} frames", speed)
-    rows = [int(np.searchsorted(run.time, each - 1e-9)) for each in np.arange(0.0, run.time[-1], step)]
+    target = movies.checked_target(path)
+    instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
+    rows = np.searchsorted(run.time, instants - 1e-9).tolist()
     frames = _frames(run, [*rows, len(run) - 1], title)
-    with movies.complete_or_absent(target) as partial:
-        if target.suffix.lower() == ".gif":
-            movies.write_gif(partial, frames, frames_per_second)
-        else:
-            movies.write_mp4(partial, frames, frames_per_second)
+    movies.write(target, frames, frames_per_second)
     return target
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -12,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import HrsafetyError
+from hrsafety.errors import HrsafetyError, InvalidParameterError
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
@@ -20,11 +22,63 @@ if TYPE_CHECKING:
 
 Frame = npt.NDArray[np.uint8]
 
+FASTEST_GIF = 50  # frames per second; viewers slow down anything faster
+MOST_FRAMES = 6000
 LAST_FRAME_TIME = 1.2  # s, for which the end of the run is held
 GIF_TICK_MS = 10  # a GIF counts time in hundredths of a second
 COLORS = 64
 NEARLY_WHITE = 244  # pixels from here on are background to the palette
 KEPT_COLORS = (style.RUN_COLORS[0], style.GOAL_COLOR, style.CONTACT_COLOR, style.PERSON_COLORS[0], "#000000", "#FFFFFF")
+
+
+def checked_target(path: str | os.PathLike[str]) -> Path:
+    """Return the path of an animation that can be written."""
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in {".gif", ".mp4"}:
+        raise InvalidParameterError("path", "end in .gif or .mp4", str(target))
+    if not target.parent.is_dir():
+        raise InvalidParameterError("path", "lie in a folder that exists", str(target))
+    if suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise style.MissingExtraError("an MP4 file needs the program ffmpeg, which was not found; a GIF file does not")
+    if suffix == ".gif":
+        try:
+            import PIL  # noqa: F401  # the import is the check
+        except ImportError:
+            raise style.MissingExtraError("a GIF file needs Pillow: pip install hrsafety[plot]") from None
+    return target
+
+
+def checked_instants(target: Path, end: float, frames_per_second: float, speed: float) -> npt.NDArray[np.float64]:
+    """Return the instants of a run that are shown before its end, in s.
+
+    Parameters
+    ----------
+    target : Path
+        The file; a GIF has a largest number of frames in a second.
+    end : float
+        When the run ends, in s.
+    frames_per_second, speed : float
+        Frames in a second of viewing time, and simulated time over viewing time.
+    """
+    for name, value in (("frames_per_second", frames_per_second), ("speed", speed)):
+        if isinstance(value, (bool, str)) or not (math.isfinite(value) and value > 0.0):
+            raise InvalidParameterError(name, "be finite and positive", value)
+    if target.suffix.lower() == ".gif" and frames_per_second > FASTEST_GIF:
+        raise InvalidParameterError("frames_per_second", f"be at most {FASTEST_GIF} for a GIF", frames_per_second)
+    step = speed / frames_per_second
+    if end / step > MOST_FRAMES:
+        raise InvalidParameterError("speed", f"be high enough for at most {MOST_FRAMES} frames", speed)
+    return np.arange(0.0, end, step)
+
+
+def write(target: Path, frames: Iterator[Frame], frames_per_second: float) -> None:
+    """Write a GIF or MP4 file that appears under its name only when it is complete."""
+    with complete_or_absent(target) as partial:
+        if target.suffix.lower() == ".gif":
+            write_gif(partial, frames, frames_per_second)
+        else:
+            write_mp4(partial, frames, frames_per_second)
 
 
 @contextmanager

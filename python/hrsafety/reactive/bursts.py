@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, count, instance, number, word
+from hrsafety._arguments import Parameters, checked_seed, count, instance, number, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.microphones import MicrophoneArray
 from hrsafety.reactive.recording import SoundRecording
@@ -68,7 +68,7 @@ class Burst(Parameters):
         """Check the values."""
         values = self._as_numbers("low", "high", "duration", "level", "ramp")
         kind = word("kind", self.kind, KINDS)
-        self._set(_native=_hrsafety.Burst(kind=kind, seed=checked_seed(self.seed), **values))
+        self._set(_native=_hrsafety.Burst(kind=kind, seed=checked_seed("seed", self.seed), **values))
 
     @classmethod
     def tone(cls, frequency: float, *, duration: float = 0.46, level: float = 0.2, ramp: float = 0.005) -> Burst:
@@ -201,7 +201,7 @@ def record_burst(
         instance("array", array, MicrophoneArray)._native,
         own._native,
         place,
-        seed=checked_seed(seed),
+        seed=checked_seed("seed", seed),
         run=0,
     )
     first, second, third = found["clipped"]
@@ -271,10 +271,3 @@ def hearing(
         number("lead", lead),
         None if samples is None else count("samples", samples),
     )
-
-
-def checked_seed(seed: int) -> int:
-    """Return the seed, or say what it should have been."""
-    if count("seed", seed, least=0) >= 2**64:
-        raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
-    return int(seed)

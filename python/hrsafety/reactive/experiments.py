@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -206,11 +206,11 @@ def _law_of(law: object, kind: str) -> VirtualImpedance:
     if isinstance(law, VirtualImpedance):
         return law
     limit = SPEED_LIMITS.get(kind)
-    options = {} if limit is None else {"speed_limit": limit}
+    options: dict[str, Any] = {} if limit is None else {"speed_limit": limit}
     if law == "conventional":
-        return VirtualImpedance.conventional(**options)
+        return VirtualImpedance(form="conventional", **options)
     if law == "active":
-        return VirtualImpedance.active(**options)
+        return VirtualImpedance(**options)
     if law == "off":
         return VirtualImpedance(form="off")
     rule = 'be a VirtualImpedance or one of "conventional", "active", "off"'

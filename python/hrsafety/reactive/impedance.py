@@ -70,7 +70,7 @@ class VirtualImpedance(Parameters):
     Examples
     --------
     >>> from hrsafety import reactive
-    >>> law = reactive.VirtualImpedance.active()
+    >>> law = reactive.VirtualImpedance()
     >>> law.distance_scale, law.speed_scale
     (0.4, 0.36)
     """
@@ -119,60 +119,6 @@ class VirtualImpedance(Parameters):
             )
         )
 
-    @classmethod
-    def conventional(cls, **options: Any) -> VirtualImpedance:
-        """Return the conventional law (19-a).
-
-        Parameters
-        ----------
-        **options : object
-            Other parameters of the class.
-
-        Returns
-        -------
-        VirtualImpedance
-            The law.
-
-        Raises
-        ------
-        InvalidParameterError
-            If a number is out of range.
-
-        Examples
-        --------
-        >>> from hrsafety import reactive
-        >>> reactive.VirtualImpedance.conventional(stiffness=80.0).form
-        'conventional'
-        """
-        return cls(form="conventional", **options)
-
-    @classmethod
-    def active(cls, **options: Any) -> VirtualImpedance:
-        """Return the active law (20).
-
-        Parameters
-        ----------
-        **options : object
-            Other parameters of the class.
-
-        Returns
-        -------
-        VirtualImpedance
-            The law.
-
-        Raises
-        ------
-        InvalidParameterError
-            If a number is out of range.
-
-        Examples
-        --------
-        >>> from hrsafety import reactive
-        >>> reactive.VirtualImpedance.active(speed_limit=0.6).speed_limit
-        0.6
-        """
-        return cls(form="active", **options)
-
     @property
     def distance_scale(self) -> float:
         """Distance alpha in m: at rho_0/2 the spring force is that of K_0, (21)."""
@@ -219,7 +165,7 @@ class VirtualImpedance(Parameters):
         Both laws agree at half the safe distance:
 
         >>> from hrsafety import reactive
-        >>> active, conventional = reactive.VirtualImpedance.active(), reactive.VirtualImpedance.conventional()
+        >>> active, conventional = reactive.VirtualImpedance(), reactive.VirtualImpedance(form="conventional")
         >>> round(float(active.spring_force(0.4)), 12), float(conventional.spring_force(0.4))
         (16.0, 16.0)
         """
@@ -253,7 +199,7 @@ class VirtualImpedance(Parameters):
         The printed active law pulls beyond its speed limit:
 
         >>> from hrsafety import reactive
-        >>> law = reactive.VirtualImpedance.active(clamp=False)
+        >>> law = reactive.VirtualImpedance(clamp=False)
         >>> round(float(law.damping_force(1.0, 1.0)), 1)
         -16.6
         """

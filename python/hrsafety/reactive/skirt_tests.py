@@ -10,7 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, Parameters, callback, count, instance, not_negative, pair, word
+from hrsafety._arguments import (
+    Array,
+    Pair,
+    Parameters,
+    callback,
+    checked_seed,
+    count,
+    instance,
+    not_negative,
+    pair,
+    word,
+)
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt import MOTION_DIRECTIONS, UltrasonicSkirt
@@ -283,7 +294,7 @@ def skirt_test(
         *_parts(skirt, scene, motion),
         layouts=_limited("layouts", layouts, MOST_TESTS),
         repeats=_limited("repeats", repeats, MOST_TESTS),
-        seed=_seed(seed),
+        seed=checked_seed("seed", seed),
         threads=None if threads is None else _limited("threads", threads, MOST_THREADS),
         progress=callback("progress", progress),
     )
@@ -392,7 +403,7 @@ def skirt_run(
         raise InvalidParameterError("repeat", f"be an integer from 0 to {times - 1}", repeat)
     index = (_limited("layout", layout, MOST_TESTS, least=0) * len(names) + place) * times + repeat
     parts = _parts(skirt, scene, motion)
-    fields = _hrsafety.skirt_run(*parts, index=index, repeats=times, seed=_seed(seed))
+    fields = _hrsafety.skirt_run(*parts, index=index, repeats=times, seed=checked_seed("seed", seed))
     course = MOTION_DIRECTIONS[direction] + np.pi
     return SkirtRun(skirt=skirt if skirt is not None else UltrasonicSkirt(), course=course, **fields)
 
@@ -404,12 +415,6 @@ def _parts(
     place = SkirtScene() if scene is None else instance("scene", scene, SkirtScene)
     way = SkirtMotion() if motion is None else instance("motion", motion, SkirtMotion)
     return ring._native, place._native, way._native
-
-
-def _seed(seed: int) -> int:
-    if count("seed", seed, least=0) >= 2**64:
-        raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
-    return seed
 
 
 def _limited(name: str, value: int, most: int, *, least: int = 1) -> int:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, callback, count, instance, not_negative
+from hrsafety._arguments import Array, Pair, callback, checked_seed, count, instance, not_negative
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reactive.bursts import Burst, Converter, checked_seed, hearing
+from hrsafety.reactive.bursts import Burst, Converter, hearing
 from hrsafety.reactive.delays import DelayMethod, delay_options
 from hrsafety.reactive.fixes import QUARTER_SAMPLE, Fixes, checked_threads, locate_batch
 from hrsafety.reactive.microphones import MicrophoneArray, check_finite, same_shape
@@ -80,18 +80,11 @@ def jittered_fixes(
         list(zip(distance.ravel().tolist(), angle.ravel().tolist(), strict=True)),
         arrival_deviation=not_negative("arrival_deviation", arrival_deviation),
         runs=repeats,
-        seed=checked_seed(seed),
+        seed=checked_seed("seed", seed),
         threads=checked_threads(threads),
         progress=callback("progress", progress),
     )
-    shape = (*distance.shape, repeats)
-    return locate_batch(
-        own,
-        delay_12=found["delay_12"].reshape(shape),
-        delay_13=found["delay_13"].reshape(shape),
-        arrival_deviation=arrival_deviation,
-        threads=threads,
-    )
+    return _located(own, found["delay_12"], found["delay_13"], (*distance.shape, repeats), arrival_deviation, threads)
 
 
 def localize_bursts(
@@ -179,15 +172,26 @@ def localize_bursts(
         places,
         delay_options(method, between_samples, band, None, None),
         runs=repeats,
-        seed=checked_seed(seed),
+        seed=checked_seed("seed", seed),
         threads=checked_threads(threads),
         progress=callback("progress", progress),
     )
-    shape = (*distance.shape, repeats)
+    return _located(own, found["delay_12"], found["delay_13"], (*distance.shape, repeats), arrival_deviation, threads)
+
+
+def _located(
+    array: MicrophoneArray,
+    delay_12: Array,
+    delay_13: Array,
+    shape: tuple[int, ...],
+    arrival_deviation: float,
+    threads: int | None,
+) -> Fixes:
+    """Return the fixes of delays that the core gave one after the other."""
     return locate_batch(
-        own,
-        delay_12=found["delay_12"].reshape(shape),
-        delay_13=found["delay_13"].reshape(shape),
+        array,
+        delay_12=delay_12.reshape(shape),
+        delay_13=delay_13.reshape(shape),
         arrival_deviation=arrival_deviation,
         threads=threads,
     )

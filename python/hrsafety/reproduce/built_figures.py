@@ -8,7 +8,7 @@ from functools import partial
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.reproduce.built_runs import LAW, SEEDS, as_built, repeated, scene, score
-from hrsafety.reproduce.figures import Drawing, Picture, picture
+from hrsafety.reproduce.figures import Drawing, Picture, paths_and_distances, picture
 
 __all__ = ["make"]
 
@@ -48,15 +48,13 @@ def _both_robots(name: str) -> Iterator[Drawing]:
     paths, distances, words = _SCENES[name]
     runs = [score(name).trajectory, nav.simulate(scenarios.configuration(name), LAW)]
     where = f"configuration {name[1]} of chapter 7, {words}; New VFF, ideal wheels"
-    yield (
-        f"figure-{paths}-paths-{name}",
-        f"Paths of the two-wheel and of the holonomic robot (as Fig. {paths}): {where}.",
-        partial(plotting.paths, runs, labels=_ROBOTS),
-    )
-    yield (
-        f"figure-{distances}-distances-{name}",
-        f"Distances to goal and obstacles over time (as Fig. {distances}): {where}.",
-        partial(plotting.distances, runs, labels=_ROBOTS),
+    yield from paths_and_distances(
+        runs,
+        labels=_ROBOTS,
+        numbers=(paths, distances),
+        name=name,
+        where=where,
+        whose=" of the two-wheel and of the holonomic robot",
     )
     if name == "n1":
         yield (

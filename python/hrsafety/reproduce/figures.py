@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -170,21 +170,61 @@ def _pictures() -> Iterator[Drawing]:
     yield from _more()
 
 
+def paths_and_distances(
+    runs: Sequence[nav.Trajectory],
+    *,
+    labels: Sequence[str],
+    numbers: tuple[str, str],
+    name: str,
+    where: str,
+    whose: str = "",
+    relation: str = "as",
+) -> Iterator[Drawing]:
+    """Yield paths and distances of runs through one scene.
+
+    Parameters
+    ----------
+    runs : sequence of Trajectory
+        The runs.
+    labels : sequence of str
+        One name for each run.
+    numbers : (str, str)
+        Numbers of the source's figures of paths and of distances.
+    name : str
+        End of the file names.
+    where : str
+        End of the captions: scene and law.
+    whose : str
+        Whose paths they are, for the caption.
+    relation : str
+        ``"as"`` or ``"in place of"`` the source's figures.
+
+    Yields
+    ------
+    tuple
+        Name, caption and drawing function.
+    """
+    paths, distances = numbers
+    yield (
+        f"figure-{paths}-paths-{name}",
+        f"Paths{whose} ({relation} Fig. {paths}): {where}.",
+        partial(plotting.paths, runs, labels=labels),
+    )
+    yield (
+        f"figure-{distances}-distances-{name}",
+        f"Distance to goal and obstacles over time ({relation} Fig. {distances}): {where}.",
+        partial(plotting.distances, runs, labels=labels),
+    )
+
+
 def _gain_sets(name: str, words: str) -> Iterator[Drawing]:
     """Yield paths and distances with both gain sets."""
     scenario = scenarios.configuration(name)
     runs = [nav.simulate(scenario, _law(gains)) for gains in GAIN_SETS]
     labels = [GAIN_LABELS[gains] for gains in GAIN_SETS]
     where = f"configuration {name[1]}, {words}; gains as in Table 6.1 and optimized (*), stabilizing force off"
-    yield (
-        f"figure-{PATHS[name][0]}-paths-{name}-gains",
-        f"Paths (as Fig. {PATHS[name][0]}): {where}.",
-        partial(plotting.paths, runs, labels=labels),
-    )
-    yield (
-        f"figure-{DISTANCES[name][0]}-distances-{name}-gains",
-        f"Distance to goal and obstacles over time (as Fig. {DISTANCES[name][0]}): {where}.",
-        partial(plotting.distances, runs, labels=labels),
+    yield from paths_and_distances(
+        runs, labels=labels, numbers=(PATHS[name][0], DISTANCES[name][0]), name=f"{name}-gains", where=where
     )
 
 
@@ -193,15 +233,13 @@ def _modes(name: str, words: str) -> Iterator[Drawing]:
     scenario = scenarios.configuration(name)
     runs = [nav.simulate(scenario, _law("new_vff", mode)) for mode in COMPARED_MODES]
     where = f"configuration {name[1]}, {words}; New VFF, stabilizing force off and capped"
-    yield (
-        f"figure-{PATHS[name][1]}-paths-{name}-stabilizing",
-        f"Paths (in place of Fig. {PATHS[name][1]}): {where}.",
-        partial(plotting.paths, runs, labels=COMPARED_MODES),
-    )
-    yield (
-        f"figure-{DISTANCES[name][1]}-distances-{name}-stabilizing",
-        f"Distance to goal and obstacles over time (in place of Fig. {DISTANCES[name][1]}): {where}.",
-        partial(plotting.distances, runs, labels=COMPARED_MODES),
+    yield from paths_and_distances(
+        runs,
+        labels=COMPARED_MODES,
+        numbers=(PATHS[name][1], DISTANCES[name][1]),
+        name=f"{name}-stabilizing",
+        where=where,
+        relation="in place of",
     )
 
 

@@ -46,7 +46,7 @@ def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]
     for table in _ORDER:
         yield markup.table_of_cells(table, tables[table])
         if table == "Section C.2":
-            yield from (markup.figure(picture) for picture in pictures)
+            yield from markup.figures(pictures)
     yield "<h3>All rows of Tables C.2 to C.9</h3>" + _DEVIATIONS
     lines = "".join(
         f'<tr><th scope="row">{row.configuration}</th><td class="text">{row.quantity}</td><td>{row.values}</td>'

@@ -57,7 +57,7 @@ def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]
         if table not in _TITLES and not table.startswith("Section 3"):
             yield markup.table_of_cells(table, own)
     yield "<h3>Pictures of impacts</h3>"
-    yield from (markup.figure(picture) for picture in pictures)
+    yield from markup.figures(pictures)
 
 
 _HEAD = ("Row", "Quantity", "Runs", "Printed", "Set A", "Set B", "A from printed", "A from runs", "Reason")

@@ -67,19 +67,17 @@ def section(study: LawsStudy, cells: Sequence[Cell], pictures: Sequence[Picture]
     yield _INTRO
     tables = markup.by_table(cells)
     yield "<h3>Demonstrations of section 2.2.5</h3>" + _demonstrations(study)
-    yield from (markup.figure(picture) for picture in pictures if picture.name.startswith("figure-2"))
+    yield from markup.figures(pictures, "figure-2")
     yield "<h3>The unpredictable person</h3>" + _WALKS.format(runs=_runs(study), last=_runs(study) - 1)
     yield _encounters(study)
     drawn = study.drawn.touched
     yield _DRAWN.format(runs=drawn.runs, count=drawn.count, low=100 * drawn.low, high=100 * drawn.high)
     yield _CATEGORIES.format(touching=_touching(study), clean=_clean(study))
-    yield from (
-        markup.figure(picture) for picture in pictures if picture.name.startswith(("figure-5", "unpredictable"))
-    )
+    yield from markup.figures(pictures, "figure-5", "unpredictable")
     yield "<h3>What the text says</h3>"
     for table in laws_claims.TABLES:
         yield markup.table_of_cells(table, tables[table])
-    yield from (markup.figure(picture) for picture in pictures if picture.name.startswith("figure-6"))
+    yield from markup.figures(pictures, "figure-6")
 
 
 def _runs(study: LawsStudy) -> int:

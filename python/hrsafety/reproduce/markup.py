@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import groupby
 
@@ -18,6 +18,7 @@ __all__ = [
     "count_table",
     "counts",
     "figure",
+    "figures",
     "head",
     "scroll",
     "table_of_cells",
@@ -332,22 +333,47 @@ def scroll(content: str) -> str:
     return f'<div class="scroll">{content}</div>'
 
 
-def figure(picture: Picture) -> str:
+def figures(pictures: Iterable[Picture], *beginnings: str) -> Iterator[str]:
+    """Yield pictures with their captions, embedded.
+
+    Parameters
+    ----------
+    pictures : iterable of Picture
+        What to show.
+    *beginnings : str
+        Only pictures whose names begin with one of these; all without any.
+
+    Yields
+    ------
+    str
+        HTML.
+    """
+    for each in pictures:
+        if each.name.startswith(beginnings or ""):
+            yield figure(each.caption, each.png, name=each.name)
+
+
+def figure(caption: str, png: bytes, *, name: str = "") -> str:
     """Return a picture with its caption, embedded.
 
     Parameters
     ----------
-    picture : Picture
-        What to show.
+    caption : str
+        What it shows.
+    png : bytes
+        The picture.
+    name : str, default ""
+        What a link to it names; empty: nothing can lead to it.
 
     Returns
     -------
     str
         HTML.
     """
-    data = base64.b64encode(picture.png).decode("ascii")
-    caption = escape(picture.caption)
+    data = base64.b64encode(png).decode("ascii")
+    words = escape(caption)
+    link = f' id="{escape(name)}"' if name else ""
     return (
-        f'<figure id="{escape(picture.name)}"><img loading="lazy" alt="{caption}" src="data:image/png;base64,{data}">'
-        f"<figcaption>{caption}</figcaption></figure>"
+        f'<figure{link}><img loading="lazy" alt="{words}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{words}</figcaption></figure>"
     )

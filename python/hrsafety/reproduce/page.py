@@ -234,23 +234,23 @@ def _sections(report: Report) -> Iterator[str]:
     if report.study is not None:
         yield '<section id="stabilizing"><h2>Stabilizing force: off, capped, full</h2>'
         yield from evidence.section(report.study)
-        yield from (markup.figure(picture) for picture in report.study_pictures)
+        yield from markup.figures(report.study_pictures)
         yield "</section>"
     if "wheels" in report.parts:
         yield '<section id="wheels"><h2>Appendices D and E: wheels</h2>'
         yield "<p>Tolerances: identified parameters 2 %; means and feed-forward half a unit of the last digit.</p>"
         for table in WHEEL_TABLES:
             yield markup.table_of_cells(table, tables[table])
-        yield from (markup.figure(picture) for picture in report.wheel_pictures)
+        yield from markup.figures(report.wheel_pictures)
         yield "</section>"
     if "camera" in report.parts:
         yield '<section id="camera"><h2>Section D.4: the camera</h2>'
         yield markup.table_of_cells("Section D.4", tables["Section D.4"])
-        yield from (markup.figure(picture) for picture in report.camera_pictures)
+        yield from markup.figures(report.camera_pictures)
         yield "</section>"
     if report.pictures:
         yield '<section id="figures-6"><h2>Pictures</h2>'
-        yield from (markup.figure(picture) for picture in report.pictures)
+        yield from markup.figures(report.pictures)
         yield "</section>"
 
 

@@ -36,16 +36,15 @@ def make(study: FollowerStudy) -> list[Picture]:
 
 
 def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
-    active, conventional = reactive.VirtualImpedance.active, reactive.VirtualImpedance.conventional
     yield (
         "follower_forces",
         "Repulsion over the size of the collision vector, and over the approach speed at half the safe distance "
         "(figure 6): K_0 = 40 N/m, D_0 = 10 N s/m, rho_0 = 0.8 m, mu_0 = 0.72 m/s.",
         plotting.impedance_forces(
             {
-                "conventional (19-a)": conventional(),
-                "active (20)": active(),
-                "(20) without its limit": active(clamp=False),
+                "conventional (19-a)": reactive.VirtualImpedance(form="conventional"),
+                "active (20)": reactive.VirtualImpedance(),
+                "(20) without its limit": reactive.VirtualImpedance(clamp=False),
                 "(19-b) as printed": reactive.VirtualImpedance(form="twice_scaled"),
             }
         ),

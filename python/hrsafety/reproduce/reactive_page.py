@@ -38,4 +38,4 @@ def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]
     for table, own in markup.by_table(cells).items():
         yield markup.table_of_cells(table, own)
     yield "<h3>Pictures of sensors and runs</h3>"
-    yield from (markup.figure(picture) for picture in pictures)
+    yield from markup.figures(pictures)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.errors import InvalidParameterError
+from hrsafety._arguments import checked_seed, count
 
 __all__ = ["random_crowd"]
 
@@ -69,9 +69,9 @@ def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = N
     >>> len(crowd.obstacles), crowd == scenarios.random_crowd(12, seed=3)
     (12, True)
     """
-    _whole("people", people, "be an integer, 0 or more", 0, None)
-    _whole("seed", seed, "be an integer from 0 to 2**64 - 1", 0, 2**64 - 1)
-    generator = np.random.Generator(np.random.PCG64(seed))
+    count("people", people, least=0)
+    checked = checked_seed("seed", seed)
+    generator = np.random.Generator(np.random.PCG64(checked))
     crowd = tuple(_walker(generator) for _ in range(people))
     return nav.Scenario(
         start=START,
@@ -80,14 +80,8 @@ def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = N
         robot=nav.HolonomicRobot() if robot is None else robot,
         time_limit=TIME_LIMIT,
         rest_time=TIME_LIMIT,
-        seed=int(seed),
+        seed=checked,
     )
-
-
-def _whole(name: str, value: object, rule: str, low: int, high: int | None) -> None:
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not whole or value < low or (high is not None and value > high):  # type: ignore[operator]  # whole first
-        raise InvalidParameterError(name, rule, value)
 
 
 def _walker(generator: np.random.Generator) -> nav.Human:

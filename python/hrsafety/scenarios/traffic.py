@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import count, instance
-from hrsafety.errors import InvalidParameterError
+from hrsafety._arguments import checked_seed, count, instance
 
 __all__ = ["random_traffic"]
 
@@ -68,10 +67,9 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
     (3, True)
     """
     count("obstacles", obstacles, least=0)
-    if count("seed", seed, least=0) >= 2**64:
-        raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
+    checked = checked_seed("seed", seed)
     robot = instance("robot", nav.HolonomicRobot() if robot is None else robot, nav.HolonomicRobot)
-    generator = np.random.Generator(np.random.PCG64(seed))
+    generator = np.random.Generator(np.random.PCG64(checked))
     return nav.Scenario(
         start=(0.0, 0.0),
         goal=(WAY, 0.0),
@@ -79,7 +77,7 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
         robot=robot,
         time_limit=TIME_LIMIT,
         rest_time=TIME_LIMIT,
-        seed=int(seed),
+        seed=checked,
     )
 
 
