@@ -219,7 +219,7 @@ impl VisionSensor {
         let slack = ROUNDING * self.vision.period;
         while self.due() <= time + slack {
             let due = self.due();
-            let _ = (self.errors.draw(), self.losses.unit());
+            self.pass_over();
             self.track = Track::new(self.vision.estimator);
             self.learn(due, None);
         }
@@ -248,10 +248,16 @@ impl VisionSensor {
         if self.last.is_none() && self.known.is_empty() {
             let period = self.vision.period;
             while self.due() < time - ROUNDING * period {
-                let _ = (self.errors.draw(), self.losses.unit());
+                self.pass_over();
                 self.next_frame += 1;
             }
         }
+    }
+
+    /// Makes the draws of a frame that measures nothing. Every frame takes the same numbers from the
+    /// streams, whether the body is seen or not, so those of a later frame do not depend on it.
+    fn pass_over(&mut self) {
+        let _ = (self.errors.draw(), self.losses.unit());
     }
 
     fn expose(&mut self, due: f64, position: [f64; 2]) {

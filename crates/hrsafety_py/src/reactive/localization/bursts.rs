@@ -6,6 +6,7 @@ use groundwork::error::{Failure, Given};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use reactive_core::localization::Interrupted;
 use reactive_core::localization::burst::{self, Signal, Sound};
 use reactive_core::localization::correlation::Method;
 use reactive_core::localization::delays::{DelayFinder, DelayOptions};
@@ -180,6 +181,24 @@ fn channels<'a>(samples: &'a PyReadonlyArray2<'_, f64>) -> PyResult<[&'a [f64]; 
     Ok([first, second, third])
 }
 
+/// What is found in samples by a finder that is made for them, told whether to stop.
+fn in_samples<T: Send>(
+    py: Python<'_>,
+    array: &MicrophoneArray,
+    samples: &PyReadonlyArray2<'_, f64>,
+    sample_rate: f64,
+    options: Options,
+    find: impl FnOnce(&mut DelayFinder, [&[f64]; 3], Interrupted<'_>) -> Result<T, Failure> + Send,
+) -> PyResult<T> {
+    let channels = channels(samples)?;
+    let options = delay_options(options, sample_rate)?;
+    let (array, count) = (array.0, channels[0].len());
+    watched(py, Report::none(), |control| {
+        let mut finder = DelayFinder::new(&array, sample_rate, count, options)?;
+        find(&mut finder, channels, &|| control.interrupted())
+    })
+}
+
 /// Delays of M2 and M3 against M1 from samples.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
@@ -190,13 +209,14 @@ pub fn sound_delays<'py>(
     sample_rate: f64,
     options: Options,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let channels = channels(&samples)?;
-    let options = delay_options(options, sample_rate)?;
-    let (array, count) = (array.0, channels[0].len());
-    let found = watched(py, Report::none(), |control| {
-        let interrupted = || control.interrupted();
-        DelayFinder::new(&array, sample_rate, count, options)?.delays(channels, &interrupted)
-    })?;
+    let found = in_samples(
+        py,
+        array,
+        &samples,
+        sample_rate,
+        options,
+        DelayFinder::delays,
+    )?;
     let fields = Fields::new(py);
     fields.value("delays", found.delays.to_vec())?;
     fields.value("lags", found.lags.to_vec())?;
@@ -215,13 +235,14 @@ pub fn likeness_curves<'py>(
     sample_rate: f64,
     options: Options,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let channels = channels(&samples)?;
-    let options = delay_options(options, sample_rate)?;
-    let (array, count) = (array.0, channels[0].len());
-    let found = watched(py, Report::none(), |control| {
-        let interrupted = || control.interrupted();
-        DelayFinder::new(&array, sample_rate, count, options)?.curves(channels, &interrupted)
-    })?;
+    let found = in_samples(
+        py,
+        array,
+        &samples,
+        sample_rate,
+        options,
+        DelayFinder::curves,
+    )?;
     let fields = Fields::new(py);
     let [first, second] = found.values;
     fields.vector("values_12", first)?;
