@@ -47,12 +47,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         };
         let tops = self.tops_along(mask, room, difference);
         let trough = self.trough(mask);
-        let mut best = self.full(mask, width, R::zero());
+        let mut best = self.full(mask, width, R::zero(), SETTLED);
         best.level = best.level_with(width, trough);
         for place in &tops.places {
             let also = mask & place.found & self.accepted;
             if also.any() {
-                let window = self.full(also, width, place.piece.zero());
+                let window = self.full(also, width, place.piece.zero(), SETTLED);
                 let level = window.level_with(width, trough);
                 let better = also & window.rise.gt(best.rise);
                 best.rise = R::select(better, window.rise, best.rise);
@@ -97,8 +97,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// Time and acceleration of the valley.
     #[inline(always)]
     fn trough(&mut self, mask: R::Mask) -> [R; 2] {
-        let mut time = self.valley.piece.zero();
-        let mask = mask & self.valley.found;
+        let mut time = self.space.found.valley.piece.zero();
+        let mask = mask & self.space.found.valley.found;
         let mut open = mask & self.accepted;
         let mut value = R::zero();
         let mut bent_up = R::Mask::none();
@@ -115,9 +115,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 break;
             }
         }
-        let past = time - self.valley.piece.from;
+        let past = time - self.space.found.valley.piece.from;
         let slack = R::splat(SETTLED);
-        let inside = past.ge(-slack) & past.le(self.valley.piece.width + slack);
+        let inside = past.ge(-slack) & past.le(self.space.found.valley.piece.width + slack);
         self.accepted = self.accepted & !(mask & (open | !bent_up | !inside));
         // Without a valley, a time that no window holds.
         [R::select(mask, time, R::splat(-1.0)), value]

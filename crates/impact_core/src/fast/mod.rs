@@ -13,47 +13,22 @@ mod humps;
 mod maxima;
 mod modes;
 mod scan;
+mod space;
 mod windows;
 
 use crate::series::Plant;
 use apart::apart;
 use lanes::{Mask, Real};
-use modes::{Basis, Motion};
+use modes::{Basis, Motion, Wave};
 use pulp::Simd;
-use scan::{Piece, Place, Tops, touching};
+use scan::{Place, touching};
+pub use space::Workspace;
+use space::{NODES, Node, Step};
 
-/// Nodes after which an impact is refused.
-const NODES: usize = 65;
 /// Newton steps after which a place is refused.
 const MAX_STEPS: usize = 12;
 /// Last step to a zero, in cells; its third power is what the place may be wrong by.
 const SETTLED_ZERO: f64 = 1e-5;
-
-/// Space for the nodes of a group.
-pub struct Workspace<R> {
-    /// Velocity of the head, up to a constant, and its acceleration.
-    head: [[R; 2]; NODES],
-    /// Derivatives of the criterion of windows between nodes by their start and end, times
-    /// something positive.
-    windows: Vec<[R; 2]>,
-}
-
-impl<R: Real> Workspace<R> {
-    /// Space for one group after the other.
-    #[must_use]
-    pub fn new() -> Self {
-        Self {
-            head: [[R::zero(); 2]; NODES],
-            windows: Vec::new(),
-        }
-    }
-}
-
-impl<R: Real> Default for Workspace<R> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 /// Least slope at the end of an impact over the curvature there: how far, in cells, the end is
 /// from where the acceleration turns.
@@ -125,18 +100,6 @@ pub struct GroupRest<R: Real> {
     pub put_off: R::Mask,
 }
 
-/// Values and slopes at a node of all functions whose signs matter.
-#[derive(Clone, Copy)]
-struct Node<R> {
-    time: R,
-    velocity: R,
-    acceleration: [R; 3],
-    force: [R; 2],
-    compression: [R; 2],
-    manipulator_power: [R; 2],
-    foam_power: [R; 2],
-}
-
 /// A group with its motion and what the walk along it noted.
 pub struct Solved<'a, S, R: Real> {
     simd: S,
@@ -149,41 +112,15 @@ pub struct Solved<'a, S, R: Real> {
     /// Nodes before the end, at most.
     nodes: usize,
     space: &'a mut Workspace<R>,
-    acceleration: Tops<R>,
     /// The largest acceleration at a node so far.
     highest: R,
-    /// A valley of the acceleration.
-    valley: Place<R>,
-    /// Lanes with more of them.
+    /// Lanes with more than one valley of the acceleration.
     ragged: R::Mask,
     /// Lanes whose acceleration has a flank that flattens and steepens again.
     shelf: R::Mask,
     /// Whether such lanes are followed.
     humps: bool,
-    force: Tops<R>,
-    compression: Tops<R>,
-    manipulator_power: Tops<R>,
-    foam_power: Tops<R>,
     accepted: R::Mask,
-}
-
-/// Values at a node, and at the next one.
-struct Step<'a, R> {
-    left: &'a Node<R>,
-    right: &'a Node<R>,
-}
-
-impl<R: Real> Step<'_, R> {
-    #[inline(always)]
-    fn piece(&self, of: impl Fn(&Node<R>) -> [R; 2]) -> Piece<R> {
-        let [left, right] = [of(self.left), of(self.right)];
-        Piece {
-            from: self.left.time,
-            width: self.right.time - self.left.time,
-            values: [left[0], right[0]],
-            slopes: [left[1], right[1]],
-        }
-    }
 }
 
 impl<R: Real> Group<R> {
@@ -195,54 +132,48 @@ impl<R: Real> Group<R> {
         space: &'a mut Workspace<R>,
         valid: R::Mask,
     ) -> Solved<'a, S, R> {
-        let motion = Motion::new(simd, &self.plant, self.closing_speed, self.cell_angle);
         let (zero, one) = (R::zero(), R::splat(1.0));
+        space.found.clear();
         let mut solved = Solved {
             simd,
-            manipulator_speed: self.manipulator_speed * motion.modes.length,
+            motion: Motion::new(simd, &self.plant, self.closing_speed, self.cell_angle),
+            manipulator_speed: zero,
             end: zero,
             at_end: [one, zero, one, zero],
             nodes: 0,
             space,
-            acceleration: Tops::new(),
             highest: zero,
-            valley: Place::none(),
             ragged: R::Mask::none(),
             shelf: R::Mask::none(),
             humps: self.humps,
-            force: Tops::new(),
-            compression: Tops::new(),
-            manipulator_power: Tops::new(),
-            foam_power: Tops::new(),
-            accepted: valid & motion.accepted,
-            motion,
+            accepted: valid,
         };
+        let length = solved.motion.modes.length;
+        solved.manipulator_speed = self.manipulator_speed * length;
+        solved.accepted = solved.accepted & solved.motion.accepted;
+        let horizon = R::splat(self.horizon) / length;
         let turn = solved.motion.modes.basis(one);
-        let horizon = R::splat(self.horizon) / solved.motion.modes.length;
         let mut basis = [one, zero, one, zero];
-        let mut left = solved.node::<POWERS>(&basis, zero);
+        solved.reach::<POWERS>(0, &basis, zero);
+        let first = &mut solved.space.pair[0];
         // Rounding errors may put it below zero.
-        left.acceleration[0] = left.acceleration[0].max(zero);
+        first.acceleration[0] = first.acceleration[0].max(zero);
+        solved.space.head[0] = first.head();
         // Also false for what is not a number.
         let mut alive = solved.accepted & turn[0].le(one);
         let mut end = Place::none();
-        solved.space.head[0] = [left.velocity, left.acceleration[0]];
         for index in 1..NODES {
             basis = solved.motion.modes.turned(&basis, &turn);
-            let right = solved.node::<POWERS>(&basis, R::splat(index as f64));
+            let time = R::splat(index as f64);
+            solved.reach::<POWERS>(index, &basis, time);
             solved.nodes = index;
-            solved.space.head[index] = [right.velocity, right.acceleration[0]];
-            let step = Step {
-                left: &left,
-                right: &right,
-            };
-            let fall = step.piece(|node| [node.acceleration[0], node.acceleration[1]]);
+            solved.space.head[index] = solved.space.pair[index % 2].head();
+            let fall = Step::ending(&solved.space.pair, index).piece(Node::fall);
             let ends = alive & fall.values[1].lt(zero);
             end.note(ends, fall);
             alive = alive & !ends;
-            solved.look::<POWERS>(alive, &step);
-            alive = alive & right.time.lt(horizon);
-            left = right;
+            solved.look::<POWERS>(alive, index);
+            alive = alive & time.lt(horizon);
             if !alive.any() {
                 break;
             }
@@ -253,13 +184,14 @@ impl<R: Real> Group<R> {
 }
 
 impl<S: Simd, R: Real> Solved<'_, S, R> {
+    /// Puts what is at a node where the node before the last one was.
     #[inline(always)]
-    fn node<const POWERS: bool>(&self, basis: &Basis<R>, time: R) -> Node<R> {
+    fn reach<const POWERS: bool>(&mut self, index: usize, basis: &Basis<R>, time: R) {
         apart(
             self.simd,
             #[inline(always)]
-            || self.node_here::<POWERS>(basis, time),
-        )
+            || self.space.pair[index % 2] = self.node_here::<POWERS>(basis, time),
+        );
     }
 
     #[inline(always)]
@@ -285,7 +217,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         Node {
             time,
             velocity,
-            acceleration: [1, 2, 3].each(|order: usize| motion.head[order].at(basis)),
+            acceleration: Wave::values(&motion.head, 1, basis),
             force: [slope, curve],
             compression: [rate, second],
             manipulator_power,
@@ -293,31 +225,33 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }
     }
 
-    /// Velocity of the manipulator and two derivatives.
+    /// Velocity of the manipulator and derivatives.
     #[inline(always)]
-    fn manipulator(&self, basis: &Basis<R>) -> [R; 3] {
-        let [rate, second, third] = self.motion.lag_rate.each(|wave| wave.at(basis));
-        [
-            self.manipulator_speed - (rate + self.motion.lag_ramp),
-            -second,
-            -third,
-        ]
+    fn manipulator<const N: usize>(&self, basis: &Basis<R>) -> [R; N] {
+        let mut values = Wave::values(&self.motion.lag_rate, 0, basis);
+        values[0] += self.motion.lag_ramp - self.manipulator_speed;
+        for value in &mut values {
+            *value = -*value;
+        }
+        values
     }
 
     /// Looks for changes of sign in a piece that the impact does not end in.
     #[inline(always)]
-    fn look<const POWERS: bool>(&mut self, inside: R::Mask, step: &Step<'_, R>) {
+    fn look<const POWERS: bool>(&mut self, inside: R::Mask, index: usize) {
         apart(
             self.simd,
             #[inline(always)]
-            || self.look_here::<POWERS>(inside, step),
+            || self.look_here::<POWERS>(inside, index),
         );
     }
 
     #[inline(always)]
-    fn look_here<const POWERS: bool>(&mut self, inside: R::Mask, step: &Step<'_, R>) {
+    fn look_here<const POWERS: bool>(&mut self, inside: R::Mask, index: usize) {
         let zero = R::zero();
-        let fall = step.piece(|node| [node.acceleration[0], node.acceleration[1]]);
+        let Workspace { pair, found, .. } = &mut *self.space;
+        let step = Step::ending(pair, index);
+        let fall = step.piece(Node::fall);
         let bend = step.piece(|node| [node.acceleration[1], node.acceleration[2]]);
         self.highest = self.highest.max(fall.values[0]);
         let slack = R::splat(FLAT) * self.highest;
@@ -333,8 +267,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let [up, still_up] = bend.values.each(|value| value.gt(zero));
         let valley = inside & !up & still_up;
         if valley.any() {
-            self.ragged = self.ragged | (valley & self.valley.found);
-            self.valley.note(valley, bend);
+            self.ragged = self.ragged | (valley & found.valley.found);
+            found.valley.note(valley, bend);
         }
         if POWERS {
             let [bent_up, still_bent_up] = bend.slopes.each(|slope| slope.gt(zero));
@@ -342,16 +276,17 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let rise = up & still_up & !bent_up & still_bent_up;
             self.shelf = self.shelf | (inside & (fall | rise));
         }
-        self.acceleration.look(inside, &bend);
-        self.force.look(inside, &step.piece(|node| node.force));
+        found.acceleration.look(inside, &bend);
+        found.force.look(inside, &step.piece(|node| node.force));
         let closing = step.piece(|node| node.compression);
-        self.compression.look(inside, &closing);
+        found.compression.look(inside, &closing);
         if POWERS {
             let power = step.piece(|node| node.manipulator_power);
-            self.manipulator_power.look(inside, &power);
+            found.manipulator_power.look(inside, &power);
             // A foam that expands takes no power.
             let inside = inside & closing.values[0].gt(zero);
-            self.foam_power
+            found
+                .foam_power
                 .look(inside, &step.piece(|node| node.foam_power));
         }
     }
@@ -371,18 +306,24 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let mut time = end.piece.zero();
         let mut open = self.accepted & end.found;
         let mut steep = R::Mask::none();
+        self.at_end = self.motion.modes.basis(time);
         for _ in 0..MAX_STEPS {
-            let basis = self.motion.modes.basis(time);
-            let [value, slope, curve] =
-                [1, 2, 3].each(|order: usize| self.motion.head[order].at(&basis));
-            let step = third_order(value, slope, curve);
-            time = R::select(open, time + step, time);
+            let [value, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
+            let step = R::select(open, third_order(value, slope, curve), R::zero());
+            time += step;
             // Else it may be a pair of zeros, or none.
             let here = slope.abs().gt(R::splat(STEEP) * curve.abs());
             steep = (steep & !open) | (here & open);
-            open = open & !step.abs().lt(R::splat(SETTLED_ZERO));
+            let near = step.abs().lt(R::splat(SETTLED_ZERO));
+            // Where the step is as small as that, only rounding is lost.
+            self.at_end = self.motion.modes.advanced(&self.at_end, step);
+            open = open & !near;
             if !open.any() {
                 break;
+            }
+            let anew = self.motion.modes.basis(time);
+            for (function, anew) in self.at_end.iter_mut().zip(anew) {
+                *function = R::select(open, anew, *function);
             }
         }
         let past = time - end.piece.from;
@@ -396,15 +337,11 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             & past.le(end.piece.width + slack)
             & time.lt(horizon);
         self.end = time;
-        self.at_end = self.motion.modes.basis(time);
         let before = self.motion.modes.basis(end.piece.from);
-        let left = self.node::<POWERS>(&before, end.piece.from);
-        let right = self.node::<POWERS>(&self.at_end, time);
-        let step = Step {
-            left: &left,
-            right: &right,
-        };
-        self.look::<POWERS>(self.accepted, &step);
+        let at_end = self.at_end;
+        self.reach::<POWERS>(0, &before, end.piece.from);
+        self.reach::<POWERS>(1, &at_end, time);
+        self.look::<POWERS>(self.accepted, 1);
     }
 
     /// The other metrics.
@@ -416,7 +353,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let put_off = if self.humps {
             R::Mask::none()
         } else {
-            self.accepted & (self.valley.found | self.shelf)
+            self.accepted & (self.space.found.valley.found | self.shelf)
         };
         self.accepted = self.accepted & !put_off;
         let powers = self.powers();
@@ -483,11 +420,25 @@ fn third_order<R: Real>(value: R, slope: R, curve: R) -> R {
     -(newton / R::select(mild, R::splat(1.0) - bend, R::splat(1.0)))
 }
 
-/// Value and two derivatives of a product.
+/// Binomial coefficients.
+const BINOMIAL: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+/// Value and derivatives of a product, by the rule of Leibniz.
 #[inline(always)]
-fn product<R: Real>([f, f1, f2]: [R; 3], [g, g1, g2]: [R; 3]) -> [R; 3] {
-    let cross = f1 * g1;
-    [f * g, f1 * g + f * g1, f2 * g + cross + cross + f * g2]
+fn product<R: Real, const N: usize>(f: [R; N], g: [R; N]) -> [R; N] {
+    let mut derivatives = [R::zero(); N];
+    for (order, (derivative, row)) in derivatives.iter_mut().zip(BINOMIAL).enumerate() {
+        for (left, factor) in row.into_iter().enumerate().take(order + 1) {
+            *derivative += R::splat(factor) * f[left] * g[order - left];
+        }
+    }
+    derivatives
 }
 
 #[cfg(test)]

@@ -153,6 +153,17 @@ impl<R: Real> Wave<R> {
             + (self.0[2] * basis[2] + self.0[3] * basis[3])
     }
 
+    /// Values of waves from one of them on. A loop: closures would become functions of their own,
+    /// without the instructions of their caller.
+    #[inline(always)]
+    pub fn values<const N: usize>(waves: &[Self], first: usize, basis: &Basis<R>) -> [R; N] {
+        let mut values = [R::zero(); N];
+        for (value, wave) in values.iter_mut().zip(&waves[first..first + N]) {
+            *value = wave.at(basis);
+        }
+        values
+    }
+
     /// Its value at first contact.
     #[inline(always)]
     pub fn at_contact(&self) -> R {
@@ -181,6 +192,38 @@ impl<S: Simd, R: Real> Modes<S, R> {
             let (decay, square) = (self.decay[pair], self.square[pair]);
             [q - decay * p, -(square * p + decay * q)]
         })
+    }
+
+    /// The functions a little later, to the second power of the step.
+    #[inline(always)]
+    pub fn advanced(&self, basis: &Basis<R>, step: R) -> Basis<R> {
+        let mut advanced = *basis;
+        for pair in 0..2 {
+            let (decay, square) = (self.decay[pair], self.square[pair]);
+            let slope = |[c, s]: [R; 2]| [-(decay * c + square * s), c - decay * s];
+            let now = [basis[2 * pair], basis[2 * pair + 1]];
+            let first = slope(now);
+            let second = slope(first);
+            for part in 0..2 {
+                let bend = R::splat(0.5) * step * second[part];
+                advanced[2 * pair + part] = now[part] + step * (first[part] + bend);
+            }
+        }
+        advanced
+    }
+
+    /// Waves of which each is the derivative of the one before it, of which some are known.
+    #[inline(always)]
+    fn derivatives<const KNOWN: usize, const N: usize>(
+        &self,
+        known: [Wave<R>; KNOWN],
+    ) -> [Wave<R>; N] {
+        let mut waves = [known[KNOWN - 1]; N];
+        waves[..KNOWN].copy_from_slice(&known);
+        for order in KNOWN..N {
+            waves[order] = self.slope(waves[order - 1]);
+        }
+        waves
     }
 
     /// Integral of a wave that has no constant part.
@@ -254,14 +297,14 @@ impl<S: Simd, R: Real> Modes<S, R> {
 pub struct Motion<S, R: Real> {
     /// Its roots.
     pub modes: Modes<S, R>,
-    /// Velocity of the head against the torso up to a constant, and four derivatives.
-    pub head: [Wave<R>; 5],
-    /// Compression up to a constant and a ramp, and four derivatives.
-    pub compression: [Wave<R>; 5],
+    /// Velocity of the head against the torso up to a constant, and five derivatives.
+    pub head: [Wave<R>; 6],
+    /// Compression up to a constant and a ramp, and five derivatives.
+    pub compression: [Wave<R>; 6],
     /// The constant and the ramp.
     pub ramp: [R; 2],
-    /// Rate of the lag up to a constant, and two derivatives.
-    pub lag_rate: [Wave<R>; 3],
+    /// Rate of the lag up to a constant, and four derivatives.
+    pub lag_rate: [Wave<R>; 5],
     /// The constant.
     pub lag_ramp: R,
     /// `K_c` and `C_c` for rates per cell.
@@ -323,56 +366,42 @@ impl<S: Simd, R: Real> Motion<S, R> {
         };
         let head = pushed(head_inverse, arm_damping, arm_stiffness);
         let lag = pushed(arm_inverse, head_damping, head_stiffness);
-        let closing = Wave([0, 1, 2, 3].each(|index: usize| -(head.0[index] + lag.0[index])));
-        let head_slope = modes.slope(head);
-        let head_curve = modes.slope(head_slope);
-        let closing_slope = modes.slope(closing);
+        let mut closing = Wave([R::zero(); 4]);
+        for (index, part) in closing.0.iter_mut().enumerate() {
+            *part = -(head.0[index] + lag.0[index]);
+        }
         let rate = modes.integral(closing);
         let compression = modes.integral(rate);
         let lag_rate = modes.integral(lag);
         Self {
             modes,
-            head: [
-                modes.integral(head),
-                head,
-                head_slope,
-                head_curve,
-                modes.slope(head_curve),
-            ],
-            compression: [
-                compression,
-                rate,
-                closing,
-                closing_slope,
-                modes.slope(closing_slope),
-            ],
+            head: modes.derivatives([modes.integral(head), head]),
+            compression: modes.derivatives([compression, rate, closing]),
             ramp: [-compression.at_contact(), speed - rate.at_contact()],
-            lag_rate: [lag_rate, lag, modes.slope(lag)],
+            lag_rate: modes.derivatives([lag_rate, lag]),
             lag_ramp: -lag_rate.at_contact(),
             foam,
             accepted: accepted & settled,
         }
     }
 
-    /// Compression and four derivatives at a time.
+    /// Compression and five derivatives at a time.
     #[inline(always)]
-    pub fn compression(&self, basis: &Basis<R>, time: R) -> [R; 5] {
-        let waves = self.compression.each(|wave| wave.at(basis));
-        [
-            waves[0] + (self.ramp[0] + self.ramp[1] * time),
-            waves[1] + self.ramp[1],
-            waves[2],
-            waves[3],
-            waves[4],
-        ]
+    pub fn compression(&self, basis: &Basis<R>, time: R) -> [R; 6] {
+        let mut values = Wave::values(&self.compression, 0, basis);
+        values[0] += self.ramp[0] + self.ramp[1] * time;
+        values[1] += self.ramp[1];
+        values
     }
 
-    /// Contact force and three derivatives from those of the compression.
+    /// Contact force and four derivatives from those of the compression.
     #[inline(always)]
-    pub fn force(&self, compression: [R; 5]) -> [R; 4] {
-        [0, 1, 2, 3].each(|order: usize| {
-            self.foam[0] * compression[order] + self.foam[1] * compression[order + 1]
-        })
+    pub fn force(&self, compression: &[R; 6]) -> [R; 5] {
+        let mut force = [R::zero(); 5];
+        for (order, value) in force.iter_mut().enumerate() {
+            *value = self.foam[0] * compression[order] + self.foam[1] * compression[order + 1];
+        }
+        force
     }
 }
 

@@ -19,9 +19,7 @@ pub struct Piece<R> {
 impl<R: Real> Piece<R> {
     #[inline(always)]
     fn select(mask: R::Mask, new: Self, old: Self) -> Self {
-        let pair = |new: [R; 2], old: [R; 2]| {
-            [0, 1].each(|end: usize| R::select(mask, new[end], old[end]))
-        };
+        let pair = |[a, b]: [R; 2], [c, d]: [R; 2]| [R::select(mask, a, c), R::select(mask, b, d)];
         Self {
             from: R::select(mask, new.from, old.from),
             width: R::select(mask, new.width, old.width),
@@ -95,6 +93,12 @@ impl<R: Real> Place<R> {
         }
     }
 
+    /// Forgets the place.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.found = R::Mask::none();
+    }
+
     /// Notes a piece.
     #[inline(always)]
     pub fn note(&mut self, mask: R::Mask, piece: Piece<R>) {
@@ -148,6 +152,16 @@ impl<R: Real> Tops<R> {
             hidden: (R::Mask::none(), R::zero(), R::zero()),
             odd: R::Mask::none(),
         }
+    }
+
+    /// Forgets the tops; nobody reads numbers of lanes without one.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        for place in &mut self.places {
+            place.clear();
+        }
+        self.hidden.0 = R::Mask::none();
+        self.odd = R::Mask::none();
     }
 
     /// Looks at a piece of the slope.

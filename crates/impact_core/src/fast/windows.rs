@@ -1,14 +1,18 @@
 //! Criteria of moving windows, impacts side by side.
 
 use super::apart::apart;
-use super::modes::Basis;
+use super::modes::{Basis, Wave};
 use super::{Each, MAX_STEPS, MapWith, Solved, third_order};
 use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS};
 use lanes::{Mask, Real};
 use pulp::Simd;
 
-/// Last step of a window, in cells; the third power of it is what values may be wrong by.
+/// Last step of a window, in cells; its third power is what its place, and with it a level held
+/// through it, may be wrong by.
 pub(super) const SETTLED: f64 = 1e-4;
+/// The same where the mean over the window is all that is wanted: it is wrong by the fourth power,
+/// over 24, and by the square of what the place is wrong by.
+pub(super) const SETTLED_MEAN: f64 = 1e-3;
 
 /// What a window gives, for `V` and accelerations per cell.
 #[derive(Clone, Copy)]
@@ -39,22 +43,22 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     #[inline(always)]
     fn head_at(&self, basis: &Basis<R>) -> [R; 4] {
-        [0, 1, 2, 3].each(|order: usize| self.motion.head[order].at(basis))
+        Wave::values(&self.motion.head, 0, basis)
     }
 
     /// The best window of a width for lanes of a mask: equal accelerations at both ends, or it
     /// starts with the impact.
     #[inline(always)]
-    pub(super) fn full(&mut self, mask: R::Mask, width: R, guess: R) -> Window<R> {
+    pub(super) fn full(&mut self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
         apart(
             self.simd,
             #[inline(always)]
-            || self.full_here(mask, width, guess),
+            || self.full_here(mask, width, guess, settled),
         )
     }
 
     #[inline(always)]
-    fn full_here(&mut self, mask: R::Mask, width: R, guess: R) -> Window<R> {
+    fn full_here(&mut self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
         let zero = R::zero();
         let half = R::splat(0.5);
         let room = self.end - width;
@@ -78,7 +82,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let wanted = R::select(concave, third_order(gain, bend, third), uphill);
             let next = (start + wanted).min(room).max(zero);
             let step = next - start;
-            let rise = rise + step * (gain + half * step * bend);
+            let bent = half * bend + step * R::splat(1.0 / 6.0) * third;
+            let rise = rise + step * (gain + step * bent);
             let [low, high] = [left, right]
                 .each(|[_, value, slope, curve]| value + step * (slope + half * step * curve));
             found.rise = R::select(open, rise, found.rise);
@@ -86,7 +91,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             // At the end of the room the mean would have to grow still.
             let stuck = next.ge(room) & gain.lt(zero) & !start.le(zero);
             start = R::select(open, next, start);
-            open = open & (stuck | !step.abs().lt(R::splat(SETTLED)));
+            open = open & (stuck | !step.abs().lt(R::splat(settled)));
             if !open.any() {
                 break;
             }
@@ -107,8 +112,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let half = R::splat(0.5) * width;
         let skew = half * half * *third / (*curve * R::splat(6.0));
         let skew = R::select(skew.abs().lt(half), skew, R::zero());
-        let humps = self.valley.found;
-        let mut window = self.full(exists & !humps, width, *time - half - skew);
+        let humps = self.space.found.valley.found;
+        let mut window = self.full(exists & !humps, width, *time - half - skew, SETTLED);
         let humps = humps & exists & self.accepted;
         if humps.any() {
             let other = self.full_of_humps(humps, width);
@@ -126,28 +131,30 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// Injury criteria: the window with free ends where it is not too wide, else the full one.
     #[inline(always)]
     pub(super) fn injuries(&mut self) -> [R; 2] {
-        self.accepted = self.accepted & !self.ragged & !self.acceleration.hidden.0;
+        self.accepted = self.accepted & !self.ragged & !self.space.found.acceleration.hidden.0;
         let length = self.motion.modes.length;
-        let humps = self.valley.found | self.shelf;
+        let humps = self.space.found.valley.found | self.shelf;
         let plain = self.accepted & !humps;
         let free = self.free_window(plain, self.half_level(), R::Mask::none());
         self.accepted = self.accepted & !(plain & !(free.settled & free.concave));
         let [start, end] = free.ends;
         let free_width = end - start;
-        let mut values = INJURY_WINDOWS.each(|width| {
+        let mut values = [free.value; 2];
+        for (value, width) in values.iter_mut().zip(INJURY_WINDOWS) {
             let width = R::splat(width) / length;
             let wide = free_width.gt(width) & self.accepted & !humps;
             if !wide.any() {
-                return free.value;
+                continue;
             }
             // Both ends towards each other, each as its slope tells.
             let [first, last] = free.slopes;
             let share = last / (last - first);
             let possible = share.gt(R::zero()) & share.lt(R::splat(1.0));
             let share = R::select(possible, share, R::splat(0.5));
-            let window = self.full(wide, width, start + share * (free_width - width));
-            R::select(wide, criterion(window.rise, width, length), free.value)
-        });
+            let guess = start + share * (free_width - width);
+            let window = self.full(wide, width, guess, SETTLED_MEAN);
+            *value = R::select(wide, criterion(window.rise, width, length), free.value);
+        }
         let humps = humps & self.accepted;
         if humps.any() {
             self.injuries_of_humps(humps, &mut values);
@@ -187,8 +194,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         };
         let mut best = R::Mask::none();
         for _ in 0..MAX_STEPS {
-            let [v1, a1, d1, _] = self.head(start);
-            let [v2, a2, d2, _] = self.head(end);
+            let [v1, a1, d1, c1] = self.head(start);
+            let [v2, a2, d2, c2] = self.head(end);
             let (rise, width) = (v2 - v1, end - start);
             let per_rise = R::splat(1.0) / rise;
             let (u1, u2) = (a1 * per_rise, a2 * per_rise);
@@ -205,10 +212,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let s2 = R::select(pinned, -g2 / h22, (h12 * g1 - h11 * g2) / determinant);
             let next = [(start + s1).max(zero), (end + s2).min(self.end)];
             let (s1, s2) = (next[0] - start, next[1] - end);
-            // The logarithm of the criterion grows by this much along the step.
-            let growth = s1 * (g1 + half * (h11 * s1 + h12 * s2) + half * h12 * s2)
-                + s2 * (g2 + half * h22 * s2);
-            let value = criterion(rise, width, length) * (R::splat(1.0) + growth);
+            let [v1, v2] = [(v1, a1, d1, c1, s1), (v2, a2, d2, c2, s2)]
+                .each(|(v, a, d, c, s)| v + s * (a + s * (half * d + s * R::splat(1.0 / 6.0) * c)));
+            let value = criterion(v2 - v1, next[1] - next[0], length);
             found.value = R::select(open, value, found.value);
             found.slopes = [d1, d2].map_with(found.slopes, |new, old| R::select(open, new, old));
             start = R::select(open, next[0], start);
@@ -216,7 +222,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let moved = s1.abs() + s2.abs();
             let concave = h22.lt(zero) & (pinned | (h11.lt(zero) & determinant.gt(zero)));
             best = (best & !open) | (concave & open);
-            open = open & !moved.lt(R::splat(SETTLED));
+            open = open & !moved.lt(R::splat(SETTLED_MEAN));
             if !open.any() {
                 break;
             }

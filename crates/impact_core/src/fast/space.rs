@@ -1,0 +1,141 @@
+//! Space for the walk along a response: nodes, pieces between them, what was found in them.
+
+use super::scan::{Piece, Place, Tops};
+use lanes::Real;
+
+/// Nodes after which an impact is refused.
+pub(super) const NODES: usize = 65;
+
+/// Space for the nodes of a group and what is found between them.
+pub struct Workspace<R: Real> {
+    /// Velocity of the head, up to a constant, and its acceleration.
+    pub(super) head: [[R; 2]; NODES],
+    /// Derivatives of the criterion of windows between nodes by their start and end, times
+    /// something positive.
+    pub(super) windows: Vec<[R; 2]>,
+    /// Two nodes that follow each other, by turns.
+    pub(super) pair: [Node<R>; 2],
+    pub(super) found: Found<R>,
+}
+
+/// Tops of all quantities that have a maximum, and a valley of the acceleration.
+pub(super) struct Found<R: Real> {
+    pub(super) acceleration: Tops<R>,
+    pub(super) force: Tops<R>,
+    pub(super) compression: Tops<R>,
+    pub(super) manipulator_power: Tops<R>,
+    pub(super) foam_power: Tops<R>,
+    pub(super) valley: Place<R>,
+}
+
+impl<R: Real> Found<R> {
+    fn new() -> Self {
+        Self {
+            acceleration: Tops::new(),
+            force: Tops::new(),
+            compression: Tops::new(),
+            manipulator_power: Tops::new(),
+            foam_power: Tops::new(),
+            valley: Place::none(),
+        }
+    }
+
+    /// Forgets what was found; the numbers stay, as nobody reads them.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.acceleration.clear();
+        self.force.clear();
+        self.compression.clear();
+        self.manipulator_power.clear();
+        self.foam_power.clear();
+        self.valley.clear();
+    }
+}
+
+impl<R: Real> Workspace<R> {
+    /// Space for one group after the other.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            head: [[R::zero(); 2]; NODES],
+            windows: Vec::new(),
+            pair: [Node::at_rest(); 2],
+            found: Found::new(),
+        }
+    }
+}
+
+impl<R: Real> Default for Workspace<R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Values and slopes at a node of all functions whose signs matter.
+#[derive(Clone, Copy)]
+pub(super) struct Node<R> {
+    pub(super) time: R,
+    pub(super) velocity: R,
+    pub(super) acceleration: [R; 3],
+    pub(super) force: [R; 2],
+    pub(super) compression: [R; 2],
+    pub(super) manipulator_power: [R; 2],
+    pub(super) foam_power: [R; 2],
+}
+
+impl<R: Real> Node<R> {
+    /// Velocity and acceleration of the head.
+    #[inline(always)]
+    pub(super) fn head(&self) -> [R; 2] {
+        [self.velocity, self.acceleration[0]]
+    }
+
+    /// Acceleration of the head and its slope.
+    #[inline(always)]
+    pub(super) fn fall(&self) -> [R; 2] {
+        [self.acceleration[0], self.acceleration[1]]
+    }
+
+    pub(super) fn at_rest() -> Self {
+        let zero = R::zero();
+        Self {
+            time: zero,
+            velocity: zero,
+            acceleration: [zero; 3],
+            force: [zero; 2],
+            compression: [zero; 2],
+            manipulator_power: [zero; 2],
+            foam_power: [zero; 2],
+        }
+    }
+}
+
+/// Values at a node, and at the next one.
+pub(super) struct Step<'a, R> {
+    left: &'a Node<R>,
+    right: &'a Node<R>,
+}
+
+impl<'a, R: Real> Step<'a, R> {
+    /// The piece that ends with a node.
+    #[inline(always)]
+    pub(super) fn ending([even, odd]: &'a [Node<R>; 2], index: usize) -> Self {
+        let (left, right) = if index % 2 == 1 {
+            (even, odd)
+        } else {
+            (odd, even)
+        };
+        Self { left, right }
+    }
+
+    #[inline(always)]
+    pub(super) fn piece(&self, of: impl Fn(&Node<R>) -> [R; 2]) -> Piece<R> {
+        let [left, right] = [of(self.left), of(self.right)];
+        Piece {
+            from: self.left.time,
+            width: self.right.time - self.left.time,
+            values: [left[0], right[0]],
+            slopes: [left[1], right[1]],
+        }
+    }
+}
