@@ -169,7 +169,7 @@ def test_rules_cover_every_argument(kind: str) -> None:
 
 
 def test_probabilities_may_not_exceed_one_together() -> None:
-    assert nav.RapidlyExploringRandomTree(goal_probability=0.4, waypoint_probability=0.6).step == 0.2
+    assert nav.RapidlyExploringRandomTree(goal_probability=0.4, waypoint_probability=0.6).waypoint_probability == 0.6
     with pytest.raises(InvalidParameterError) as caught:
         nav.RapidlyExploringRandomTree(goal_probability=0.5, waypoint_probability=0.6)
     assert names(caught.value) == "waypoint_probability"

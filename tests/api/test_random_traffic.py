@@ -103,7 +103,7 @@ def test_robot_sets_the_times_and_the_regions() -> None:
 
 def test_straight_on_is_not_free() -> None:
     """Whoever does not look touches somebody: the traffic is worth avoiding."""
-    blind = nav.OptimalReciprocalCollisionAvoidance(reach=1e-9, turn=0.0)
+    blind = nav.OptimalReciprocalCollisionAvoidance(reach=1e-9, margin=0.0, turn=0.0)
     for count, least in ((3, 0.2), (12, 0.6)):
         crowds = [scenarios.random_traffic(count, seed=seed) for seed in range(200)]
         outcome = nav.simulate_batch(crowds, blind).outcome

@@ -42,7 +42,9 @@ class VelocityObstacle(Law):
     Parameters
     ----------
     margin : float
-        Distance that is kept between the surfaces, in m.
+        Distance that is kept between the surfaces, in m. The default is the search of appendix C of
+        Zeng (2011) over c1, c2 and c4; it ends at the largest margin that is searched. Their score
+        does not depend on a horizon of 3.1 s or more.
     horizon : float
         Contacts that are farther in the future do not count, in s; may be infinite.
     risk_weight : float
@@ -65,7 +67,7 @@ class VelocityObstacle(Law):
     >>> from hrsafety import navigation as nav, scenarios
     >>> run = nav.simulate(scenarios.configuration("c1"), nav.VelocityObstacle())
     >>> run.outcome, round(float(run.min_clearance[0]), 2)
-    ('arrived', 0.01)
+    ('arrived', 0.4)
     """
 
     GAIN_NAMES: ClassVar[tuple[str, ...]] = ("margin", "horizon", "risk_weight", "sector")
@@ -76,7 +78,7 @@ class VelocityObstacle(Law):
         {"margin": "m", "horizon": "s", "risk_weight": "s^2", "sector": "rad"}
     )
 
-    margin: float = 0.01
+    margin: float = 0.4
     horizon: float = float("inf")
     risk_weight: float = 1.0
     sector: float = 1.0
@@ -106,9 +108,11 @@ class OptimalReciprocalCollisionAvoidance(Law):
     Parameters
     ----------
     horizon : float
-        Time within which no contact may come, in s.
+        Time within which no contact may come, in s. Horizon and margin are the search of appendix C
+        of Zeng (2011) over c1, c2 and c4, for which a reach of 2.2 m or more makes no difference.
     margin : float
-        Distance that is kept between the surfaces, in m.
+        Distance that is kept between the surfaces, in m. With the default the robot stops before
+        the passage of c3; with 0.01 m and a horizon of 2 s it drives through.
     turn : float
         Angle by which the wanted velocity is turned to the left of the goal, in rad. Without it
         a robot that meets somebody head-on would only slow down.
@@ -138,8 +142,8 @@ class OptimalReciprocalCollisionAvoidance(Law):
         {"horizon": "s", "margin": "m", "turn": "rad", "reach": "m"}
     )
 
-    horizon: float = 2.0
-    margin: float = 0.01
+    horizon: float = 5.03
+    margin: float = 0.4
     turn: float = 0.01
     reach: float = 5.0
     reciprocal: bool = False
@@ -163,7 +167,8 @@ class RapidlyExploringRandomTree(Law):
     what is left of it while that is free and not longer than the new one, and checks that it can
     still stop. Moving obstacles block the way that they take within the horizon at their present
     velocity. The draws are those of the scenario's seed. None of the numbers is given by the
-    source: the defaults are choices of this package.
+    source: those that a search can vary are the search of its appendix C over c1, c2 and c4 with
+    eight draws each, the others are choices of this package.
 
     Parameters
     ----------
@@ -232,13 +237,13 @@ class RapidlyExploringRandomTree(Law):
         }
     )
 
-    step: float = 0.2
-    goal_probability: float = 0.1
-    waypoint_probability: float = 0.6
-    margin: float = 0.05
-    horizon: float = 1.0
+    step: float = 0.4158
+    goal_probability: float = 0.3298
+    waypoint_probability: float = 0.5008
+    margin: float = 0.4
+    horizon: float = 0.489
     room: float = 3.0
-    look_ahead: float = 0.1
+    look_ahead: float = 0.2612
     waypoints: int = 50
     draws: int = 2000
     keeps_path: bool = True
@@ -274,8 +279,8 @@ class FieldDStar(Law):
     The path may cross cells in any direction. Cells into which an obstacle, grown by the radius
     of the robot and the margin, reaches now or within the horizon at its present velocity are
     blocked. The robot drives at full speed towards a point a little ahead on the path; without a
-    way it waits. None of the numbers is given by the source: the defaults are choices of this
-    package.
+    way it waits. None of the numbers is given by the source: margin, horizon and look-ahead are the
+    search of its appendix C over c1, c2 and c4, the others are choices of this package.
 
     Parameters
     ----------
@@ -317,10 +322,10 @@ class FieldDStar(Law):
     )
 
     resolution: float = 0.1
-    margin: float = 0.05
-    horizon: float = 1.0
+    margin: float = 0.3175
+    horizon: float = 0.2466
     room: float = 3.0
-    look_ahead: float = 0.1
+    look_ahead: float = 0.301
     _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
