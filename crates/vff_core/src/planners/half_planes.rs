@@ -141,7 +141,9 @@ fn program(planes: &[HalfPlane], max_speed: f64, wish: Wish) -> Result<Vector, (
 fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish) -> Option<Vector> {
     let HalfPlane { point, direction } = *plane;
     let foot = point.dot(direction);
-    let reach = foot * foot + max_speed * max_speed - point.dot(point);
+    // Distance of the line from the origin, not by the difference of two squares: the point may be far.
+    let away = point.cross(direction);
+    let reach = max_speed * max_speed - away * away;
     if reach < 0.0 {
         return None;
     }

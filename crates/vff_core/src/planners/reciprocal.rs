@@ -99,17 +99,17 @@ fn pass(scaled: &Outline, legs: &Legs, relative: Vector) -> (Vector, Vector) {
     let (point, inside) = scaled.nearest(relative);
     let way = relative - point;
     let length = way.dot(way).sqrt();
-    if inside || length == 0.0 {
-        let (depth, normal) = front_face(scaled, relative);
-        if depth < left_depth.min(right_depth) {
-            return front(normal, depth);
-        }
-    } else {
+    if !inside && length > 0.0 {
         let normal = way.scale(1.0 / length);
         let (left_normal, right_normal) = (legs.left.perp(), -legs.right.perp());
         if left_normal.cross(normal) > 0.0 && normal.cross(right_normal) > 0.0 {
             return front(normal, scaled.radius - length);
         }
+    }
+    // The set is convex: its nearest edge is the one that is least deep, from behind the outline too.
+    let (depth, normal) = front_face(scaled, relative);
+    if depth < left_depth.min(right_depth) {
+        return front(normal, depth);
     }
     let direction = if left_depth < right_depth {
         legs.left
@@ -132,7 +132,8 @@ fn front_face(scaled: &Outline, place: Vector) -> (f64, Vector) {
         }
         let normal = -edge.perp().scale(1.0 / length);
         let depth = scaled.radius + normal.dot(from - place);
-        if normal.dot(from) < 0.0 && depth < best.0 {
+        // Faces whose rounded side the origin sees.
+        if normal.dot(from) + scaled.radius < 0.0 && depth < best.0 {
             best = (depth, normal);
         }
     }
