@@ -92,14 +92,14 @@ fn check_nearest_edge(outline: &Outline, velocity: Vector, horizon: f64) {
 #[test]
 fn face_in_front_may_be_nearer_than_the_legs_from_behind_a_rectangle() {
     let outline = outline(
-        vector(-0.1875748844, 0.9787674167),
+        vector(-0.187_574_884_4, 0.978_767_416_7),
         Shape::Rectangle {
-            half_length: 0.6674484022,
-            half_width: 0.5558484909,
+            half_length: 0.667_448_402_2,
+            half_width: 0.555_848_490_9,
             axis: [0.0, 1.0],
         },
     );
-    check_nearest_edge(&outline, vector(-0.31173405, 0.84175679), 1.978643170364952);
+    check_nearest_edge(&outline, vector(-0.311_734_05, 0.841_756_79), 1.978_643_17);
 }
 
 proptest! {
