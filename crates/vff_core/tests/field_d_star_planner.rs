@@ -13,7 +13,7 @@ mod planning;
 
 use configurations::{crossing, obstacles};
 use draws::Draws;
-use planning::{BARN_RADIUS, barn, body, drive, scene, situation};
+use planning::{BARN_RADIUS, barn, body, drive, scene, shifted_velocities, situation};
 use proptest::prelude::*;
 use vff_core::forces::geometry::Body;
 use vff_core::obstacle::Shape;
@@ -350,18 +350,7 @@ proptest! {
         places in proptest::collection::vec((exact(0..256), exact(-100..100), exact(-64..64), exact(-64..64)), 0..5),
         robot in (exact(0..256), exact(-64..64)), shift in (exact(-6400..6400), exact(-6400..6400)),
     ) {
-        let velocities = |shift: [f64; 2]| {
-            let moved = |place: [f64; 2]| [place[0] + shift[0], place[1] + shift[1]];
-            let mut planner = planner(moved([4.0, 0.0]), moved([0.0; 2]));
-            [0.0, 0.0625, 0.125].map(|time| {
-                let bodies: Vec<_> = places
-                    .iter()
-                    .map(|&(x, y, u, v)| disc(0.25, moved([x + u * time, y + v * time]), [u, v]))
-                    .collect();
-                let place = moved([robot.0 - time, robot.1]);
-                planner.desired_velocity(&situation(&bodies, place, [-0.5, 0.0]))
-            })
-        };
+        let velocities = |shift| shifted_velocities(planner, &places, robot, shift);
         let here = velocities([0.0; 2]);
         prop_assert_eq!(here, velocities([0.0; 2]));
         prop_assert_eq!(here, velocities([shift.0, shift.1]));

@@ -1,17 +1,18 @@
 //! The search over gains on a small grid, and the problem that it is.
 
 mod configurations;
+mod functions;
 
 use configurations::{crossing, law, obstacles};
+use functions::grid;
 use vff_core::error::Failure;
 use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::gains::Gains;
 use vff_core::measurement::{Distribution, Measurement, Noisy};
 use vff_core::metrics::Weights;
 use vff_core::optimize::{
-    Bounds, FEASIBILITY, GainOptions, GainProblem, GridOptions, Limit, LocalOptions, Metric,
-    MetricConstraint, Objective, Over, Problem, Robustness, Search, SearchOptions, evaluate_all,
-    search,
+    Bounds, FEASIBILITY, GainOptions, GainProblem, Limit, LocalOptions, Metric, MetricConstraint,
+    Objective, Over, Problem, Robustness, Search, SearchOptions, evaluate_all, search,
 };
 use vff_core::scenario::{Rules, Scenario};
 use vff_core::simulate::{BatchOptions, Instructions, Options, Outcome, Width, run_batch};
@@ -24,19 +25,6 @@ const THIRDS: Weights = Weights {
 
 /// The optimum of appendix C of the source.
 const PUBLISHED: [f64; 4] = [4.3, 20.3, 240.7, 0.68];
-
-fn grid(shape: &[usize], refinements: usize, survivors: usize) -> SearchOptions {
-    SearchOptions {
-        grid: GridOptions {
-            shape: shape.to_vec(),
-            refinements,
-            survivors,
-            keep: 20,
-        },
-        local: None,
-        threads: Some(2),
-    }
-}
 
 /// Configurations with a time limit and a coarse motion step, so that an unoptimized build is
 /// quick.

@@ -14,7 +14,7 @@ mod slalom;
 
 use configurations::{crossing, obstacles};
 use draws::Draws;
-use planning::{body, distance_to_leg, drive, scene, situation};
+use planning::{body, distance_to_leg, drive, scene, shifted_velocities, situation};
 use proptest::prelude::*;
 use slalom::{ROUNDING, disc, slalom};
 use vff_core::forces::geometry::Body;
@@ -246,18 +246,7 @@ proptest! {
         robot in (exact(0..256), exact(-64..64)), shift in (exact(-6400..6400), exact(-6400..6400)),
         seed in any::<u64>(),
     ) {
-        let velocities = |shift: [f64; 2]| {
-            let moved = |place: [f64; 2]| [place[0] + shift[0], place[1] + shift[1]];
-            let mut planner = planner(moved([4.0, 0.0]), moved([0.0; 2]), seed);
-            [0.0, 0.0625, 0.125].map(|time| {
-                let bodies: Vec<_> = places
-                    .iter()
-                    .map(|&(x, y, u, v)| disc(0.25, moved([x + u * time, y + v * time]), [u, v]))
-                    .collect();
-                let place = moved([robot.0 - time, robot.1]);
-                planner.desired_velocity(&situation(&bodies, place, [-0.5, 0.0]))
-            })
-        };
+        let velocities = |shift| shifted_velocities(|start, goal| planner(start, goal, seed), &places, robot, shift);
         let here = velocities([0.0; 2]);
         prop_assert_eq!(here, velocities([0.0; 2]));
         prop_assert_eq!(here, velocities([shift.0, shift.1]));

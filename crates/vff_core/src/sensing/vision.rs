@@ -257,7 +257,8 @@ impl VisionSensor {
     /// Makes the draws of a frame that measures nothing. Every frame takes the same numbers from the
     /// streams, whether the body is seen or not, so those of a later frame do not depend on it.
     fn pass_over(&mut self) {
-        let _ = (self.errors.draw(), self.losses.unit());
+        self.errors.draw();
+        self.losses.unit();
     }
 
     fn expose(&mut self, due: f64, position: [f64; 2]) {

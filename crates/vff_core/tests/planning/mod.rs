@@ -46,6 +46,29 @@ pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Sit
     }
 }
 
+/// Velocities that a planner, made for a start and a goal, wants at three instants among discs with
+/// places and velocities, everything shifted by as much.
+pub fn shifted_velocities<P: Planner>(
+    planner: impl Fn([f64; 2], [f64; 2]) -> P,
+    discs: &[(f64, f64, f64, f64)],
+    robot: (f64, f64),
+    shift: [f64; 2],
+) -> [[f64; 2]; 3] {
+    let moved = |place: [f64; 2]| [place[0] + shift[0], place[1] + shift[1]];
+    let mut planner = planner(moved([4.0, 0.0]), moved([0.0; 2]));
+    [0.0, 0.0625, 0.125].map(|time| {
+        let bodies: Vec<_> = discs
+            .iter()
+            .map(|&(x, y, u, v)| {
+                let place = moved([x + u * time, y + v * time]);
+                body(Shape::Disc { radius: 0.25 }, place, [u, v])
+            })
+            .collect();
+        let place = moved([robot.0 - time, robot.1]);
+        planner.desired_velocity(&situation(&bodies, place, [-0.5, 0.0]))
+    })
+}
+
 /// A scenario of a robot of a radius.
 pub fn scene(start: [f64; 2], goal: [f64; 2], radius: f64, obstacles: Vec<Obstacle>) -> Scenario {
     let robot = HolonomicRobot {
