@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from html.parser import HTMLParser
@@ -15,7 +16,7 @@ import pytest
 
 from hrsafety import _atomic as atomic
 from hrsafety import reproduce
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.navigation import statistics
 from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import Cell
@@ -51,6 +52,18 @@ def printed_numbers() -> Iterator[tuple[str, str, str, float]]:
 
 def by_place(all_cells: list[Cell]) -> dict[tuple[str, str, str], Cell]:
     return {(cell.table, cell.row, cell.column): cell for cell in all_cells}
+
+
+# ---- what has to be installed ------------------------------------------------------------------------
+
+
+def test_missing_scipy_is_told_before_the_work_begins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    said: list[str] = []
+    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[signal\]"):
+        reproduce.run(tmp_path / "out", progress=said.append)
+    assert said == []
+    assert not (tmp_path / "out").exists()
 
 
 # ---- the shipped numbers ----------------------------------------------------------------------------

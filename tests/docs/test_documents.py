@@ -24,6 +24,37 @@ MODULES = sorted(entry.name for entry in pkgutil.walk_packages(hrsafety.__path__
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RECORDINGS = ("zara01.csv", "zara03.csv")
 
+# Parts that need all the extras between them, and nothing else that is installed here.
+REPRODUCED = ("tables-6", "impact", "wheels", "camera")
+WITH_THESE_ONLY = """
+import importlib.metadata as metadata, re, sys
+
+def closure(names):
+    found, open_ = set(), list(names)
+    while open_:
+        name = re.sub(r"[-_.]+", "-", open_.pop()).lower()
+        if name in found:
+            continue
+        found.add(name)
+        for line in metadata.requires(name) or []:
+            if "extra ==" not in line:
+                try:
+                    open_.append(metadata.distribution(re.match(r"[\\w.-]+", line)[0]).metadata["Name"])
+                except metadata.PackageNotFoundError:
+                    pass
+    return found
+
+extras = set(sys.argv[1].split(","))
+named = [re.match(r"[\\w.-]+", line)[0] for line in metadata.requires("hrsafety")
+         if any(f"extra == '{extra}'" in line.replace('"', "'") for extra in extras)]
+allowed = closure(["hrsafety", "numpy", *named])
+for module, owners in metadata.packages_distributions().items():
+    if not any(re.sub(r"[-_.]+", "-", owner).lower() in allowed for owner in owners):
+        sys.modules[module] = None
+from hrsafety import reproduce
+print(reproduce.run("out", only=sys.argv[2].split(",")).name)
+"""
+
 # A reader does not wait longer than this for an example, in s.
 PATIENCE = 300.0
 
@@ -102,3 +133,11 @@ def test_continuous_check_calls_the_test_command_of_the_readme() -> None:
     assert command is not None
     script = (REPOSITORY / ".ci" / "run").read_text(encoding="utf-8")
     assert re.search(rf"^{re.escape(command.group(1))}\b", script, re.MULTILINE)
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/start.md"])
+def test_extras_of_the_first_command_are_enough_to_reproduce(document: str, tmp_path: Path) -> None:
+    text = (REPOSITORY / document).read_text(encoding="utf-8")
+    (extras,) = set(re.findall(r'pip install "\.\[([a-z,]+)\]"', text))
+    printed = run_python("-c", WITH_THESE_ONLY, extras, ",".join(REPRODUCED), folder=tmp_path)
+    assert printed.split() == ["summary.html"]

@@ -206,7 +206,7 @@ class _Fit:
             every[free] = values
             return every
 
-        result = _scipy_least_squares()(
+        result = scipy_least_squares()(
             lambda values: self.residuals(whole(values)),
             start[free],
             jac=lambda values: self.slopes(whole(values))[:, free],
@@ -279,7 +279,8 @@ def _covariance(slopes: Array) -> Array:
     return covariance
 
 
-def _scipy_least_squares() -> Any:
+def scipy_least_squares() -> Any:
+    """Return the function of SciPy, or say how to get it."""
     try:
         from scipy.optimize import least_squares
     except ImportError as error:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.calibration import scipy_least_squares
 from hrsafety.reproduce import (
     built_figures,
     camera_figures,
@@ -81,6 +82,8 @@ def run(
     ------
     InvalidParameterError
         If a part is unknown, none is named, or ``out`` is an existing file.
+    MissingExtraError
+        If the part ``"camera"`` is to be made and SciPy is not installed.
 
     Examples
     --------
@@ -94,6 +97,8 @@ def run(
     folder = Path(out)
     if folder.exists() and not folder.is_dir():
         raise InvalidParameterError("out", "be a folder or not exist", str(out))
+    if "camera" in parts:
+        scipy_least_squares()  # before minutes of work, not after them
     folder.mkdir(parents=True, exist_ok=True)
     say = progress if progress is not None else _silent
     begin = time.perf_counter()
