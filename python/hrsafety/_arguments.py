@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -85,10 +86,13 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def count(name: str, value: object, *, least: int = 1) -> int:
-    """Return ``value`` if it is an integer that is large enough, or say that it should have been."""
+def count(name: str, value: object, *, least: int = 1, most: int | None = None) -> int:
+    """Return ``value`` if it is an integer within the bounds, or say that it should have been."""
+    rule = f"be an integer of at least {least}" if most is None else f"be an integer from {least} to {most}"
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidParameterError(name, f"be an integer of at least {least}", value)
+        raise InvalidParameterError(name, rule, value)
+    if most is not None and value > most:
+        raise InvalidParameterError(name, rule, value)
     return int(value)
 
 
@@ -101,11 +105,20 @@ def checked_seed(name: str, value: object) -> int:
 
 
 def word(name: str, value: object, words: Sequence[str]) -> str:
-    """Return ``value`` if it is one of the words, or list them."""
+    """Return ``value`` if it is one of the words, or list them and name the nearest."""
     if not isinstance(value, str) or value not in words:
         shown = ", ".join(f'"{each}"' for each in words)
-        raise InvalidParameterError(name, f"be one of {shown}", value)
+        raise InvalidParameterError(name, f"be one of {shown}", value, meant(value, words))
     return value
+
+
+def meant(value: object, words: Iterable[str]) -> str | None:
+    """Return the question whether the nearest of the words was meant; ``None`` when none is near."""
+    if not isinstance(value, str):
+        return None
+    by_form = {each.lower().replace("-", "_"): each for each in words}
+    near = difflib.get_close_matches(value.lower().replace("-", "_"), list(by_form), n=1, cutoff=0.6)
+    return f'did you mean "{by_form[near[0]]}"?' if near else None
 
 
 def callback(name: str, value: Call | None) -> Call | None:

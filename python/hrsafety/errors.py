@@ -23,6 +23,8 @@ class InvalidParameterError(HrsafetyError, ValueError):
         The rule it must obey.
     value : object
         What was given.
+    remedy : str or None
+        What would mend it, if the rule does not say so already.
 
     Examples
     --------
@@ -34,16 +36,24 @@ class InvalidParameterError(HrsafetyError, ValueError):
     mass must be finite and positive, got -1.0
     """
 
-    def __init__(self, argument: str, requirement: str, value: object) -> None:
-        super().__init__(argument, requirement, value)
+    def __init__(self, argument: str, requirement: str, value: object, remedy: str | None = None) -> None:
+        super().__init__(argument, requirement, value, remedy)
         self.argument = argument
         self.requirement = requirement
         self.value = value
+        self.remedy = remedy
 
     def __str__(self) -> str:
-        """Return the sentence that names argument, rule and value."""
-        shown = self.value if isinstance(self.value, str) else repr(self.value)
-        return f"{self.argument} must {self.requirement}, got {shown}"
+        """Return the sentence that names argument, rule, value and remedy."""
+        shown = self.value if isinstance(self.value, Shown) else repr(self.value)
+        sentence = f"{self.argument} must {self.requirement}, got {shown}"
+        return sentence if self.remedy is None else f"{sentence}; {self.remedy}"
+
+
+class Shown(str):
+    """Words in place of a value in a message, printed without quotes: what was found, not given."""
+
+    __slots__ = ()
 
 
 class ShapeError(HrsafetyError, ValueError):

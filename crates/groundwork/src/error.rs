@@ -1,5 +1,6 @@
 //! What can go wrong, with the data needed to act on it.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// A value as it was given, for an error message.
@@ -30,14 +31,16 @@ impl fmt::Display for Given {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// An argument breaks a rule.
-    #[error("{name} must {requirement}, got {value}")]
+    #[error("{name} must {requirement}, got {value}{}", .remedy.as_ref().map_or(String::new(), |remedy| format!("; {remedy}")))]
     InvalidParameter {
         /// Name of the argument.
         name: String,
         /// The rule.
-        requirement: &'static str,
+        requirement: Cow<'static, str>,
         /// What was given.
         value: Given,
+        /// What would mend it, if the rule does not say so already.
+        remedy: Option<String>,
     },
     /// The state of a run, or the force on it, is no longer finite.
     #[error("the state or the force became non-finite at {time} s (run {run})")]
@@ -65,11 +68,35 @@ pub type Result<T> = std::result::Result<T, Failure>;
 
 impl Failure {
     /// An argument breaks a rule.
-    pub fn invalid(name: impl Into<String>, requirement: &'static str, value: Given) -> Self {
+    pub fn invalid(
+        name: impl Into<String>,
+        requirement: impl Into<Cow<'static, str>>,
+        value: Given,
+    ) -> Self {
         Self::InvalidParameter {
             name: name.into(),
-            requirement,
+            requirement: requirement.into(),
             value,
+            remedy: None,
+        }
+    }
+
+    /// The same error with what would mend it.
+    #[must_use]
+    pub fn mended_by(self, advice: impl Into<String>) -> Self {
+        match self {
+            Self::InvalidParameter {
+                name,
+                requirement,
+                value,
+                ..
+            } => Self::InvalidParameter {
+                name,
+                requirement,
+                value,
+                remedy: Some(advice.into()),
+            },
+            other => other,
         }
     }
 
@@ -93,10 +120,12 @@ impl Failure {
                 name,
                 requirement,
                 value,
+                remedy,
             } => Self::InvalidParameter {
                 name: format!("{owner}.{name}"),
                 requirement,
                 value,
+                remedy,
             },
             other => other,
         }
@@ -156,5 +185,21 @@ pub fn finite_pair(name: &str, value: [f64; 2]) -> Result<[f64; 2]> {
         Ok(value)
     } else {
         Err(Failure::invalid(name, "be finite", Given::Pair(value)))
+    }
+}
+
+/// Returns a count if it is at most as large as its bound, so that memory is asked for only then.
+///
+/// # Errors
+/// It is larger.
+pub fn at_most(name: &str, count: usize, most: usize) -> Result<usize> {
+    if count <= most {
+        Ok(count)
+    } else {
+        Err(Failure::invalid(
+            name,
+            format!("be at most {most}"),
+            Given::Count(count as u64),
+        ))
     }
 }

@@ -26,13 +26,20 @@ impl From<CoreError> for PyErr {
                 name,
                 requirement,
                 value,
+                remedy,
             } => match value {
                 Given::Number(number) => {
-                    InvalidParameterError::new_err((name, requirement, number))
+                    InvalidParameterError::new_err((name, requirement, number, remedy))
                 }
-                Given::Pair([x, y]) => InvalidParameterError::new_err((name, requirement, (x, y))),
-                Given::Count(count) => InvalidParameterError::new_err((name, requirement, count)),
-                Given::Word(word) => InvalidParameterError::new_err((name, requirement, word)),
+                Given::Pair([x, y]) => {
+                    InvalidParameterError::new_err((name, requirement, (x, y), remedy))
+                }
+                Given::Count(count) => {
+                    InvalidParameterError::new_err((name, requirement, count, remedy))
+                }
+                Given::Word(word) => {
+                    InvalidParameterError::new_err((name, requirement, word, remedy))
+                }
             },
             Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
             other => SimulationError::new_err(other.to_string()),
