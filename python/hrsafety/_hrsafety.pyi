@@ -317,7 +317,7 @@ class Obstacle:
 class Measurement:
     """Measurement error."""
 
-    def __new__(cls, *, scale: float, distribution: str, of: str) -> Self: ...
+    def __new__(cls, *, scale: float, distribution: str, of: str, latency: float) -> Self: ...
 
 @final
 class Scenario:
@@ -420,6 +420,9 @@ def region_radii(
     obstacle: Obstacle,
     control_period: float,
     faced_side: float | None,
+    latency: float | None,
+    position_error: float | None,
+    measurement: Measurement | None,
 ) -> tuple[float, float]:
     """Return critical and active radius of an obstacle for a robot."""
 

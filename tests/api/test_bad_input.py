@@ -62,7 +62,7 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "pass_behind": (1, 0, None, "yes", NAN, ()),
         "side_hysteresis": (*OPTIONAL_NOT_NEGATIVE, math.pi, 4.0),
     },
-    "Measurement": {"scale": NOT_NEGATIVE, "distribution": WORD, "of": WORD},
+    "Measurement": {"scale": NOT_NEGATIVE, "distribution": WORD, "of": WORD, "latency": (*NOT_NEGATIVE, 61.0)},
     "Disc": {
         "center": POINT,
         "radius": POSITIVE,

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use vff_core::measurement::{self, Distribution, Noisy};
 use vff_core::motion::{Motion, Segment};
 use vff_core::obstacle::{self, Limits};
-use vff_core::region;
+use vff_core::region::{self, Sensing};
 use vff_core::robots::{self, DifferentialWheels, Wheels};
 use vff_core::scenario::{self, Rules};
 
@@ -227,8 +227,13 @@ pub struct Measurement(measurement::Measurement);
 #[pymethods]
 impl Measurement {
     #[new]
-    #[pyo3(signature = (*, scale, distribution, of))]
-    fn new(scale: f64, distribution: &Bound<'_, PyAny>, of: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (*, scale, distribution, of, latency))]
+    fn new(
+        scale: f64,
+        distribution: &Bound<'_, PyAny>,
+        of: &Bound<'_, PyAny>,
+        latency: f64,
+    ) -> PyResult<Self> {
         let kinds = [
             ("uniform", Distribution::Uniform),
             ("gaussian", Distribution::Gaussian),
@@ -241,7 +246,8 @@ impl Measurement {
             ("both", Noisy::Both),
         ];
         let noisy = word("of", of, "be \"obstacles\", \"robot\" or \"both\"", &bodies)?;
-        let built = measurement::Measurement::new(scale, distribution, noisy);
+        let built = measurement::Measurement::new(scale, distribution, noisy)
+            .and_then(|measurement| measurement.late(latency));
         Ok(Self(built.map_err(crate::errors::CoreError::from)?))
     }
 }
@@ -305,26 +311,35 @@ impl Scenario {
             scenario::Scenario::for_differential(robot, start, goal, obstacles, rules)
         };
         let scenario = scenario.map_err(crate::errors::CoreError::from)?;
-        Ok(Self(scenario.measured(
-            measurement.map(|measurement| measurement.0),
-            seed,
-        )))
+        let measurement = measurement.map(|measurement| measurement.0);
+        let measured = scenario.measured(measurement, seed);
+        Ok(Self(measured.map_err(crate::errors::CoreError::from)?))
     }
 }
 
 /// Critical and active radius of an obstacle for a robot.
 #[pyfunction]
+#[pyo3(signature = (robot, obstacle, control_period, faced_side, latency, position_error, measurement))]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn region_radii(
     robot: &Bound<'_, PyAny>,
     obstacle: &Obstacle,
     control_period: f64,
     faced_side: Option<f64>,
+    latency: Option<f64>,
+    position_error: Option<f64>,
+    measurement: Option<PyRef<'_, Measurement>>,
 ) -> PyResult<(f64, f64)> {
     let limits = match robot.cast::<HolonomicRobot>() {
         Ok(robot) => robot.get().0.limits(),
         Err(_) => robot.cast::<DifferentialDriveRobot>()?.get().0.limits(),
     };
-    let regions = region::radii(&limits, &obstacle.0, control_period, faced_side)
+    let sensing = Sensing {
+        measurement: measurement.map(|measurement| measurement.0),
+        latency,
+        position_error,
+    };
+    let regions = region::radii(&limits, &obstacle.0, control_period, faced_side, &sensing)
         .map_err(crate::errors::CoreError::from)?;
     Ok((regions.critical_radius, regions.active_radius))
 }

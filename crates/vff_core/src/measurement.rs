@@ -1,16 +1,24 @@
-//! Noisy position measurements at the control period, with backward-difference velocities.
+//! Noisy and late position measurements at the control period, with backward-difference velocities.
+
+use std::collections::VecDeque;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::error::{Result, not_negative};
+use crate::error::{Failure, Given, Result, not_negative};
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Real, Vec2};
 use crate::motion::BodyState;
-use crate::scenario::Scenario;
+use crate::scenario::{PlacedObstacle, Scenario};
 
 /// A Gaussian error is drawn again beyond this many standard deviations.
 const GAUSSIAN_BOUND: f64 = 8.0;
+
+/// Longest latency in s: it bounds the memory of past positions.
+const MAX_LATENCY: f64 = 60.0;
+
+/// Share of a motion step below which a latency counts as whole steps: typed numbers are rounded.
+const WHOLE_STEPS: f64 = 1e-9;
 
 /// Kind of measurement error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +40,15 @@ pub enum Noisy {
     Both,
 }
 
-/// Error of the measured positions.
+/// Error and age of the measured positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Half width or standard deviation in m.
     scale: f64,
     distribution: Distribution,
     noisy: Noisy,
+    /// Age of the positions in s.
+    latency: f64,
 }
 
 impl Measurement {
@@ -51,13 +61,48 @@ impl Measurement {
             scale: not_negative("scale", scale)?,
             distribution,
             noisy,
+            latency: 0.0,
         })
     }
 
-    /// Whether the robot is measured with an error.
+    /// The same measurement of the positions of some time ago.
+    ///
+    /// # Errors
+    /// The latency is negative, not finite or above a minute.
+    pub fn late(self, latency: f64) -> Result<Self> {
+        if not_negative("latency", latency)? > MAX_LATENCY {
+            let rule = format!("be at most {MAX_LATENCY} s");
+            return Err(Failure::invalid("latency", rule, Given::Number(latency))
+                .mended_by("give seconds, as 0.1 for 100 ms"));
+        }
+        Ok(Self { latency, ..self })
+    }
+
+    /// Whether the robot is measured.
     #[must_use]
     pub fn of_robot(&self) -> bool {
         self.noisy != Noisy::Obstacles
+    }
+
+    /// Whether an obstacle is measured: one at rest is known exactly.
+    #[must_use]
+    pub fn of_obstacle(&self, stationary: bool) -> bool {
+        self.noisy != Noisy::Robot && !stationary
+    }
+
+    /// Age of the measured positions in s.
+    #[must_use]
+    pub fn latency(&self) -> f64 {
+        self.latency
+    }
+
+    /// Largest distance of a measured position from the one that is measured, in m.
+    #[must_use]
+    pub fn error_bound(&self) -> f64 {
+        match self.distribution {
+            Distribution::Uniform => std::f64::consts::SQRT_2 * self.scale,
+            Distribution::Gaussian => GAUSSIAN_BOUND * self.scale,
+        }
     }
 }
 
@@ -138,68 +183,149 @@ impl Measured {
     }
 }
 
-/// What the controller sees of the scene.
+/// Positions of robots at their last motion steps, from which those of some time ago are read.
 #[derive(Clone, Debug)]
-pub struct Sensor {
-    period: f64,
-    robot: Option<Noise>,
-    obstacles: Vec<Option<Noise>>,
-    last_positions: Vec<Option<[f64; 2]>>,
+pub(crate) struct Past<R: Real> {
+    /// Whole motion steps of the latency.
+    whole: usize,
+    /// Share of the motion step before.
+    share: f64,
+    positions: VecDeque<Vec2<R>>,
 }
 
-impl Sensor {
+impl<R: Real> Past<R> {
+    /// Of robots that are measured late, with the motion step in s.
+    pub fn new(scenario: &Scenario, step: f64) -> Option<Self> {
+        let late = |measured: &Measurement| measured.of_robot() && measured.latency > 0.0;
+        let steps = scenario.measurement.filter(late)?.latency / step;
+        let near = steps.round();
+        let steps = if (steps - near).abs() <= WHOLE_STEPS {
+            near
+        } else {
+            steps
+        };
+        Some(Self {
+            whole: whole_of(steps),
+            share: steps - steps.floor(),
+            positions: VecDeque::new(),
+        })
+    }
+
+    /// Keeps the positions after a motion step; the first call is for the start of the run.
+    pub fn push(&mut self, position: Vec2<R>) {
+        if self.positions.len() > self.whole.saturating_add(1) {
+            self.positions.pop_front();
+        }
+        self.positions.push_back(position);
+    }
+
+    /// Positions of the latency ago, on the line between two motion steps; the robots stood at
+    /// their start before the run.
+    pub fn delayed(&self, present: Vec2<R>) -> Vec2<R> {
+        let last = self.positions.len().saturating_sub(1);
+        let at = |steps: usize| {
+            let place = self.positions.get(last.saturating_sub(steps));
+            place.copied().unwrap_or(present)
+        };
+        let later = at(self.whole);
+        if self.share == 0.0 {
+            return later;
+        }
+        let earlier = at(self.whole.saturating_add(1));
+        later + (earlier - later).scale(R::splat(self.share))
+    }
+}
+
+/// A whole, not negative number as a count.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+fn whole_of(steps: f64) -> usize {
+    steps as usize
+}
+
+/// How one obstacle is measured.
+#[derive(Clone, Debug)]
+struct Watched<'a> {
+    noise: Noise,
+    placed: &'a PlacedObstacle,
+    cursor: usize,
+    last_position: Option<[f64; 2]>,
+}
+
+/// What the controller sees of the scene.
+#[derive(Clone, Debug)]
+pub struct Sensor<'a> {
+    period: f64,
+    latency: f64,
+    robot: Option<Noise>,
+    obstacles: Vec<Option<Watched<'a>>>,
+}
+
+impl<'a> Sensor<'a> {
     /// Sensor of a scenario, or `None` if everything is known exactly.
     #[must_use]
-    pub fn new(scenario: &Scenario) -> Option<Self> {
+    pub fn new(scenario: &'a Scenario) -> Option<Self> {
         let measurement = scenario.measurement?;
-        let noisy_robot = measurement.of_robot();
-        let noisy_obstacles = measurement.noisy != Noisy::Robot;
         let noise = |stream| Noise::new(measurement, scenario.seed, stream);
         let obstacles = (1..).zip(&scenario.obstacles);
         Some(Self {
             period: scenario.rules.control_period,
-            robot: noisy_robot.then(|| noise(0)),
+            latency: measurement.latency,
+            robot: measurement.of_robot().then(|| noise(0)),
             obstacles: obstacles
                 .map(|(stream, placed)| {
-                    (noisy_obstacles && !placed.stationary).then(|| noise(stream))
+                    let watched = || Watched {
+                        noise: noise(stream),
+                        placed,
+                        cursor: 0,
+                        last_position: None,
+                    };
+                    measurement.of_obstacle(placed.stationary).then(watched)
                 })
                 .collect(),
-            last_positions: vec![None; scenario.obstacles.len()],
         })
     }
 
-    /// Measures the obstacles and draws the error of the robot's position.
-    pub fn measure(&mut self, actual: &[Body], seen: &mut [Body]) -> Measured {
-        for (index, (measured, body)) in seen.iter_mut().zip(actual).enumerate() {
-            measured.state = self.obstacle(index, body.state);
+    /// Measures the obstacles at a time in s and draws the error of the robot's position.
+    pub fn measure(&mut self, time: f64, actual: &[Body], seen: &mut [Body]) -> Measured {
+        let (period, latency) = (self.period, self.latency);
+        let bodies = seen.iter_mut().zip(actual);
+        for ((measured, body), watched) in bodies.zip(&mut self.obstacles) {
+            measured.state = match watched {
+                None => body.state,
+                Some(watched) if latency > 0.0 => {
+                    let motion = &watched.placed.obstacle.motion;
+                    let before = motion.at(time - latency, &mut watched.cursor);
+                    watched.measure(before, period)
+                }
+                Some(watched) => watched.measure(body.state, period),
+            };
         }
         let robot_error = self.robot.as_mut().map(Noise::draw);
         Measured {
             robot_error,
-            period: self.period,
+            period,
         }
     }
+}
 
+impl Watched<'_> {
     /// Measured state of an obstacle; the first velocity is the true one, the acceleration is
     /// not measured and counts as zero.
-    fn obstacle(&mut self, index: usize, state: BodyState) -> BodyState {
-        let Some(noise) = &mut self.obstacles[index] else {
-            return state;
-        };
-        let [x, y] = noise.draw();
+    fn measure(&mut self, state: BodyState, period: f64) -> BodyState {
+        let [x, y] = self.noise.draw();
         if !state.present {
-            self.last_positions[index] = None;
+            self.last_position = None;
             return state;
         }
         let position = [state.position[0] + x, state.position[1] + y];
-        let velocity = match self.last_positions[index] {
+        let velocity = match self.last_position {
             Some(last) => [
-                (position[0] - last[0]) / self.period,
-                (position[1] - last[1]) / self.period,
+                (position[0] - last[0]) / period,
+                (position[1] - last[1]) / period,
             ],
             None => state.velocity,
         };
-        self.last_positions[index] = Some(position);
+        self.last_position = Some(position);
         BodyState {
             position,
             velocity,

@@ -1,6 +1,7 @@
 //! Sizes of the critical and active regions from the limits of robot and obstacle.
 
-use crate::error::{Failure, Given, Result, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::measurement::Measurement;
 use crate::obstacle::{Obstacle, Regions, Shape};
 
 /// Limits of a robot that size the regions.
@@ -16,21 +17,64 @@ pub struct RobotLimits {
     pub turn_time: f64,
 }
 
-/// Smallest safe regions, Zeng (2011), section 5.3.
+/// What is known of the sensing when regions are sized.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensing {
+    /// How positions are measured; exactly if `None`.
+    pub measurement: Option<Measurement>,
+    /// Age of the measured positions in s, in place of that of the measurement.
+    pub latency: Option<f64>,
+    /// Largest error of the measured distance in m, in place of that of the measurement.
+    pub position_error: Option<f64>,
+}
+
+impl Sensing {
+    /// Largest difference in m between the known and the true distance of a robot from an obstacle.
+    ///
+    /// The known distance is that of two measured positions. Each lies at most the error bound from
+    /// where the body was, and the body has gone at most its speed times the latency since.
+    fn slack(&self, robot: &RobotLimits, obstacle: &Obstacle) -> Result<f64> {
+        let stationary = obstacle.motion.is_stationary();
+        let of_robot = self.measurement.is_some_and(|found| found.of_robot());
+        let of_obstacle = match &self.measurement {
+            Some(measurement) => measurement.of_obstacle(stationary),
+            None => self.latency.is_some(),
+        };
+        let given = |share: bool, value: f64| if share { value } else { 0.0 };
+        let latency = match self.latency {
+            Some(latency) => not_negative("latency", latency)?,
+            None => self.measurement.map_or(0.0, |found| found.latency()),
+        };
+        let error = match self.position_error {
+            Some(error) => not_negative("position_error", error)?,
+            None => self.measurement.map_or(0.0, |found| {
+                let bound = found.error_bound();
+                given(of_robot, bound) + given(of_obstacle, bound)
+            }),
+        };
+        let closing = given(of_robot, robot.max_speed) + given(of_obstacle, obstacle.max_speed());
+        Ok(closing * latency + error)
+    }
+}
+
+/// Smallest safe regions, Zeng (2011), section 5.3, and what late and noisy sensing adds.
 ///
 /// `delta_r = V T_s + a dt1^2/2`, `delta_o = V_o (dt1 + T_s)`, `dt1 = t_a = V/a`;
-/// disc: `r3 = delta_r + delta_o + rho_o + rho_r`, `r2 = (V + V_o)(dt2 + T_s)`;
-/// rectangle: `r3 = delta_r + rho_r`, `r2 = V (dt2 + T_s)`;
+/// disc: `r3 = delta_r + delta_o + rho_o + rho_r + delta`, `r2 = (V + V_o)(dt2 + T_s) + delta`;
+/// rectangle: `r3 = delta_r + rho_r + delta`, `r2 = V (dt2 + T_s) + delta`;
 /// `dt2 = (r3 + B - a t_a^2/2)/V + t_a + t_turn`, `B` half the faced side of a rectangle,
-/// 0 for a disc.
+/// 0 for a disc; `delta` the largest difference between the known and the true distance, 0 with
+/// exact sensing, the case of the source.
 ///
 /// # Errors
-/// The control period or the faced side is not positive, or a disc is given a faced side.
+/// The control period or the faced side is not positive, a disc is given a faced side, or latency
+/// or position error is negative or not finite.
 pub fn radii(
     robot: &RobotLimits,
     obstacle: &Obstacle,
     control_period: f64,
     faced_side: Option<f64>,
+    sensing: &Sensing,
 ) -> Result<Regions> {
     let period = positive("control_period", control_period)?;
     let (speed, acceleration) = (robot.max_speed, robot.max_acceleration);
@@ -63,17 +107,20 @@ pub fn radii(
             (robot_way + robot.radius, half_side, speed)
         }
     };
+    let slack = sensing.slack(robot, obstacle)?;
+    let critical_radius = critical_radius + slack;
     let avoiding_time =
         (critical_radius + half_side - ramp) / speed + stopping_time + robot.turn_time;
     Ok(Regions {
         critical_radius,
-        active_radius: closing * (avoiding_time + period),
+        active_radius: closing * (avoiding_time + period) + slack,
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measurement::{Distribution, Noisy};
     use crate::motion::Motion;
     use crate::obstacle::Limits;
 
@@ -109,9 +156,46 @@ mod tests {
             (&wall, Some(0.6), 0.0, 0.2665, 0.6330),
             (&wall, Some(0.6), turn, 0.2665, 0.7813),
         ] {
-            let regions = radii(&robot(turn_time), obstacle, 0.06, side).unwrap();
+            let regions =
+                radii(&robot(turn_time), obstacle, 0.06, side, &Sensing::default()).unwrap();
             assert!((regions.critical_radius - critical).abs() < 5.1e-5);
             assert!((regions.active_radius - active).abs() < 5.1e-5);
+        }
+    }
+    #[test]
+    fn late_and_noisy_sensing_adds_its_largest_error() {
+        let person = Obstacle::disc(
+            0.4,
+            Motion::moving([0.0; 2], [1.0, 0.0], [0.0; 2], None).unwrap(),
+            Limits {
+                max_speed: Some(1.6),
+                ..Limits::default()
+            },
+        )
+        .unwrap();
+        let wall = Obstacle::rectangle([0.0; 2], [1.4, 0.6], 0.0, Limits::default()).unwrap();
+        let measured = |noisy| {
+            let found = Measurement::new(0.025, Distribution::Uniform, noisy).unwrap();
+            Sensing {
+                measurement: Some(found.late(0.1).unwrap()),
+                ..Sensing::default()
+            }
+        };
+        let error = 0.025 * std::f64::consts::SQRT_2;
+        for (obstacle, noisy, slack) in [
+            (&person, Noisy::Obstacles, 0.16 + error),
+            (&person, Noisy::Robot, 0.07 + error),
+            (&person, Noisy::Both, 0.23 + 2.0 * error),
+            (&wall, Noisy::Obstacles, 0.0),
+            (&wall, Noisy::Robot, 0.07 + error),
+            (&wall, Noisy::Both, 0.07 + error),
+        ] {
+            let [exact, late] = [Sensing::default(), measured(noisy)]
+                .map(|sensing| radii(&robot(0.0), obstacle, 0.06, None, &sensing).unwrap());
+            assert!((late.critical_radius - exact.critical_radius - slack).abs() < 1e-12);
+            let share = if obstacle == &person { 2.3 } else { 0.7 } / 0.7;
+            let grown = late.active_radius - exact.active_radius;
+            assert!((grown - (share + 1.0) * slack).abs() < 1e-12);
         }
     }
 }

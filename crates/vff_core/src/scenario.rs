@@ -3,7 +3,7 @@
 use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::measurement::Measurement;
 use crate::obstacle::{Obstacle, Regions};
-use crate::region::{self, RobotLimits};
+use crate::region::{self, RobotLimits, Sensing};
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
 
 /// An obstacle whose regions are known.
@@ -119,17 +119,8 @@ impl Scenario {
             let rule = "be farther from the start than the arrival tolerance";
             return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
         }
-        let obstacles = obstacles
-            .into_iter()
-            .enumerate()
-            .map(|(index, obstacle)| {
-                place(limits, obstacle, rules.control_period)
-                    .map_err(|error| error.within(&format!("obstacles[{index}]")))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        for placed in &obstacles {
-            check_ends(placed, start, goal)?;
-        }
+        let sensing = Sensing::default();
+        let obstacles = place_all(limits, [start, goal], obstacles, &rules, &sensing)?;
         Ok(Self {
             robot,
             differential: None,
@@ -142,12 +133,31 @@ impl Scenario {
         })
     }
 
-    /// The same scenario with noisy measurements drawn from a seed.
-    #[must_use]
-    pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Self {
+    /// The same scenario with noisy or late measurements drawn from a seed. Regions that were not
+    /// given are sized for them.
+    ///
+    /// # Errors
+    /// The goal lies in the active region of a stationary obstacle as it is sized then.
+    pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Result<Self> {
+        if measurement != self.measurement {
+            let (robot, rules) = (self.limits(), self.rules);
+            let sensing = Sensing {
+                measurement,
+                ..Sensing::default()
+            };
+            let obstacles = self.obstacles.into_iter().map(|placed| placed.obstacle);
+            let ends = [self.start, self.goal];
+            self.obstacles = place_all(&robot, ends, obstacles, &rules, &sensing)?;
+        }
         self.measurement = measurement;
         self.seed = seed;
-        self
+        Ok(self)
+    }
+
+    /// Limits that size the regions.
+    fn limits(&self) -> RobotLimits {
+        let holonomic = self.robot.limits();
+        self.differential.map_or(holonomic, |robot| robot.limits())
     }
 
     /// The same scenario with other noise.
@@ -232,7 +242,32 @@ impl Scenario {
     }
 }
 
-fn place(robot: &RobotLimits, obstacle: Obstacle, control_period: f64) -> Result<PlacedObstacle> {
+fn place_all(
+    robot: &RobotLimits,
+    [start, goal]: [[f64; 2]; 2],
+    obstacles: impl IntoIterator<Item = Obstacle>,
+    rules: &Rules,
+    sensing: &Sensing,
+) -> Result<Vec<PlacedObstacle>> {
+    let obstacles = obstacles.into_iter().enumerate();
+    let obstacles = obstacles
+        .map(|(index, obstacle)| {
+            place(robot, obstacle, rules.control_period, sensing)
+                .map_err(|error| error.within(&format!("obstacles[{index}]")))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    for placed in &obstacles {
+        check_ends(placed, start, goal)?;
+    }
+    Ok(obstacles)
+}
+
+fn place(
+    robot: &RobotLimits,
+    obstacle: Obstacle,
+    control_period: f64,
+    sensing: &Sensing,
+) -> Result<PlacedObstacle> {
     let limits = obstacle.limits;
     let given = limits.critical_radius.zip(limits.active_radius);
     let regions = if let Some((critical_radius, active_radius)) = given {
@@ -241,7 +276,7 @@ fn place(robot: &RobotLimits, obstacle: Obstacle, control_period: f64) -> Result
             active_radius,
         }
     } else {
-        let computed = region::radii(robot, &obstacle, control_period, None)?;
+        let computed = region::radii(robot, &obstacle, control_period, None, sensing)?;
         Regions {
             critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
             active_radius: limits.active_radius.unwrap_or(computed.active_radius),

@@ -97,7 +97,7 @@ fn ideal_robot_is_the_point_mass_bit_for_bit() {
             Some(noise(Noisy::Both)),
         ];
         for (seed, measurement) in (0..).zip(kinds) {
-            let scenario = exact.clone().measured(measurement, seed);
+            let scenario = exact.clone().measured(measurement, seed).unwrap();
             for law in laws() {
                 let plain = simulate(&scenario, &law, &Options::default(), &never).unwrap();
                 let built = simulate_built(&scenario, &law, &Built::default(), &never).unwrap();
@@ -195,7 +195,7 @@ fn cameras_and_slip_run() {
     let run = simulate_built(&scenario, &field(), &built, &never).unwrap();
     println!("camera: {:?}", run.0);
     assert_ne!(run.0.outcome, Outcome::TimedOut);
-    scenario = scenario.measured(Some(noise(Noisy::Both)), 1);
+    scenario = scenario.measured(Some(noise(Noisy::Both)), 1).unwrap();
     assert!(simulate_built(&scenario, &field(), &built, &never).is_err());
 }
 
@@ -212,7 +212,9 @@ fn wheels_of_another_robot_are_refused() {
 
 #[test]
 fn threads_change_no_bit() {
-    let scenario = chapter_7(4, 0.0).measured(Some(noise(Noisy::Both)), 0);
+    let scenario = chapter_7(4, 0.0)
+        .measured(Some(noise(Noisy::Both)), 0)
+        .unwrap();
     let built = Built {
         wheels: Some(differential_wheels().to_vec()),
         ..Built::default()

@@ -136,7 +136,9 @@ fn run_inside_active_regions_keeps_the_order() {
 
 fn noisy_run(noisy: Noisy, distribution: Distribution, seed: u64) -> Trajectory {
     let measurement = Measurement::new(0.01, distribution, noisy).unwrap();
-    let scenario = crossing(obstacles(4), Rules::default()).measured(Some(measurement), seed);
+    let scenario = crossing(obstacles(4), Rules::default())
+        .measured(Some(measurement), seed)
+        .unwrap();
     simulate(&scenario, off(), &Options::default(), &|| false)
         .unwrap()
         .1
@@ -156,7 +158,9 @@ fn seed_decides_the_noise() {
 #[test]
 fn seed_changes_nothing_without_noise() {
     let run = |seed| {
-        let scenario = crossing(obstacles(4), Rules::default()).measured(None, seed);
+        let scenario = crossing(obstacles(4), Rules::default())
+            .measured(None, seed)
+            .unwrap();
         let (summary, path) = simulate(&scenario, off(), &Options::default(), &|| false).unwrap();
         (summary.arrival_time, summary.energy, path.position)
     };

@@ -328,7 +328,7 @@ fn seeds_are_put_together_with_their_standard_error() {
     let noise = Measurement::new(0.01, Distribution::Uniform, Noisy::Obstacles).unwrap();
     let noisy: Vec<Scenario> = scenarios(&[2, 4])
         .into_iter()
-        .map(|scenario| scenario.measured(Some(noise), 0))
+        .map(|scenario| scenario.measured(Some(noise), 0).unwrap())
         .collect();
     let value = |seeds: Vec<u64>, robustness| {
         let options = GainOptions {

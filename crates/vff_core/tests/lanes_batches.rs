@@ -93,7 +93,9 @@ fn scenarios() -> Vec<Scenario> {
         (4, Noisy::Robot, Distribution::Gaussian),
         (5, Noisy::Both, Distribution::Uniform),
     ] {
-        let measured = crossing(obstacles(4), rules).measured(noise(noisy, distribution), seed);
+        let measured = crossing(obstacles(4), rules)
+            .measured(noise(noisy, distribution), seed)
+            .unwrap();
         all.push(measured);
     }
     all

@@ -30,7 +30,9 @@ const SLALOM_DRAWS: usize = 4_000;
 
 /// The planner of a robot that starts before the rows of discs.
 fn slalom_planner(waypoint_probability: f64, seed: u64) -> TreePlanner {
-    let scenario = scene([6.0, 0.0], [0.0; 2], 0.2, Vec::new()).measured(None, seed);
+    let scenario = scene([6.0, 0.0], [0.0; 2], 0.2, Vec::new())
+        .measured(None, seed)
+        .unwrap();
     let parameters = RapidlyExploringRandomTree {
         draws: SLALOM_DRAWS,
         waypoint_probability,
@@ -151,7 +153,7 @@ fn barn_worlds_are_solved_within_the_draws() {
             ..RapidlyExploringRandomTree::default()
         };
         for seed in 0..2 {
-            let scenario = scenario.clone().measured(None, seed);
+            let scenario = scenario.clone().measured(None, seed).unwrap();
             let mut planner = TreePlanner::new(parameters, &scenario).unwrap();
             let bodies = world.bodies();
             let path = planner.whole_path(&situation(&bodies, world.start, [0.0; 2]));

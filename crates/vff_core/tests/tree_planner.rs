@@ -28,7 +28,9 @@ use vff_core::scenario::Rules;
 const SPEED: f64 = 0.7;
 
 fn planner(start: [f64; 2], goal: [f64; 2], seed: u64) -> TreePlanner {
-    let scenario = scene(start, goal, 0.2, Vec::new()).measured(None, seed);
+    let scenario = scene(start, goal, 0.2, Vec::new())
+        .measured(None, seed)
+        .unwrap();
     TreePlanner::new(RapidlyExploringRandomTree::default(), &scenario).unwrap()
 }
 
@@ -40,7 +42,9 @@ fn speed([x, y]: [f64; 2]) -> f64 {
 fn published_obstacles_are_passed_without_contact() {
     for (number, longest) in [(1, 6.5), (2, 9.0), (3, 6.5), (4, 9.0)] {
         for seed in 0..5 {
-            let scenario = crossing(obstacles(number), Rules::default()).measured(None, seed);
+            let scenario = crossing(obstacles(number), Rules::default())
+                .measured(None, seed)
+                .unwrap();
             let parameters = RapidlyExploringRandomTree::default();
             let mut planner = TreePlanner::new(parameters, &scenario).unwrap();
             let ride = drive(&scenario, [[3.9, 0.6], [0.0, 0.6]], &mut planner);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
@@ -27,7 +28,52 @@ class Obstacle(Parameters):
     """
 
     __slots__ = ()
+    active_radius: float | None
+    critical_radius: float | None
     _native: _hrsafety.Obstacle
+    _given: Obstacle | None
+
+    def as_given(self) -> Self:
+        """Return the obstacle as it was before a scenario filled in the radii of its regions.
+
+        Returns
+        -------
+        Obstacle
+            The obstacle itself if no radius was filled in.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> scene = nav.Scenario(start=(4, 0), goal=(0, 0), obstacles=[nav.Disc(center=(2, 0), radius=0.1)])
+        >>> scene.obstacles[0].as_given() == nav.Disc(center=(2, 0), radius=0.1)
+        True
+        """
+        return self if self._given is None else self._given  # type: ignore[return-value]  # of the same class
+
+    def filled_in(self, **radii: float) -> Self:
+        """Return the obstacle with the radii that were not given.
+
+        Parameters
+        ----------
+        **radii : float
+            ``active_radius`` and ``critical_radius`` in m.
+
+        Returns
+        -------
+        Obstacle
+            A copy that remembers what was given.
+        """
+        missing = {name: value for name, value in radii.items() if getattr(self, name) is None}
+        filled = dataclasses.replace(self, **missing)  # type: ignore[type-var]  # obstacles are dataclasses
+        filled._set(_given=self)
+        return filled
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by public fields; what a scenario filled in is filled in again."""
+        if self._given is None:
+            return super().__reduce__()
+        radii = {name: getattr(self, name) for name in ("active_radius", "critical_radius")}
+        return _filled_in, (self._given, radii)
 
     def _limits(self) -> dict[str, float | None]:
         limits = {}
@@ -36,6 +82,10 @@ class Obstacle(Parameters):
             limits[name] = None if value is None else number(name, value)
         self._set(**limits)
         return limits
+
+
+def _filled_in(given: Obstacle, radii: dict[str, float]) -> Obstacle:
+    return given.filled_in(**radii)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,6 +123,7 @@ class Disc(Obstacle):
     critical_radius: float | None = None
     max_speed: float | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
+    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -122,6 +173,7 @@ class Rectangle(Obstacle):
     critical_radius: float | None = None
     max_speed: float | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
+    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -232,6 +284,7 @@ class MovingDisc(Obstacle):
     segments: tuple[Segment, ...] | None = None
     path: Path | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
+    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -306,6 +359,7 @@ class Human(Obstacle):
     segments: tuple[Segment, ...] | None = None
     path: Path | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
+    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""

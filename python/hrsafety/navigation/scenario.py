@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
@@ -32,10 +32,16 @@ class Regions(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Measurement(Parameters):
-    """Noisy positions, measured once a control period; velocities are backward differences.
+    """Noisy and late positions, measured once a control period; velocities are backward differences.
 
-    Positions of obstacles at rest are known exactly. The noise is drawn from the seed of the
-    scenario, one stream for the robot and one for each obstacle.
+    What is measured at time t is the position at ``t - latency`` plus the noise. Obstacles at rest
+    are known exactly. The noise is drawn from the seed of the scenario, one stream for the robot and
+    one for each obstacle.
+
+    Before time 0 the robot stood at its start, and an obstacle moved as the first piece of its
+    motion says, run backwards: straight at its velocity, on its parabola if it accelerates, as
+    recorded if the recording begins earlier. One that was absent ``latency`` ago is not seen yet,
+    and one that has left since is still seen.
 
     Parameters
     ----------
@@ -46,12 +52,14 @@ class Measurement(Parameters):
         Kind of error. A Gaussian error is drawn again beyond 8 standard deviations, so it is
         bounded; a scale of 0.0032 m has the mean error of 4 mm of the source's camera.
     of : {"obstacles", "robot", "both"}
-        Which positions are noisy: those of moving obstacles, that of the robot, or both.
+        Which positions are noisy and late: those of moving obstacles, that of the robot, or both.
+    latency : float
+        Age of the measured positions, in s, at most 60.
 
     Raises
     ------
     InvalidParameterError
-        If scale is negative or not finite, or a word is unknown.
+        If scale or latency is negative or not finite, latency is above 60 s, or a word is unknown.
 
     Examples
     --------
@@ -63,13 +71,13 @@ class Measurement(Parameters):
     scale: float = 0.025
     distribution: Literal["uniform", "gaussian"] = "uniform"
     of: Literal["obstacles", "robot", "both"] = "obstacles"
+    latency: float = 0.0
     _native: _hrsafety.Measurement = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(scale=number("scale", self.scale))
-        native = _hrsafety.Measurement(scale=self.scale, distribution=self.distribution, of=self.of)
-        self._set(_native=native)
+        values = self._as_numbers("scale", "latency")
+        self._set(_native=_hrsafety.Measurement(distribution=self.distribution, of=self.of, **values))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,7 +90,8 @@ class Scenario(Parameters):
         Positions (x, y) in m.
     obstacles : iterable of Obstacle
         Discs, rectangles, people, moving discs. Kept as a tuple with the radii of all regions
-        filled in.
+        filled in; those that were not given are those of `region_radii` for this robot, this
+        control period and this measurement, and are computed anew when one of them is replaced.
     robot : HolonomicRobot or DifferentialDriveRobot
         The robot. Batches of point masses take the first kind only.
     control_period : float
@@ -97,7 +106,7 @@ class Scenario(Parameters):
     rest_time : float
         A robot that has been at rest for this long has stopped for good, in s.
     measurement : Measurement or None
-        Noise of the measured positions; ``None``: everything is known exactly.
+        Noise and age of the measured positions; ``None``: everything is known exactly.
     seed : int
         Seed of the noise, 0 <= seed < 2**64.
 
@@ -142,7 +151,7 @@ class Scenario(Parameters):
             _require("measurement", self.measurement, Measurement)
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
             raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
-        obstacles = _with_regions(self.robot, self.obstacles, self.control_period)
+        obstacles = _with_regions(self.robot, self.obstacles, self.control_period, self.measurement)
         native = _hrsafety.Scenario(
             robot=self.robot._native,
             start=self.start,
@@ -162,22 +171,21 @@ def _require(name: str, value: object, *kinds: type) -> None:
 
 
 def _with_regions(
-    robot: HolonomicRobot | DifferentialDriveRobot, obstacles: Iterable[Obstacle], control_period: float
+    robot: HolonomicRobot | DifferentialDriveRobot,
+    obstacles: Iterable[Obstacle],
+    control_period: float,
+    measurement: Measurement | None,
 ) -> tuple[Obstacle, ...]:
     """Return the obstacles with every region radius filled in."""
     complete = []
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
         _require(f"obstacles[{index}]", obstacle, Obstacle)
-        if None in (obstacle.active_radius, obstacle.critical_radius):
-            radii = region_radii(robot, obstacle, control_period)
-            obstacle = _sized(obstacle, radii)
+        given = obstacle.as_given()
+        if None in (given.active_radius, given.critical_radius):
+            radii = region_radii(robot, given, control_period, measurement=measurement)
+            obstacle = given.filled_in(**radii._asdict())
         complete.append(obstacle)
     return tuple(complete)
-
-
-def _sized(obstacle: Obstacle, radii: Regions) -> Obstacle:
-    missing = {name: value for name, value in radii._asdict().items() if getattr(obstacle, name) is None}
-    return replace(obstacle, **missing)  # type: ignore[type-var]  # obstacles are dataclasses
 
 
 def region_radii(
@@ -185,19 +193,30 @@ def region_radii(
     obstacle: Obstacle,
     control_period: float = 0.06,
     faced_side: float | None = None,
+    *,
+    latency: float | None = None,
+    position_error: float | None = None,
+    measurement: Measurement | None = None,
 ) -> Regions:
     """Return the smallest safe regions of an obstacle, Zeng (2011), section 5.3.
 
     The robot stops within ``delta_r = V T_s + a dt1^2 / 2`` with ``dt1 = V/a``, while a moving
     obstacle comes ``delta_o = V_o (dt1 + T_s)`` closer::
 
-        disc, person   r_3 = delta_r + delta_o + rho_o + rho_r
-                       r_2 = (V + V_o) (dt2 + T_s),   dt2 = (r_3 - a t_a^2 / 2)/V + t_a
-        rectangle      r_3 = delta_r + rho_r
-                       r_2 = V (dt2 + T_s),   dt2 = (r_3 + B - a t_a^2 / 2)/V + t_a
+        disc, person   r_3 = delta_r + delta_o + rho_o + rho_r + delta
+                       r_2 = (V + V_o) (dt2 + T_s) + delta,   dt2 = (r_3 - a t_a^2 / 2)/V + t_a
+        rectangle      r_3 = delta_r + rho_r + delta
+                       r_2 = V (dt2 + T_s) + delta,   dt2 = (r_3 + B - a t_a^2 / 2)/V + t_a
 
     with ``t_a = V/a`` and B half the side that is faced. A differential-drive robot needs
     ``sqrt(pi / alpha_max)`` more for the turn.
+
+    ``delta`` is not in the source, which knows positions exactly: the most by which the known
+    distance can exceed the true one. A measured body has gone ``speed * latency`` since, at most V_o
+    an obstacle and V the robot, and each measured position errs by at most ``sqrt(2) scale`` with
+    uniform and ``8 scale`` with Gaussian noise. Obstacles at rest are known exactly; their delta is
+    above 0 where the robot's own position is measured. It bounds the distance and not the velocity:
+    a robot that measures its own position brakes against a velocity that is noisy and late, too.
 
     Parameters
     ----------
@@ -209,6 +228,14 @@ def region_radii(
         Control period T_s in s.
     faced_side : float or None
         Side of a rectangle that the robot faces, in m; the longer one when ``None``.
+    latency : float or None
+        Age of the measured positions in s; that of ``measurement`` when ``None``. Without a
+        measurement it is the age of the obstacle's position.
+    position_error : float or None
+        Largest error of the measured distance in m, whoever is measured; the bound that follows from
+        ``measurement`` when ``None``.
+    measurement : Measurement or None
+        How positions are measured; exactly when ``None``. A `Scenario` uses its own.
 
     Returns
     -------
@@ -218,7 +245,8 @@ def region_radii(
     Raises
     ------
     InvalidParameterError
-        If a value is not finite and positive, or faced_side is given for a round obstacle.
+        If a value is not finite and positive, latency or position_error is negative, or faced_side
+        is given for a round obstacle.
 
     Examples
     --------
@@ -226,13 +254,26 @@ def region_radii(
     >>> radii = nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), velocity=(1, 0)))
     >>> [round(radius, 4) for radius in radii]
     [0.7965, 2.0959]
+    >>> late = nav.region_radii(
+    ...     nav.HolonomicRobot(), nav.Human(start=(0, 0), velocity=(1, 0)), latency=0.1, position_error=0.03
+    ... )
+    >>> [round(radius, 4) for radius in late]
+    [0.9265, 2.5416]
     """
     _require("robot", robot, HolonomicRobot, DifferentialDriveRobot)
     _require("obstacle", obstacle, Obstacle)
+    if measurement is not None:
+        _require("measurement", measurement, Measurement)
+    optional = {"faced_side": faced_side, "latency": latency, "position_error": position_error}
     critical, active = _hrsafety.region_radii(
         robot._native,
         obstacle._native,
         number("control_period", control_period),
-        None if faced_side is None else number("faced_side", faced_side),
+        *(_number_or_none(name, value) for name, value in optional.items()),
+        None if measurement is None else measurement._native,
     )
     return Regions(critical, active)
+
+
+def _number_or_none(name: str, value: object) -> float | None:
+    return None if value is None else number(name, value)

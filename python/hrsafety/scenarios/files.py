@@ -75,7 +75,9 @@ _ROBOTS: Mapping[str, tuple[type[nav.HolonomicRobot] | type[nav.DifferentialDriv
         ),
     }
 )
-_MEASUREMENT: Keys = MappingProxyType({"scale": kind.number, "distribution": kind.word, "of": kind.word})
+_MEASUREMENT: Keys = MappingProxyType(
+    {"scale": kind.number, "distribution": kind.word, "of": kind.word, "latency": kind.number}
+)
 _REGIONS: dict[str, kind.Kind] = {
     "active_radius": kind.number,
     "critical_radius": kind.number,

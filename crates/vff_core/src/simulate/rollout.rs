@@ -57,11 +57,14 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         .iter()
         .map(|_| Runs::new(scenario, clock, &seen))
         .collect();
+    // Positions between two samples are wanted only for robots that are measured late.
+    let late = groups.first().is_some_and(|runs| runs.past.is_some());
+    let longest = if late { 1 } else { STEPS_PER_BLOCK };
     let mut until_question = BLOCKS_PER_QUESTION;
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
         let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
-        let steps = until_sample.min(clock.steps - first).min(STEPS_PER_BLOCK);
+        let steps = until_sample.min(clock.steps - first).min(longest);
         let samples = until_sample == clock.steps_per_sample;
         scene.advance(&clock, first);
         let block = Block {
@@ -72,7 +75,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         let measured = sensor
             .as_mut()
             .filter(|_| samples)
-            .map(|sensor| sensor.measure(&scene.frames[0], &mut seen));
+            .map(|sensor| sensor.measure(clock.time(first), &scene.frames[0], &mut seen));
         let known = if sensor.is_some() {
             &seen
         } else {
@@ -95,6 +98,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             }
             if runs.running.any() {
                 run_block(runs, member, &block, options);
+                runs.remember();
             }
         }
         first += steps;
@@ -235,7 +239,9 @@ fn record<R: Real, L, C: Recorder<R>>(
 /// State of the robots as the controller knows it.
 #[inline(always)]
 fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> RobotState<R> {
-    let (position, velocity) = (runs.position, runs.velocity);
+    let (present, velocity) = (runs.position, runs.velocity);
+    let past = runs.past.as_ref();
+    let position = past.map_or(present, |past| past.delayed(present));
     let robot = RobotState { position, velocity };
     measured.map_or(robot, |measured| {
         measured.of_robot(robot, &mut runs.last_measured)

@@ -4,6 +4,7 @@ use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::{Mask, Real, Vec2};
 use crate::laws::Command;
+use crate::measurement::Past;
 use crate::robots::WheelModel;
 use crate::scenario::Scenario;
 use crate::simulate::options::Clock;
@@ -35,6 +36,8 @@ pub(crate) struct Runs<'a, R: Real> {
     pub push: Vec2<R>,
     /// Measured position at the sample before, if it was measured with an error.
     pub last_measured: Option<Vec2<R>>,
+    /// Positions at the last motion steps, if they are measured late.
+    pub past: Option<Past<R>>,
     goal: Vec2<R>,
     wheels: WheelModel,
     wheel_speeds: [R; 3],
@@ -81,6 +84,7 @@ impl<'a, R: Real> Runs<'a, R> {
             acceleration: Vec2::zero(),
             push: Vec2::zero(),
             last_measured: None,
+            past: Past::new(scenario, clock.step),
             goal: Vec2::splat(scenario.goal),
             wheels,
             wheel_speeds: wheels.speeds(velocity),
@@ -102,7 +106,15 @@ impl<'a, R: Real> Runs<'a, R> {
         for (index, body) in bodies.iter().enumerate() {
             runs.watch(index, body, 0.0, runs.running);
         }
+        runs.remember();
         runs
+    }
+
+    /// Keeps the present positions for robots that are measured late.
+    pub fn remember(&mut self) {
+        if let Some(past) = &mut self.past {
+            past.push(self.position);
+        }
     }
 
     /// Counts a sample of the force.

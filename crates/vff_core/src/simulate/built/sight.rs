@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::Vec2;
-use crate::measurement::{Measurement, Noise, Sensor};
+use crate::measurement::{Measurement, Noise, Past, Sensor};
 use crate::motion::BodyState;
 use crate::scenario::{PlacedObstacle, Scenario};
 use crate::sensing::VisionSensor;
@@ -36,10 +36,12 @@ impl Seen<'_> {
 }
 
 /// Positions with an error once a control period.
-struct Samples {
-    sensor: Sensor,
+struct Samples<'a> {
+    sensor: Sensor<'a>,
     mark: Option<Noise>,
     last_measured: Option<Vec2<f64>>,
+    /// Past places of the center and of the second mark, of a robot that is measured late.
+    past: Option<[Past<f64>; 2]>,
 }
 
 /// Cameras with periods of their own.
@@ -50,17 +52,17 @@ struct Cameras {
 }
 
 /// Who looks.
-enum Eye {
+enum Eye<'a> {
     /// Everything is known exactly.
     Exact,
     /// As the scenario measures.
-    Samples(Box<Samples>),
+    Samples(Box<Samples<'a>>),
     /// As the robot is built.
     Cameras(Box<Cameras>),
 }
 
-impl Eye {
-    fn new(scenario: &Scenario, built: &Built) -> Result<Self> {
+impl<'a> Eye<'a> {
+    fn new(scenario: &'a Scenario, built: &Built) -> Result<Self> {
         if built.robot_vision.is_some() || built.obstacle_vision.is_some() {
             return Ok(Self::Cameras(Box::new(Cameras::new(scenario, built)?)));
         }
@@ -72,6 +74,7 @@ impl Eye {
             sensor,
             mark: measured.map(|noise| Noise::new(noise, scenario.seed, MARK_STREAM)),
             last_measured: None,
+            past: Past::new(scenario, built.step).map(|past| [past.clone(), past]),
         })))
     }
 }
@@ -114,15 +117,15 @@ impl Cameras {
 }
 
 /// What the controller sees of the scene.
-pub(super) struct Sight {
-    eye: Eye,
+pub(super) struct Sight<'s> {
+    eye: Eye<'s>,
     mark_distance: f64,
     start: RobotState<f64>,
     seen: Vec<Body>,
 }
 
-impl Sight {
-    pub fn new(scenario: &Scenario, built: &Built, bodies: &[Body]) -> Result<Self> {
+impl<'s> Sight<'s> {
+    pub fn new(scenario: &'s Scenario, built: &Built, bodies: &[Body]) -> Result<Self> {
         Ok(Self {
             eye: Eye::new(scenario, built)?,
             mark_distance: built.fusion.mark,
@@ -136,8 +139,16 @@ impl Sight {
 
     /// Shows the scene at an instant, at the begin of every motion step.
     pub fn show(&mut self, time: f64, reading: &Reading, actual: &[Body]) {
-        let Eye::Cameras(cameras) = &mut self.eye else {
-            return;
+        let cameras = match &mut self.eye {
+            Eye::Exact => return,
+            Eye::Samples(samples) => {
+                if let Some([center, mark]) = &mut samples.past {
+                    center.push(reading.robot.position);
+                    mark.push(mark_of(reading, self.mark_distance));
+                }
+                return;
+            }
+            Eye::Cameras(cameras) => cameras,
         };
         if let Some([center, mark]) = &mut cameras.robot {
             center.sample(time, reading.robot.position.lane(0));
@@ -161,10 +172,16 @@ impl Sight {
                 fix: None,
             },
             Eye::Samples(samples) => {
-                let measured = samples.sensor.measure(actual, &mut self.seen);
-                let robot = measured.of_robot(reading.robot, &mut samples.last_measured);
+                let measured = samples.sensor.measure(time, actual, &mut self.seen);
+                let mut robot = reading.robot;
+                let mut place = mark_of(reading, self.mark_distance);
+                if let Some([center, mark]) = &samples.past {
+                    robot.position = center.delayed(robot.position);
+                    place = mark.delayed(place);
+                }
+                let robot = measured.of_robot(robot, &mut samples.last_measured);
                 let fix = samples.mark.as_mut().map(|mark| {
-                    let place = mark_of(reading, self.mark_distance) + Vec2::splat(mark.draw());
+                    let place = place + Vec2::splat(mark.draw());
                     Fix {
                         position: robot.position,
                         heading: Some(heading_of(robot.position, place)),
