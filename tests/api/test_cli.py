@@ -81,13 +81,13 @@ def test_every_command_has_help_with_an_example(command: str, capsys: pytest.Cap
 
 
 def test_the_examples_of_the_help_are_understood() -> None:
-    from hrsafety.cli import _REPRODUCE_EXAMPLE, _SIMULATE_EXAMPLE, _parser
+    from hrsafety.cli.parsers import _REPRODUCE_EXAMPLE, _SIMULATE_EXAMPLE, parser
 
     lines = [line.split() for line in (_REPRODUCE_EXAMPLE + _SIMULATE_EXAMPLE).splitlines()]
     commands = [words[1:] for words in lines if words[:1] == ["hrsafety"]]
     assert len(commands) == 6
     for words in commands:
-        assert _parser().parse_args(words).command == words[0]
+        assert parser().parse_args(words).command == words[0]
 
 
 def test_law_names_of_the_help_are_those_of_files() -> None:

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from hrsafety import impact
-from hrsafety.cli import _FOAM_EXAMPLE, _parser, main
+from hrsafety.cli import main
 from hrsafety.cli.foam_file import load
+from hrsafety.cli.parsers import _FOAM_EXAMPLE, parser
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples" / "foam_design.toml"
@@ -219,7 +220,7 @@ def test_names_of_foams_are_unique(tmp_path: Path, capsys: pytest.CaptureFixture
     foam = "[[foams]]\nname = 'a'\nstiffness = 1e4\ndamping = 50.0\n"
     path = written(tmp_path / "twice.toml", FAST + 2 * foam)
     assert main(["foam", path, "--out", str(tmp_path / "out")]) == 2
-    assert "foams[1].name must be a name that no other foam has, got a" in error_line(capsys)
+    assert "foams[1].name must be a name that no other foam has, got 'a'" in error_line(capsys)
 
 
 def test_missing_file_and_file_in_place_of_the_folder_are_clear(
@@ -236,7 +237,7 @@ def test_help_has_an_example_and_the_example_is_complete(capsys: pytest.CaptureF
     assert main(["foam", "--help"]) == 0
     assert "  hrsafety foam " in capsys.readouterr().out
     words = next(line.split() for line in _FOAM_EXAMPLE.splitlines() if "hrsafety foam" in line)
-    assert _parser().parse_args(words[1:]).design == "examples/foam_design.toml"
+    assert parser().parse_args(words[1:]).design == "examples/foam_design.toml"
     keys = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
     assert set(keys) == {"title", "closing_speed", "manipulator", "limits", "damping", "foams"}
 

@@ -22,8 +22,9 @@ import pytest
 from api.interrupting import LISTEN, needs_signals
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.cli import _OPTIMIZE_EXAMPLE, _parser, main, progress
+from hrsafety.cli import main, progress
 from hrsafety.cli.optimize_file import load
+from hrsafety.cli.parsers import _OPTIMIZE_EXAMPLE, parser
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples" / "gain_study.toml"
@@ -532,6 +533,6 @@ def test_help_has_an_example_and_the_example_is_complete(capsys: pytest.CaptureF
     assert main(["optimize", "--help"]) == 0
     assert "  hrsafety optimize " in capsys.readouterr().out
     lines = [line.split() for line in _OPTIMIZE_EXAMPLE.splitlines() if line.startswith("  hrsafety")]
-    assert [_parser().parse_args(words[1:]).resume for words in lines] == [False, True]
+    assert [parser().parse_args(words[1:]).resume for words in lines] == [False, True]
     keys = set(tomllib.loads(EXAMPLE.read_text(encoding="utf-8")))
     assert keys == {"title", "scenarios", "law", "bounds", "search", "objective", "run", "front", "compare"}

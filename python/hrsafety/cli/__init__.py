@@ -6,77 +6,12 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
 
-from hrsafety import __version__
+from hrsafety.cli import exit_codes
+from hrsafety.cli.parsers import LAW_NAMES, UsageError, parser
 from hrsafety.errors import HrsafetyError
 
 __all__ = ["LAW_NAMES", "main"]
-
-LAW_NAMES = (
-    "virtual-force-field",
-    "khatib",
-    "borenstein-koren",
-    "masoud",
-    "ge-cui",
-    "virtual-impedance",
-    "velocity-obstacle",
-    "rapidly-exploring-random-tree",
-    "field-d-star",
-    "optimal-reciprocal-collision-avoidance",
-)
-"""Laws of `hrsafety.scenarios.laws`, named here so that ``--help`` need not load them."""
-
-_REPRODUCE_EXAMPLE = """example:
-  hrsafety reproduce --out reproduction
-  hrsafety reproduce --only tables-6 --only figures-6
-"""
-_SIMULATE_EXAMPLE = """examples:
-  hrsafety simulate my_first_crossing.toml --out crossing --animate crossing/run.gif
-  hrsafety simulate my_first_crossing.toml --gains 4.3 20.3 240.7 0.68 --stabilizing off
-  hrsafety simulate my_first_crossing.toml --law velocity-obstacle
-  hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
-
-A people file has the columns frame, t_s, ped_id, x_m, y_m. The robot crosses the main flow
-of people, who walk as recorded; start times are those with most traffic on its way.
-"""
-_FOAM_EXAMPLE = """example:
-  hrsafety foam examples/foam_design.toml --out puma
-
-The file names a manipulator, a closing speed, limits, a range of foam damping and foams. The
-folder receives summary.html with the picture of the boundaries, boundaries.csv and
-boundaries.png.
-"""
-_OPTIMIZE_EXAMPLE = """examples:
-  hrsafety optimize examples/gain_study.toml --out gains
-  hrsafety optimize examples/gain_study.toml --out gains --resume
-
-The file names scenarios, bounds, the grid and its refinements, an objective, constraints and
-whatever else differs from the published procedure. Ctrl-C keeps what is done in the folder;
---resume goes on from there and ends with the same result. The folder receives summary.html
-with the pictures, results.json with every value, and the pictures.
-"""
-_SWEEP_EXAMPLE = """examples:
-  hrsafety sweep examples/impact_sweep.toml --out foams
-  hrsafety sweep examples/gain_sweep.toml --out gains --workers 4 --table gains/result.parquet
-
-The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
-is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
-command goes on after a stop, whatever stopped it. The folder receives summary.html with the
-pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
-"""
-
-
-class _UsageError(HrsafetyError):
-    """The command line itself is wrong."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """Parser whose errors are exceptions, so that all errors look the same."""
-
-    def error(self, message: str) -> NoReturn:
-        """Raise instead of printing the usage and leaving."""
-        raise _UsageError(f"{message} (see {self.prog} --help)")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -90,7 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 when done, 2 after an error (one line on stderr says which), 130 after Ctrl-C.
+        0 when done, 2 after an error (one line on stderr says which), 3 when a run ended as ``--fail-on``
+        says, 4 after warnings with ``--strict``, 130 after Ctrl-C, 1 when the output was closed early.
 
     Examples
     --------
@@ -100,28 +36,35 @@ def main(argv: Sequence[str] | None = None) -> int:
     0
     """
     try:
-        options = _parser().parse_args(argv)
-        _COMMANDS[options.command](options)
-        sys.stdout.flush()
-    except SystemExit as exit_request:
-        return exit_request.code if isinstance(exit_request.code, int) else 0
+        return _run(argv)
     except KeyboardInterrupt:
-        return 130
+        return exit_codes.INTERRUPTED
     except BrokenPipeError:
         _forget_output()
-        return 1
+        return exit_codes.CLOSED_PIPE
     except HrsafetyError as error:
         return _fail(str(error))
     except OSError as error:
         return _fail(f"{error.filename or 'file'}: {error.strerror or error}")
     except ModuleNotFoundError as error:
         return _fail(str(error))
-    return 0
+
+
+def _run(argv: Sequence[str] | None) -> int:
+    """Run one command; it may leave with a code of its own, after all that it prints and writes."""
+    code: object = exit_codes.DONE
+    try:
+        options = parser().parse_args(argv)
+        _COMMANDS[options.command](options)
+    except SystemExit as request:
+        code = request.code
+    sys.stdout.flush()
+    return code if isinstance(code, int) else exit_codes.DONE
 
 
 def _fail(message: str) -> int:
     print(f"hrsafety: error: {' '.join(message.split())}", file=sys.stderr)
-    return 2
+    return exit_codes.ERROR
 
 
 def _forget_output() -> None:
@@ -130,120 +73,6 @@ def _forget_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (OSError, ValueError):
         sys.stdout = None
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="hrsafety", description="Robots that work near people: simulate, score, reproduce.")
-    parser.add_argument("--version", action="version", version=f"hrsafety {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    _add_reproduce(commands)
-    _add_simulate(commands)
-    _add_foam(commands)
-    _add_optimize(commands)
-    _add_sweep(commands)
-    return parser
-
-
-def _add_command(commands: Any, name: str, *, summary: str, example: str) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = commands.add_parser(
-        name,
-        help=summary,
-        description=f"{summary[0].upper()}{summary[1:]}.",
-        epilog=example,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    return parser
-
-
-def _add_reproduce(commands: Any) -> None:
-    parser = _add_command(
-        commands,
-        "reproduce",
-        summary="make every published table and figure again, measured beside printed",
-        example=_REPRODUCE_EXAMPLE,
-    )
-    parser.add_argument("--only", metavar="NAME", action="append", help="make this part only; can be repeated")
-    parser.add_argument("--out", metavar="DIR", default="reproduction", help="folder to write into [%(default)s]")
-
-
-def _add_simulate(commands: Any) -> None:
-    parser = _add_command(
-        commands,
-        "simulate",
-        summary="run a robot in a scenario file or across recorded people",
-        example=_SIMULATE_EXAMPLE,
-    )
-    parser.add_argument("scenario", nargs="?", metavar="SCENARIO.toml", help="scenario file")
-    parser.add_argument("--out", metavar="DIR", help="folder for tables (CSV) and pictures")
-    parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
-    law = parser.add_argument_group("law (what is not given comes from the scenario file, else from the defaults)")
-    law.add_argument("--law", metavar="NAME", choices=LAW_NAMES, help=", ".join(LAW_NAMES))
-    law.add_argument(
-        "--gains",
-        nargs="+",
-        type=float,
-        metavar="K",
-        help="numbers of the law in its order; of the virtual force field K1 K3 K5 b in N/m, N/m, N/m^2, s: "
-        "attraction, repulsion, detour, and damping of each as a share of its gain",
-    )
-    law.add_argument("--stabilizing", choices=["off", "capped", "full"], help="stabilizing force")
-    stepping = parser.add_argument_group("stepping")
-    stepping.add_argument(
-        "--integrator", choices=["semi_implicit_euler", "rk4"], default="semi_implicit_euler", help="[%(default)s]"
-    )
-    stepping.add_argument("--step", type=float, default=0.01, metavar="S", help="motion step in s [%(default)s]")
-    stepping.add_argument(
-        "--no-hold", dest="hold", action="store_false", help="compute the force at every step, not every control period"
-    )
-    people = parser.add_argument_group("recorded people (instead of a scenario file)")
-    people.add_argument("--people", metavar="FILE.csv", help="recorded people to cross")
-    people.add_argument("--runs", type=int, metavar="N", help="number of start times [24]")
-    people.add_argument(
-        "--selection", choices=["busiest", "even"], help="start times with most traffic, or evenly spaced [busiest]"
-    )
-    people.add_argument("--animate-run", type=int, metavar="K", help="animate run K, not the one that met most people")
-    people.add_argument("--json", metavar="FILE", help="all results as JSON")
-
-
-def _add_foam(commands: Any) -> None:
-    parser = _add_command(
-        commands,
-        "foam",
-        summary="find the foam coverings that make a manipulator safe, and judge given ones",
-        example=_FOAM_EXAMPLE,
-    )
-    parser.add_argument("design", metavar="DESIGN.toml", help="foam design file")
-    parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
-
-
-def _add_optimize(commands: Any) -> None:
-    parser = _add_command(
-        commands,
-        "optimize",
-        summary="search the gains that perform best in given scenarios",
-        example=_OPTIMIZE_EXAMPLE,
-    )
-    parser.add_argument("study", metavar="STUDY.toml", help="gain study file")
-    parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
-    parser.add_argument("--resume", action="store_true", help="go on with an interrupted search, if there is one")
-    parser.add_argument("--threads", type=int, metavar="N", help="number of threads [all cores]")
-
-
-def _add_sweep(commands: Any) -> None:
-    parser = _add_command(
-        commands,
-        "sweep",
-        summary="compute impacts or runs over ranges of their parameters",
-        example=_SWEEP_EXAMPLE,
-    )
-    parser.add_argument("study", metavar="STUDY.toml", help="sweep file")
-    parser.add_argument(
-        "--out", metavar="DIR", default="sweep", help="folder to write into, or to go on in [%(default)s]"
-    )
-    parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
-    parser.add_argument("--threads", type=int, metavar="N", help="threads of one chunk [all cores; one with workers]")
-    parser.add_argument("--workers", type=int, metavar="N", help="compute chunks in so many processes")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute chunks on the Dask cluster of this scheduler")
 
 
 def _reproduce(options: argparse.Namespace) -> None:
@@ -259,7 +88,7 @@ def _progress(line: str) -> None:
 
 def _simulate(options: argparse.Namespace) -> None:
     if (options.scenario is None) == (options.people is None):
-        raise _UsageError("simulate needs either a scenario file or --people FILE.csv (see hrsafety simulate --help)")
+        raise UsageError("simulate needs either a scenario file or --people FILE.csv (see hrsafety simulate --help)")
     if options.people is not None:
         from hrsafety.cli.people import simulate_people
 
@@ -267,7 +96,7 @@ def _simulate(options: argparse.Namespace) -> None:
         return
     for name in ("runs", "selection", "animate_run", "json"):
         if getattr(options, name) is not None:
-            raise _UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
+            raise UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
     from hrsafety.cli.one_run import simulate_file
 
     simulate_file(options)

@@ -6,13 +6,17 @@ import argparse
 import csv
 import io
 import math
+import os
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hrsafety import navigation as nav
 from hrsafety._atomic import write_file
+from hrsafety.cli.exit_codes import WARNED
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import LAWS, name_of
 
 if TYPE_CHECKING:
@@ -24,6 +28,7 @@ __all__ = [
     "decimal",
     "folder",
     "law_words",
+    "report_warnings",
     "stepping_words",
     "with_options",
     "write_csv",
@@ -103,6 +108,35 @@ def stepping_words(options: argparse.Namespace, control_period: float) -> str:
     """Return the time stepping in one line."""
     force = f"force held for {control_period:g} s" if options.hold else "force at every step"
     return f"{options.integrator}, step {options.step:g} s, {force}"
+
+
+def report_warnings(found: Iterable[ResultWarning], strict: bool) -> None:
+    """Print every different warning on stderr, in yellow on a terminal.
+
+    Parameters
+    ----------
+    found : iterable of ResultWarning
+        Warnings of all results, repeated ones too.
+    strict : bool
+        Whether warnings end the command with exit code 4. Call this after everything was written.
+
+    Raises
+    ------
+    SystemExit
+        If there are warnings and ``strict`` is true.
+    """
+    different = tuple(dict.fromkeys(found))
+    begin, end = ("\x1b[33m", "\x1b[0m") if _colored() else ("", "")
+    for each in different:
+        print(f"{begin}hrsafety: {' '.join(str(each).split())}{end}", file=sys.stderr)
+    if different and strict:
+        print(f"hrsafety: warnings with --strict: exit code {WARNED}", file=sys.stderr)
+        raise SystemExit(WARNED)
+
+
+def _colored() -> bool:
+    """Return whether stderr is a terminal whose user does not refuse color (https://no-color.org)."""
+    return sys.stderr.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def folder(path: str) -> Path:
