@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -10,6 +13,10 @@ from hypothesis import settings
 
 # Pictures are drawn without a display, here and in every process that a test starts.
 os.environ["MPLBACKEND"] = "Agg"
+# The list of fonts in the home folder may be stale, and its settings are not those of the tests.
+_MATPLOTLIB = tempfile.mkdtemp(prefix="hrsafety-matplotlib-")
+os.environ["MPLCONFIGDIR"] = _MATPLOTLIB
+atexit.register(shutil.rmtree, _MATPLOTLIB, ignore_errors=True)
 
 # The same examples on every machine and in every run; a slow machine is not a failure.
 settings.register_profile("repeatable", derandomize=True, deadline=None)

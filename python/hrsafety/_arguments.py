@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import itertools
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
@@ -121,6 +123,34 @@ def meant(value: object, words: Iterable[str]) -> str | None:
     return f'did you mean "{by_form[near[0]]}"?' if near else None
 
 
+def readable(name: str, path: Path) -> Path:
+    """Return the path if a file stands there, or say what does and which file may have been meant."""
+    rule = "name a readable file"
+    try:
+        if path.is_file():
+            return path
+        if path.is_dir():
+            raise InvalidParameterError(name, rule, str(path), "this is a folder")
+        if path.exists():
+            raise InvalidParameterError(name, rule, str(path), "this is no regular file")
+    except OSError as error:
+        raise InvalidParameterError(name, rule, Shown(f"{path} ({error.strerror})")) from None
+    raise InvalidParameterError(name, rule, str(path), _neighbour(path))
+
+
+def _neighbour(path: Path) -> str:
+    """Return which file beside a missing one may have been meant, else where it was looked for."""
+    folder = Path(*path.parts[:-1]) if len(path.parts) > 1 else Path()
+    try:
+        if not folder.is_dir():
+            return f"there is no folder {folder}"
+        names = [each.name for each in itertools.islice(folder.iterdir(), 1000) if each.suffix == path.suffix]
+    except (OSError, ValueError):
+        return "it cannot be looked for"
+    near = meant(path.name, names)
+    return near or f"no such file in {folder.absolute()}"
+
+
 def callback(name: str, value: Call | None) -> Call | None:
     """Return ``value`` if it can be called or is ``None``."""
     if value is not None and not callable(value):
@@ -128,11 +158,15 @@ def callback(name: str, value: Call | None) -> Call | None:
     return value
 
 
+def with_article(noun: str) -> str:
+    """Return a noun after ``a`` or ``an``, by its first letter."""
+    return f"an {noun}" if noun[:1] in tuple("AEIOUaeiou") else f"a {noun}"
+
+
 def instance(name: str, value: object, kind: type[Kind]) -> Kind:
     """Return ``value`` if it is of the kind, or say that it should have been."""
     if not isinstance(value, kind):
-        article = "an" if kind.__name__[0] in "AEIOU" else "a"
-        raise InvalidParameterError(name, f"be {article} {kind.__name__}", value)
+        raise InvalidParameterError(name, f"be {with_article(kind.__name__)}", value)
     return value
 
 

@@ -59,7 +59,11 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
     OSError
         If the file cannot be written; nothing is left behind and an older file stays as it was.
     """
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        error.filename = str(path)
+        raise
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -69,6 +73,9 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
                 os.fsync(file.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
-    except BaseException:
+    except BaseException as error:
         temporary.unlink(missing_ok=True)
+        # A full disk fails a write, which knows no name; the temporary name helps nobody.
+        if isinstance(error, OSError) and error.filename in (None, name):
+            error.filename = str(path)
         raise

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "CONTACT_SPEED",
     "AsBuilt",
     "Burst",
     "Camera",
@@ -134,6 +135,8 @@ __all__ = [
     "wheel_reference",
     "wheel_response",
 ]
+
+CONTACT_SPEED: float
 
 _Pair = tuple[float, float]
 _Triple = tuple[float, float, float]

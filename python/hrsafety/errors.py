@@ -43,6 +43,10 @@ class InvalidParameterError(HrsafetyError, ValueError):
         self.value = value
         self.remedy = remedy
 
+    def renamed(self, argument: str) -> InvalidParameterError:
+        """Return the same error under another name of its argument, as a file or a caller knows it."""
+        return InvalidParameterError(argument, self.requirement, self.value, self.remedy)
+
     def __str__(self) -> str:
         """Return the sentence that names argument, rule, value and remedy."""
         shown = self.value if isinstance(self.value, Shown) else repr(self.value)

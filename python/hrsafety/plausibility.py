@@ -75,13 +75,25 @@ RANGES: dict[str, Range] = {
     "robot_max_speed": Range(
         0.01, 10.0, "m/s", "slowest inspection robots to fast delivery robots", "mm/s or km/h given for m/s"
     ),
+    "walking_speed": Range(
+        0.01,
+        4.0,
+        "m/s",
+        "people who wait to people who run slowly",
+        "millimeters or pixels given for meters, or frames or milliseconds for seconds",
+    ),
+    "running_speed": Range(
+        0.0,
+        12.5,
+        "m/s",
+        "fastest sprint over 100 m",
+        "ids that changed from one person to another, or a wrong position",
+    ),
     # ---- impact -----------------------------------------------------------------------------
 }
 
 
-def implausible(
-    values: Mapping[str, object], quantities: Mapping[str, str] | None = None
-) -> tuple[ResultWarning, ...]:
+def implausible(values: Mapping[str, object], quantities: Mapping[str, str] | None = None) -> tuple[ResultWarning, ...]:
     """Return a warning for every value outside the plausible range of its quantity.
 
     Parameters

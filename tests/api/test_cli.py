@@ -213,7 +213,8 @@ def test_the_chosen_run_or_the_one_that_met_most_people_is_animated(
 ) -> None:
     seen: list[nav.Trajectory] = []
 
-    def film(trajectory: nav.Trajectory, path: str) -> Path:
+    def film(trajectory: nav.Trajectory, path: str, progress: object) -> Path:
+        assert progress is None  # only a terminal is told
         seen.append(trajectory)
         return Path(path)
 
@@ -242,8 +243,14 @@ BAD_COMMANDS = {
     "unknown command": (["fly"], "invalid choice: 'fly'"),
     "nothing to simulate": (["simulate"], "needs either a scenario file or --people"),
     "both": (["simulate", "SCENE", "--people", "PEOPLE"], "needs either a scenario file or --people"),
-    "missing file": (["simulate", "nowhere.toml"], "path must name a readable file, got nowhere.toml"),
-    "missing people": (["simulate", "--people", "nowhere.csv"], "path must name a readable file, got nowhere.csv"),
+    "missing file": (
+        ["simulate", "nowhere.toml"],
+        "path must name a readable file, got 'nowhere.toml'; no such file in",
+    ),
+    "missing people": (
+        ["simulate", "--people", "nowhere.csv"],
+        "path must name a readable file, got 'nowhere.csv'; no such file in",
+    ),
     "not a scenario": (["simulate", "PEOPLE"], "must be a TOML file"),
     "not people": (["simulate", "--people", "SCENE"], "line 1 must have one column frame"),
     "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains must be 4 numbers: attractive_gain"),
@@ -251,7 +258,7 @@ BAD_COMMANDS = {
     "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: invalid float value: 'x'"),
     "negative gain": (["simulate", "SCENE", "--gains", "1", "2", "-3", "0.1"], "detour_gain must"),
     "nan gain": (["simulate", "SCENE", "--gains", "1", "2", "nan", "0.1"], "detour_gain must"),
-    "unknown law": (["simulate", "SCENE", "--law", "astar"], "invalid choice: 'astar'"),
+    "unknown law": (["simulate", "SCENE", "--law", "astar"], "got 'astar'; did you mean \"dstar\"?"),
     "unknown mode": (["simulate", "SCENE", "--stabilizing", "on"], "invalid choice: 'on'"),
     "step zero": (["simulate", "SCENE", "--step", "0"], "step must"),
     "step does not divide": (["simulate", "SCENE", "--step", "0.025"], "step must"),

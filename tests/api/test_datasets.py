@@ -187,11 +187,17 @@ HEADER = "frame,t_s,ped_id,x_m,y_m\n"
 BAD_FILES = {
     "empty": ("", "line 1 must name the columns"),
     "header only": (HEADER, "must hold at least one row, got the header only"),
-    "missing column": ("frame,t_s,ped_id,x_m\n0,0,1,0\n", "line 1 must have one column y_m, got none"),
-    "extra column": ("frame,t_s,ped_id,x_m,y_m,z_m\n0,0,1,0,0,0\n", "have no other columns than .*, got z_m"),
+    "missing column": (
+        "frame,t_s,ped_id,x_m\n0,0,1,0\n",
+        "line 1 must have one column y_m, got the columns frame, t_s, ped_id, x_m",
+    ),
+    "extra column": ("frame,t_s,ped_id,x_m,y_m,z_m\n0,0,1,0,0,0\n", "have no other columns than .*, got 'z_m'"),
     "double column": ("frame,t_s,ped_id,x_m,x_m\n0,0,1,0,0\n", "have one column x_m, got 2"),
-    "wrong unit": ("frame,t_ms,ped_id,x_m,y_m\n0,0,1,0,0\n", "have one column t_s, got none"),
-    "no header": ("0,0.0,1,0,0\n", "line 1 must have one column frame"),
+    "wrong unit": (
+        "frame,t_ms,ped_id,x_m,y_m\n0,0,1,0,0\n",
+        "have one column t_s, got .*; convert t_ms to the unit of t_s",
+    ),
+    "no header": ("0,0.0,1,0,0\n", "line 1 must name the columns frame, .*, got numbers; write frame,t_s,"),
     "word": (HEADER + "0,0,1,0,0\n10,0.4,1,abc,0\n", "line 3, column x_m must be a finite number, got 'abc'"),
     "blank": (HEADER + "0,0,1,,0\n", "line 2, column x_m must be a finite number, got ''"),
     "nan": (HEADER + "0,nan,1,0,0\n", "line 2, column t_s must be a finite number, got 'nan'"),
@@ -212,7 +218,7 @@ BAD_FILES = {
     "latin": (HEADER.encode() + b"0,0,1,\xe9,0\n", "must be UTF-8 text, got byte 0xe9"),
     "binary": (bytes(range(256)), "must"),
     "open quote": (HEADER + '0,0,1,"0,0\n', "must be comma-separated text"),
-    "semicolons": (HEADER.replace(",", ";") + "0;0;1;0;0\n", "line 1 must have one column frame"),
+    "semicolons": (HEADER.replace(",", ";") + "0;0;1;0;0\n", "got semicolons between the columns frame, t_s,"),
 }
 
 

@@ -166,7 +166,7 @@ BAD_FILES = {
         r"obstacles\[1\]\.radius must be .*positive.*, got -0.1",
     ),
     "radius text": (DISC_ROOM.replace("0.1", '"0.1"'), OBSTACLE + r"\.radius must be a number, got '0.1'"),
-    "radius true": (DISC_ROOM.replace("0.1", "true"), OBSTACLE + r"\.radius must be a number, got True"),
+    "radius true": (DISC_ROOM.replace("0.1", "true"), OBSTACLE + r"\.radius must be a number, got true"),
     "radius nan": (DISC_ROOM.replace("0.1", "nan"), OBSTACLE + r"\.radius must be .*finite.*, got nan"),
     "radius date": (DISC_ROOM.replace("0.1", "2020-01-01"), OBSTACLE + r"\.radius must be a number"),
     "radius huge": (
@@ -187,7 +187,10 @@ BAD_FILES = {
     ),
     "start true": ("start = [true, 1]\ngoal = [5, 5]\n", "start must be an array of 2 numbers"),
     "start inf": ("start = [inf, 1]\ngoal = [5, 5]\n", "start.* must .*finite"),
-    "obstacles table": (ROOM + "[obstacles]\ntype = 1\n", "obstacles must be an array of tables, got a table"),
+    "obstacles table": (
+        ROOM + "[obstacles]\ntype = 1\n",
+        "obstacles must be an array of tables, got a single table; write",
+    ),
     "obstacles numbers": (ROOM + "obstacles = [1]\n", r"obstacles\[0\] must be a table, got 1"),
     "robot number": (ROOM + "robot = 1\n", "robot must be a table, got 1"),
     "seed float": (ROOM + "seed = 1.5\n", "seed must be an integer"),

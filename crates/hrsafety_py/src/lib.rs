@@ -24,13 +24,14 @@ use pyo3::prelude::*;
 mod _hrsafety {
     use super::{Bound, PyModule, PyResult};
     use numpy::{PyArray1, PyArrayMethods};
+    use pyo3::types::PyModuleMethods;
 
     /// Imports what arrays need now: an exception in an import later on, such as that of Ctrl-C,
     /// would be a panic.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         PyArray1::<f64>::zeros(module.py(), 0, false).try_readonly()?;
-        Ok(())
+        module.add("CONTACT_SPEED", vff_core::simulate::CONTACT_SPEED)
     }
 
     #[pymodule_export]

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from hrsafety.cli import exit_codes
+from hrsafety.cli import exit_codes, font_cache
 from hrsafety.cli.parsers import LAW_NAMES, UsageError, parser
 from hrsafety.errors import HrsafetyError
 
@@ -55,6 +55,7 @@ def _run(argv: Sequence[str] | None) -> int:
     code: object = exit_codes.DONE
     try:
         options = parser().parse_args(argv)
+        font_cache.keep_apart()
         _COMMANDS[options.command](options)
     except SystemExit as request:
         code = request.code

@@ -14,7 +14,6 @@ import numpy as np
 from hrsafety import impact
 from hrsafety.cli import foam_page, output
 from hrsafety.cli.foam_file import Array, FoamDesignFile, load
-from hrsafety.errors import InvalidParameterError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -125,13 +124,10 @@ def design_file(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety foam``.
     """
-    try:
+    output.planned_folder(options.out)
+    output.require_matplotlib("foam")
+    with output.located(options.design):
         described = load(options.design)
-    except InvalidParameterError as error:
-        if error.argument == "path":
-            raise
-        where = f"{options.design}: {error.argument}"
-        raise InvalidParameterError(where, error.requirement, error.value) from None
     place = output.folder(options.out)
     report = _report(described)
     print(f"design         {options.design}")

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import impact
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import files
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
@@ -161,7 +161,9 @@ def _foams(tables: list[dict[str, Any]]) -> dict[str, impact.Foam]:
         given = checked(path, table, _FOAM, required=("name", "stiffness", "damping"))
         name = given.pop("name")
         if name in foams or not name.strip():
-            raise InvalidParameterError(f"{path}.name", "be a name that no other foam has", name or "an empty text")
+            raise InvalidParameterError(
+                f"{path}.name", "be a name that no other foam has", name or Shown("an empty text")
+            )
         with located(path):
             foams[name] = impact.Foam(**given)
     return foams

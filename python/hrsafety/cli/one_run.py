@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.cli import output
+from hrsafety.cli import output, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.errors import InvalidParameterError
 
 __all__ = ["simulate_file"]
 
@@ -30,16 +32,13 @@ def simulate_file(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety simulate``.
     """
-    try:
+    fail_on = verdict.failures_of(options.fail_on)
+    output.check_targets(options)
+    with output.located(options.scenario):
         described = scenarios.load(options.scenario)
-    except InvalidParameterError as error:
-        if error.argument == "path":
-            raise
-        where = f"{options.scenario}: {error.argument}"
-        raise InvalidParameterError(where, error.requirement, error.value) from None
     scenario, law = described.scenario, output.with_options(described.law, options)
-    place = None if options.out is None else output.folder(options.out)
     score = nav.evaluate(scenario, law, integrator=options.integrator, step=options.step, hold=options.hold)
+    place = None if options.out is None else output.folder(options.out)
     print(f"scenario  {options.scenario}")
     print(f"law       {output.law_words(law)}")
     print(f"stepping  {output.stepping_words(options, scenario.control_period)}")
@@ -54,6 +53,30 @@ def simulate_file(options: argparse.Namespace) -> None:
     if written:
         print()
         print("\n".join(f"wrote {path}" for path in written))
+    found = (*getattr(scenario, "warnings", ()), *getattr(score.trajectory, "warnings", ()))
+    output.report_warnings(found, strict=False)
+    counts = verdict.counted(score.trajectory)
+    print()
+    print(verdict.sentence(_how_it_ended(score.trajectory), counts, fail_on, 1))
+    verdict.leave(counts, fail_on)
+    output.leave_if_strict(found, options.strict)
+
+
+def _how_it_ended(run: nav.Trajectory) -> str:
+    """Return in one sentence what came of a run."""
+    if run.outcome == "arrived":
+        return f"arrived after {run.arrival_time:.2f} s without a contact"
+    left = math.dist(run.position[-1], run.scenario.goal)
+    arrived = math.isfinite(run.arrival_time)
+    end = f"arrived after {run.arrival_time:.2f} s" if arrived else f"ended {left:.2f} m from the goal"
+    if run.outcome == "collided":
+        first = int(np.nanargmin(run.contact_time))
+        kind = type(run.scenario.obstacles[first]).__name__
+        when = f"at {run.contact_time[first]:.2f} s with {run.contact_speed[first]:.2f} m/s"
+        return f"contact with obstacle {first} ({kind}) {when}, then {end}"
+    if run.outcome == "timed_out":
+        return f"timed out after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
+    return f"stopped for good after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
 
 
 def _summary(score: nav.Performance) -> Iterator[str]:

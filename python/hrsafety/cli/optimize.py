@@ -69,6 +69,8 @@ def optimize_file(options: argparse.Namespace) -> None:
     KeyboardInterrupt
         After Ctrl-C, when checkpoint and best gains so far have been written.
     """
+    output.planned_folder(options.out)
+    output.require_matplotlib("optimize")
     study = _loaded(options.study)
     new = not Path(options.out).exists()
     place = output.folder(options.out)
@@ -92,12 +94,8 @@ def _checkpoints(study: GainStudy, place: Path) -> tuple[Path, Path]:
 
 
 def _loaded(path: str) -> GainStudy:
-    try:
+    with output.located(path):
         return load(path)
-    except InvalidParameterError as error:
-        if error.argument == "path":
-            raise
-        raise InvalidParameterError(f"{path}: {error.argument}", error.requirement, error.value) from None
 
 
 def _located(path: str, error: InvalidParameterError) -> InvalidParameterError:
@@ -107,10 +105,10 @@ def _located(path: str, error: InvalidParameterError) -> InvalidParameterError:
     if name.startswith("--"):
         return error
     if name == "threads":
-        return InvalidParameterError("--threads", error.requirement, error.value)
+        return error.renamed("--threads")
     if name in _TABLES:
         argument = "objective.metric" if name == "objective" else f"{_TABLES[name]}.{argument}"
-    return InvalidParameterError(f"{path}: {argument}", error.requirement, error.value)
+    return error.renamed(f"{path}: {argument}")
 
 
 # ---- searching --------------------------------------------------------------------------------------
@@ -199,7 +197,7 @@ def _check_front(study: GainStudy) -> None:
     except InvalidParameterError as error:
         own = re.split(r"[.\[]", error.argument, maxsplit=1)[0] in {"objectives", *(study.front or {})}
         argument = f"front.{error.argument}" if own else error.argument
-        raise InvalidParameterError(argument, error.requirement, error.value) from None
+        raise error.renamed(argument) from None
 
 
 def _leave(options: argparse.Namespace, study: GainStudy, search: nav.GainSearch, place: Path) -> None:

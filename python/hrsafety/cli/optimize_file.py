@@ -9,7 +9,8 @@ from typing import Any
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.errors import InvalidParameterError
+from hrsafety._arguments import meant
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gain_metrics import METRICS
 from hrsafety.scenarios import files, laws
 from hrsafety.scenarios import keys as kind
@@ -145,7 +146,7 @@ def load(path: str) -> GainStudy:
         _constraint(f"constraints[{index}]", table, names) for index, table in enumerate(fields.get("constraints", []))
     )
     if "checkpoint" in fields and not fields["checkpoint"].strip():
-        raise InvalidParameterError("checkpoint", "name a file", "an empty text")
+        raise InvalidParameterError("checkpoint", "name a file", Shown("an empty text"))
     return GainStudy(
         title=fields.get("title", "Gains"),
         names=names,
@@ -169,7 +170,7 @@ def _law(table: dict[str, Any]) -> nav.VirtualForceField:
 def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple[nav.Scenario, ...]]:
     """Return the scenarios with short names: published configurations and scenario files."""
     if not given:
-        raise InvalidParameterError("scenarios", "name at least one scenario", "an empty array")
+        raise InvalidParameterError("scenarios", "name at least one scenario", Shown("an empty array"))
     found: dict[str, nav.Scenario] = {}
     for index, word in enumerate(given):
         where = f"scenarios[{index}]"
@@ -186,11 +187,12 @@ def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple
 def _scenario_file(where: str, path: Path, word: str) -> nav.Scenario:
     if not path.is_file():
         known = ", ".join(scenarios.CONFIGURATIONS)
-        raise InvalidParameterError(where, f"be a scenario file or one of {known}", word)
+        near = meant(word, scenarios.CONFIGURATIONS) or f"there is no file {path}"
+        raise InvalidParameterError(where, f"be a scenario file or one of {known}", word, near)
     try:
         return files.load(path).scenario
     except InvalidParameterError as error:
-        raise InvalidParameterError(f"{where}: {word}: {error.argument}", error.requirement, error.value) from None
+        raise error.renamed(f"{where}: {word}: {error.argument}") from None
 
 
 def _objective(table: dict[str, Any]) -> dict[str, Any]:
@@ -201,17 +203,13 @@ def _objective(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _metric(path: str, word: str) -> str:
-    if word not in METRICS:
-        raise InvalidParameterError(path, f"be one of {', '.join(METRICS)}", word)
-    return word
+    return kind.one_of(path, word, METRICS)
 
 
 def _constraint(path: str, table: dict[str, Any], names: tuple[str, ...]) -> nav.GainConstraint:
     given = checked(path, table, _CONSTRAINT, required=("metric",))
     if "scenario" in given:
-        name = given["scenario"]
-        if name not in names:
-            raise InvalidParameterError(f"{path}.scenario", f"be one of {', '.join(names)}", name)
+        name = kind.one_of(f"{path}.scenario", given["scenario"], names)
         given["scenario"] = names.index(name)
     with located(path):
         return nav.GainConstraint(**given)
@@ -222,7 +220,9 @@ def _front(table: dict[str, Any]) -> dict[str, Any]:
     if "objectives" in given:
         words = [_metric(f"front.objectives[{index}]", word) for index, word in enumerate(given["objectives"])]
         if len(words) < 2 or len(set(words)) < len(words):
-            raise InvalidParameterError("front.objectives", "name at least two different metrics", ", ".join(words))
+            raise InvalidParameterError(
+                "front.objectives", "name at least two different metrics", Shown(", ".join(words))
+            )
         given["objectives"] = tuple(words)
     return given
 
@@ -234,7 +234,9 @@ def _compare(tables: list[dict[str, Any]]) -> dict[str, Gains]:
         given = checked(path, table, _COMPARE, required=tuple(_COMPARE))
         name = given.pop("name")
         if name in found or not name.strip():
-            raise InvalidParameterError(f"{path}.name", "be a name that no other gain set has", name or "an empty text")
+            raise InvalidParameterError(
+                f"{path}.name", "be a name that no other gain set has", name or Shown("an empty text")
+            )
         with located(path):
             found[name] = nav.VirtualForceField(**given).gains
     return found

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import argparse
 import csv
+import importlib.util
 import io
 import math
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import meant
 from hrsafety._atomic import write_file
 from hrsafety.cli.exit_codes import WARNED
-from hrsafety.errors import InvalidParameterError
+from hrsafety.cli.progress import live
+from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
 from hrsafety.plausibility import ResultWarning
-from hrsafety.scenarios.laws import LAWS, name_of
+from hrsafety.scenarios.laws import law_named, name_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,11 +29,18 @@ if TYPE_CHECKING:
 __all__ = [
     "aligned",
     "animation",
+    "check_targets",
     "decimal",
     "folder",
     "law_words",
+    "leave_if_strict",
+    "located",
+    "planned_animation",
+    "planned_folder",
     "report_warnings",
+    "require_matplotlib",
     "stepping_words",
+    "target",
     "with_options",
     "write_csv",
     "write_picture",
@@ -75,13 +86,14 @@ def decimal(value: float, digits: int = 2) -> str:
 def with_options(law: nav.Law, options: argparse.Namespace) -> nav.Law:
     """Return the law with what the command line changes."""
     if options.law is not None:
-        named = LAWS[options.law.replace("-", "_")]
+        named = law_named("--law", options.law)
         law = law if type(law) is named else named()
     changes: dict[str, object] = {}
     if options.gains is not None:
         names = law.GAIN_NAMES
         if len(options.gains) != len(names):
-            raise InvalidParameterError("--gains", f"be {len(names)} numbers: {', '.join(names)}", options.gains)
+            rule = f"be {len(names)} numbers: {', '.join(names)}"
+            raise InvalidParameterError("--gains", rule, Shown(" ".join(f"{gain:g}" for gain in options.gains)))
         changes |= dict(zip(names, options.gains, strict=True))
     if options.stabilizing is not None:
         if not isinstance(law, nav.VirtualForceField):
@@ -129,7 +141,18 @@ def report_warnings(found: Iterable[ResultWarning], strict: bool) -> None:
     begin, end = ("\x1b[33m", "\x1b[0m") if _colored() else ("", "")
     for each in different:
         print(f"{begin}hrsafety: {' '.join(str(each).split())}{end}", file=sys.stderr)
-    if different and strict:
+    leave_if_strict(different, strict)
+
+
+def leave_if_strict(found: Iterable[ResultWarning], strict: bool) -> None:
+    """Leave with exit code 4 if there are warnings and ``strict`` is true.
+
+    Raises
+    ------
+    SystemExit
+        Then.
+    """
+    if strict and any(True for _ in found):
         print(f"hrsafety: warnings with --strict: exit code {WARNED}", file=sys.stderr)
         raise SystemExit(WARNED)
 
@@ -139,13 +162,88 @@ def _colored() -> bool:
     return sys.stderr.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
+@contextmanager
+def located(file: str) -> Iterator[None]:
+    """Put the name of the file that a command was given before the key that an error names."""
+    try:
+        yield
+    except InvalidParameterError as error:
+        if error.argument == "path" or error.argument.startswith("--"):
+            raise
+        raise error.renamed(f"{file}: {error.argument}") from None
+
+
+def planned_folder(path: str) -> Path:
+    """Return a folder that exists or can be made, and leave it to `folder` to make it."""
+    place = Path(path)
+    if _exists("--out", place) and not place.is_dir():
+        raise InvalidParameterError("--out", "be a folder or not exist", path, "this is a file")
+    _check_parents("--out", place)
+    return place
+
+
 def folder(path: str) -> Path:
     """Return a folder that exists."""
-    place = Path(path)
-    if place.exists() and not place.is_dir():
-        raise InvalidParameterError("--out", "be a folder or not exist", path)
+    place = planned_folder(path)
     place.mkdir(parents=True, exist_ok=True)
     return place
+
+
+def target(option: str, path: str, suffixes: Sequence[str] = ()) -> Path:
+    """Return a file that can be written, checked before anything is computed.
+
+    Parameters
+    ----------
+    option : str
+        The option that names it.
+    path : str
+        As given.
+    suffixes : sequence of str
+        Endings of which it must have one; any if there are none.
+    """
+    place = Path(path)
+    if suffixes and place.suffix.lower() not in suffixes:
+        near = meant(place.suffix, suffixes)
+        raise InvalidParameterError(option, f"end in {' or '.join(suffixes)}", path, near)
+    if _exists(option, place) and place.is_dir():
+        raise InvalidParameterError(option, "name a file", path, "this is a folder")
+    _check_parents(option, place)
+    return place
+
+
+def _exists(option: str, place: Path) -> bool:
+    try:
+        return place.exists()
+    except (OSError, ValueError) as error:
+        raise InvalidParameterError(option, "be a path", Shown(f"{place} ({error})")) from None
+
+
+def _check_parents(option: str, place: Path) -> None:
+    """Refuse a path below a file, or below a folder where nothing may be written."""
+    for parent in place.absolute().parents:
+        if parent.is_dir():
+            if not place.exists() and not os.access(parent, os.W_OK):
+                raise InvalidParameterError(option, "lie where files may be written", str(place))
+            return
+        if parent.exists():
+            raise InvalidParameterError(option, f"not lie below {parent}", str(place), "this is a file")
+
+
+def check_targets(options: argparse.Namespace) -> None:
+    """Refuse before a run the folder and files that could not be written after it."""
+    if options.out is not None:
+        planned_folder(options.out)
+        require_matplotlib("--out")
+    if options.animate is not None:
+        planned_animation(options.animate)
+    if options.json is not None:
+        target("--json", options.json)
+
+
+def require_matplotlib(option: str) -> None:
+    """Find out before the run that its pictures cannot be made."""
+    if importlib.util.find_spec("matplotlib") is None:
+        raise MissingExtraError(f"{option} makes pictures and needs matplotlib: pip install hrsafety[plot]")
 
 
 def write_text(path: Path, text: str) -> Path:
@@ -171,9 +269,20 @@ def write_picture(path: Path, figure: Figure) -> Path:
     return write_file(path, buffer.getvalue())
 
 
+def planned_animation(path: str) -> None:
+    """Refuse before the run an animation that could not be written after it."""
+    target("--animate", path, (".gif", ".mp4"))
+    require_matplotlib("--animate")
+    from hrsafety.plotting import movies
+
+    movies.check_writer(Path(path))
+
+
 def animation(trajectory: nav.Trajectory, path: str) -> Path:
-    """Write an animation of a run, with its folder."""
+    """Write an animation of a run, with its folder; a terminal sees how far it is."""
     from hrsafety import plotting
 
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    return plotting.animate(trajectory, path)
+    with live() as shown:
+        report = None if shown is None else lambda done, total: shown("frames", done, total, None)
+        return plotting.animate(trajectory, path, progress=report)

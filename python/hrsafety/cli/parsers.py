@@ -140,8 +140,17 @@ def _add_simulate(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", help="folder for tables (CSV) and pictures")
     _add_strict(parser)
     parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
+    parser.add_argument(
+        "--fail-on",
+        metavar="WORDS",
+        help="exit with code 3, after everything was written, if in any run one of these happened: contact, "
+        "moving_contact (the robot moved), timed_out, stopped, not_arrived (also after a contact), any (anything but "
+        "an arrival without a contact); several with commas between. Without it the last line says how the runs ended",
+    )
     law = parser.add_argument_group("law (what is not given comes from the scenario file, else from the defaults)")
-    law.add_argument("--law", metavar="NAME", choices=LAW_NAMES, help=", ".join(LAW_NAMES))
+    law.add_argument(
+        "--law", metavar="NAME", help=f"{', '.join(LAW_NAMES)}; or short: vff, vo, rrt, dstar, orca and others"
+    )
     law.add_argument(
         "--gains",
         nargs="+",

@@ -15,9 +15,10 @@ import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
-from hrsafety.cli import output
+from hrsafety.cli import output, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -53,13 +54,17 @@ def simulate_people(options: argparse.Namespace) -> None:
     shown = options.animate_run
     if shown is not None and not 0 <= shown < runs:
         raise InvalidParameterError("--animate-run", f"be from 0 to {runs - 1}", shown)
-    place = None if options.out is None else output.folder(options.out)
+    if shown is not None and options.animate is None:
+        raise InvalidParameterError("--animate-run", "come with --animate FILE", shown)
+    fail_on = verdict.failures_of(options.fail_on)
+    output.check_targets(options)
     law = output.with_options(nav.VirtualForceField(), options)
     recording = datasets.load_pedestrians(options.people)
     crossings = scenarios.crossings(recording, runs=runs, selection=options.selection or "busiest")
     stepping = {"integrator": options.integrator, "step": options.step, "hold": options.hold}
     summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
     met = _encounters(crossings, summary)
+    place = None if options.out is None else output.folder(options.out)
     print("\n".join(_heading(options, recording, crossings, law)))
     print()
     print(_run_table(crossings, summary))
@@ -79,6 +84,28 @@ def simulate_people(options: argparse.Namespace) -> None:
     if written:
         print()
         print("\n".join(f"wrote {path}" for path in written))
+    found = (*recording.warnings, *_scenario_warnings(crossings))
+    output.report_warnings(found, strict=False)
+    counts = verdict.counted(summary)
+    print()
+    print(verdict.sentence(_how_they_ended(summary, counts), counts, fail_on, len(summary)))
+    verdict.leave(counts, fail_on)
+    output.leave_if_strict(found, options.strict)
+
+
+def _scenario_warnings(crossings: Sequence[scenarios.Crossing]) -> Iterator[ResultWarning]:
+    for crossing in crossings:
+        yield from getattr(crossing.scenario, "warnings", ())
+
+
+def _how_they_ended(summary: nav.BatchSummary, counts: verdict.Counts) -> str:
+    """Return in one sentence what came of all runs."""
+    arrived = len(summary) - counts["any"]
+    return (
+        f"{arrived} of {len(summary)} runs arrived without a contact, {counts['contact']} had one "
+        f"({counts['moving_contact']} with the robot moving), {counts['timed_out']} timed out, "
+        f"{counts['stopped']} stopped"
+    )
 
 
 def _encounters(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> _Encounters:

@@ -38,20 +38,18 @@ def sweep_file(options: argparse.Namespace) -> None:
     KeyboardInterrupt
         After Ctrl-C, when it was said what is finished.
     """
-    if options.table is not None and Path(options.table).suffix not in _FORMATS:
-        raise InvalidParameterError("--table", f"end in {' or '.join(_FORMATS)}", options.table)
+    output.planned_folder(options.out)
+    output.require_matplotlib("sweep")
+    if options.table is not None:
+        output.target("--table", options.table, _FORMATS)
     if options.workers is not None and options.workers < 1:
         raise InvalidParameterError("--workers", "be at least 1", options.workers)
     if options.workers is not None and options.scheduler is not None:
         raise InvalidParameterError("--workers", "not be given with --scheduler", options.workers)
-    try:
+    with output.located(options.study):
         described = load(options.study)
         begin = time.perf_counter()
         result = _run(options, described)
-    except InvalidParameterError as error:
-        if error.argument == "path" or error.argument.startswith("--"):
-            raise
-        raise InvalidParameterError(f"{options.study}: {error.argument}", error.requirement, error.value) from None
     seconds = time.perf_counter() - begin
     summary = summarized(result)
     print("\n".join(_words(options, described, summary, seconds)))

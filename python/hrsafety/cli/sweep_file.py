@@ -9,8 +9,9 @@ from types import MappingProxyType
 from typing import Any
 
 from hrsafety import impact, sweep
+from hrsafety._arguments import meant
 from hrsafety.cli import foam_file, optimize_file
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import files, laws
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
@@ -144,8 +145,7 @@ def load(path: str) -> SweepFile:
     design = _design(fields.get("design", {}), axes)
     drawn = [column.name for column in study.columns() if column.kind != "word"]
     for index, name in enumerate(fields.get("show", [])):
-        if name not in drawn:
-            raise InvalidParameterError(f"show[{index}]", f"be one of {', '.join(drawn)}", name)
+        kind.one_of(f"show[{index}]", name, drawn)
     chosen = fields.get("show") or [name for name in drawn if name in _SHOWN] or drawn[:1]
     return SweepFile(
         title=fields.get("title", f"Sweep of {' and '.join(axis.name.replace('_', ' ') for axis in axes)}"),
@@ -169,19 +169,18 @@ def _axis(path: str, table: dict[str, Any]) -> sweep.Axis:
         return sweep.Axis(**renamed)
     except InvalidParameterError as error:
         own = {"low": "from", "high": "to"}.get(error.argument, error.argument)
-        raise InvalidParameterError(f"{path}.{own}", error.requirement, error.value) from None
+        raise error.renamed(f"{path}.{own}") from None
 
 
 def _design(table: dict[str, Any], axes: list[sweep.Axis]) -> sweep.Design:
     given = checked("design", table, _DESIGN)
     name = given.pop("kind", "grid")
-    if name not in _DESIGNS:
-        raise InvalidParameterError("design.kind", f"be one of {', '.join(_DESIGNS)}", name)
+    kind.one_of("design.kind", name, _DESIGNS)
     unknown = [key for key in given if name == "grid" or (key == "scramble" and name != "sobol")]
     if unknown:
         raise InvalidParameterError(f"design.{unknown[0]}", f"not be given for a {name}", given[unknown[0]])
     if name != "grid" and "size" not in given:
-        raise InvalidParameterError("design.size", f"be given for a {name}", "nothing")
+        raise InvalidParameterError("design.size", f"be given for a {name}", Shown("nothing"))
     with located("design"):
         if name == "grid":
             return sweep.Grid(tuple(axes))
@@ -213,7 +212,8 @@ def _impact(fields: dict[str, Any]) -> sweep.ImpactStudy:
 def _head(given: str | dict[str, Any]) -> impact.Head | impact.ConstrainedHead:
     if isinstance(given, str):
         if given not in _HEADS:
-            raise InvalidParameterError("head", f"be a table or one of {', '.join(_HEADS)}", given)
+            rule = f"be a table or one of {', '.join(_HEADS)}"
+            raise InvalidParameterError("head", rule, kind.shown(given), meant(given, _HEADS))
         return _HEADS[given]()
     numbers = checked("head", given, _HEAD, required=tuple(_HEAD))
     with located("head"):

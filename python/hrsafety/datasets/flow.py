@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 
 __all__ = ["Flow", "flow_of"]
 
@@ -59,7 +59,7 @@ def _principal_axis(tracks: list[tuple[Array, Array]]) -> Array:
     steps = np.concatenate([np.diff(position, axis=0) for _, position in tracks])
     spans = np.concatenate([np.diff(time) for time, _ in tracks])
     if not steps.any():
-        raise InvalidParameterError("recording", "hold people who move", "nobody who does")
+        raise InvalidParameterError("recording", "hold people who move", Shown("nobody who does"))
     scatter = np.einsum("ni,nj,n->ij", steps, steps, 1.0 / spans)
     axis: Array = np.linalg.eigh(scatter)[1][:, 1]
     net = float(steps.sum(axis=0) @ axis)

@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import with_article
 from hrsafety.datasets.flow import Flow, flow_of
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Recording"]
 
@@ -58,13 +60,13 @@ class Recording:
         if time.ndim != 1:
             raise ShapeError("time_s", "(n,)", time.shape)
         if len(time) == 0:
-            raise InvalidParameterError("time_s", "hold at least one row", "an empty array")
+            raise InvalidParameterError("time_s", "hold at least one row", Shown("an empty array"))
         if person.shape != time.shape:
             raise ShapeError("person", f"({len(time)},)", person.shape)
         if position.shape != (len(time), 2):
             raise ShapeError("position", f"({len(time)}, 2)", position.shape)
         if person.dtype.kind not in "iu":
-            raise InvalidParameterError("person", "hold integers", str(person.dtype))
+            raise InvalidParameterError("person", "hold integers", Shown(str(person.dtype)))
         _check_order(time, person)
         for name, array in (("time_s", time), ("person", person.astype(np.int64)), ("position", position)):
             array.setflags(write=False)
@@ -78,6 +80,33 @@ class Recording:
     def duration(self) -> float:
         """Time from the first to the last row in s."""
         return float(self.time_s[-1] - self.time_s[0])
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Doubts about units: speeds that people hardly walk at, in the median of all steps or in a single one.
+
+        Examples
+        --------
+        >>> from hrsafety.datasets import Recording
+        >>> millimeters = Recording(time_s=[0.0, 0.4], person=[7, 7], position=[[0, 0], [500, 0]])
+        >>> millimeters.warnings[0].code
+        'implausible'
+        """
+        order = np.lexsort((self.time_s, self.person))
+        same = np.diff(self.person[order]) == 0
+        steps = np.hypot(*np.diff(self.position[order], axis=0)[same].T)
+        speed = steps / np.diff(self.time_s[order])[same]
+        walking = speed[speed > 0.0]
+        if len(walking) == 0:
+            return ()
+        median = float(np.median(walking))
+        found = implausible({"median speed of the people": median}, {"median speed of the people": "walking_speed"})
+        if found:
+            return found
+        fastest = int(np.argmax(speed))
+        row = order[:-1][same][fastest]
+        name = f"speed of person {self.person[row]} after {self.time_s[row]:g} s"
+        return implausible({name: float(speed[fastest])}, {name: "running_speed"})
 
     def people(self) -> npt.NDArray[np.int64]:
         """Return the ids of all people, sorted."""
@@ -239,7 +268,7 @@ def _finite(name: str, value: npt.ArrayLike) -> Array:
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InvalidParameterError(name, "be an array of numbers", type(value).__name__) from None
+        raise InvalidParameterError(name, "be an array of numbers", Shown(with_article(type(value).__name__))) from None
     if not np.isfinite(array).all():
         raise InvalidParameterError(name, "be finite", float(array[~np.isfinite(array)][0]))
     return array
@@ -254,7 +283,7 @@ def _check_order(time: Array, person: npt.NDArray[Any]) -> None:
     same = (np.diff(person[order]) == 0) & (np.diff(time[order]) <= 0.0)
     if same.any():
         row = int(order[int(np.flatnonzero(same)[0]) + 1])
-        raise InvalidParameterError(f"person[{row}]", "have one row for each instant", f"two at {time[row]} s")
+        raise InvalidParameterError(f"person[{row}]", "have one row for each instant", Shown(f"two at {time[row]} s"))
 
 
 def _check_window(start_time: float, duration: float) -> None:

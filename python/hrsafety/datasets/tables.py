@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import meant, readable
 from hrsafety.datasets.recording import Recording
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 
 __all__ = ["load_pedestrians", "load_track"]
 
@@ -119,7 +120,7 @@ def _check_pedestrian_rows(line: str, before: Row, row: Row) -> None:
     if row[1] != before[1]:
         raise InvalidParameterError(f"{line}, column t_s", f"be {before[1]} as in the row of the same frame", row[1])
     if row[2] == before[2]:
-        raise InvalidParameterError(f"{line}, column ped_id", "have one row for each instant", f"{row[2]} twice")
+        raise InvalidParameterError(f"{line}, column ped_id", "have one row for each instant", Shown(f"{row[2]} twice"))
     if row[2] < before[2]:
         raise InvalidParameterError(f"{line}, column ped_id", f"follow {before[2]} within the frame", row[2])
 
@@ -132,8 +133,7 @@ def _check_track_rows(line: str, before: Row, row: Row) -> None:
 
 def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck) -> list[Row]:
     """Return the rows of a table, values in the order of ``columns``."""
-    if not path.is_file():
-        raise InvalidParameterError("path", "name a readable file", str(path))
+    readable("path", path)
     rows: list[Row] = []
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
@@ -146,14 +146,20 @@ def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck) -> list
                     check_order(line, rows[-1], row)
                 rows.append(row)
     except UnicodeDecodeError as error:
-        raise InvalidParameterError(path.name, "be UTF-8 text", f"byte {error.object[error.start]:#04x}") from None
+        raise InvalidParameterError(
+            path.name, "be UTF-8 text", Shown(f"byte {error.object[error.start]:#04x}")
+        ) from None
     except csv.Error as error:
-        raise InvalidParameterError(path.name, "be comma-separated text", str(error)) from None
+        raise InvalidParameterError(path.name, "be comma-separated text", Shown(str(error))) from None
     except OSError as error:
-        raise InvalidParameterError("path", "name a readable file", f"{path} ({error.strerror})") from None
+        raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
     if not rows:
-        raise InvalidParameterError(path.name, "hold at least one row", "the header only")
+        raise InvalidParameterError(path.name, "hold at least one row", Shown("the header only"))
     return rows
+
+
+DELIMITERS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
+OTHER_UNITS = ("mm", "cm", "km", "ft", "in", "px", "pixel", "ms", "us", "min")
 
 
 def _header(path: Path, header: list[str], columns: tuple[str, ...]) -> list[int]:
@@ -161,20 +167,62 @@ def _header(path: Path, header: list[str], columns: tuple[str, ...]) -> list[int
     names = [name.strip() for name in header]
     where = f"{path.name}, line 1"
     if not any(names):
-        raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", "nothing")
+        raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", Shown("nothing"))
+    _check_delimiter(where, names)
+    if all(map(_is_number, names)):
+        remedy = f"write {','.join(columns)} above it"
+        raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", Shown("numbers"), remedy)
     for name in columns:
         if names.count(name) != 1:
-            found = "none" if name not in names else f"{names.count(name)}"
-            raise InvalidParameterError(where, f"have one column {name}", found)
+            found = Shown(f"the columns {_listed(names)}" if name not in names else f"{names.count(name)} of them")
+            raise InvalidParameterError(where, f"have one column {name}", found, _renaming(name, names, columns))
     for name in names:
         if name not in columns:
-            raise InvalidParameterError(where, f"have no other columns than {', '.join(columns)}", name or "a blank")
+            rule = f"have no other columns than {', '.join(columns)}"
+            raise InvalidParameterError(where, rule, name if name else Shown("one without a name"))
     return [names.index(name) for name in columns]
+
+
+def _check_delimiter(where: str, names: list[str]) -> None:
+    """Say so if a header is divided by something else than commas."""
+    for delimiter, words in DELIMITERS.items():
+        parts = names[0].split(delimiter)
+        if len(names) == 1 and len(parts) > 1:
+            found = Shown(f"{words} between the columns {_listed(parts)}")
+            remedy = "write commas between the columns and points in the decimals"
+            raise InvalidParameterError(where, "be separated by commas", found, remedy)
+
+
+def _listed(names: list[str]) -> str:
+    """Return the names that a header has, of a wide one the first few."""
+    listed = ", ".join(_short(name.strip()) or "(blank)" for name in names[:12])
+    return listed if len(names) <= 12 else f"{listed} and {len(names) - 12} more"
+
+
+def _renaming(name: str, names: list[str], columns: tuple[str, ...]) -> str | None:
+    """Return which column may hold what is looked for, and whether it has the unit for it."""
+    near = meant(name, [each for each in names if each not in columns])
+    for each in names:
+        stem, _, unit = each.lower().rpartition("_")
+        if unit in OTHER_UNITS and stem == name.rpartition("_")[0]:
+            return f"convert {_short(each)} to the unit of {name}"
+    return near
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _row(line: str, fields: list[str], columns: tuple[str, ...], order: list[int]) -> Row:
     if len(fields) != len(columns):
-        raise InvalidParameterError(line, f"have {len(columns)} fields", len(fields))
+        remedy = None if fields else "remove the blank line"
+        if len(fields) > len(columns) and all(map(_is_number, fields)):
+            remedy = "decimals need a point, not a comma"
+        raise InvalidParameterError(line, f"have {len(columns)} fields", len(fields), remedy)
     return tuple(_value(line, name, fields[index].strip()) for name, index in zip(columns, order, strict=True))
 
 
@@ -188,6 +236,18 @@ def _value(line: str, column: str, text: str) -> float:
         if not abs(value) < 2**63:
             raise ValueError
     except ValueError:
-        shown = text if len(text) <= 40 else f"{text[:37]}..."
-        raise InvalidParameterError(f"{line}, column {column}", rule, repr(shown)) from None
+        raise InvalidParameterError(f"{line}, column {column}", rule, _short(text), _as_number(text, rule)) from None
     return value
+
+
+def _as_number(text: str, rule: str) -> str | None:
+    """Return how to write a field that is nearly a number."""
+    if text.count(",") == 1 and _is_number(text.replace(",", ".")):
+        return f"write {_short(text.replace(',', '.'))}"
+    if rule == "be an integer" and _is_number(text) and float(text).is_integer() and abs(float(text)) < 2**53:
+        return f"write {int(float(text))}"
+    return None
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, number, pair, sequence
+from hrsafety._arguments import Pair, Parameters, number, pair, sequence, with_article
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
@@ -167,7 +167,7 @@ class Scenario(Parameters):
 def _require(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         words = " or ".join(kind.__name__ for kind in kinds)
-        raise InvalidParameterError(name, f"be a {words}", value)
+        raise InvalidParameterError(name, f"be {with_article(words)}", value)
 
 
 def _with_regions(

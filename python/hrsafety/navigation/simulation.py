@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, flag, number
 from hrsafety.errors import InvalidParameterError
@@ -92,6 +94,16 @@ class Trajectory:
     path_length: float
     stabilizing: Array
     lyapunov: Array
+
+    @property
+    def contacts_moving(self) -> int:
+        """Number of obstacles that the robot touched while it moved faster than 0.05 m/s."""
+        return int(np.sum(self.contact_speed > _hrsafety.CONTACT_SPEED))
+
+    @property
+    def contacts_standing(self) -> int:
+        """Number of obstacles that touched the standing robot."""
+        return int(np.sum(self.contact_speed <= _hrsafety.CONTACT_SPEED))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hrsafety._arguments import callback
 from hrsafety.plotting import inputs, movies, shapes, style
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def animate(
     names: Sequence[str] | None = None,
     regions: bool = True,
     title: str | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> Path:
     """Write an animation of a run to a GIF or MP4 file.
 
@@ -62,6 +64,8 @@ def animate(
         Whether active and critical regions are shown.
     title : str or None
         Title above the scene.
+    progress : callable or None
+        Called with ``(done, total)`` after each frame that was drawn.
 
     Returns
     -------
@@ -96,7 +100,7 @@ def animate(
     count = len(run.scenario.obstacles)
     ids = inputs.checked_labels(names if names is not None else [str(i + 1) for i in range(count)], count, name="names")
     frames = _frames(run, rows, ids, regions=regions, title=title)
-    movies.write(target, frames, frames_per_second)
+    movies.write(target, movies.counted(frames, len(rows), callback("progress", progress)), frames_per_second)
     return target
 
 

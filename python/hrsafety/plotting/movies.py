@@ -6,7 +6,7 @@ import math
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,6 +39,13 @@ def checked_target(path: str | os.PathLike[str]) -> Path:
         raise InvalidParameterError("path", "end in .gif or .mp4", str(target))
     if not target.parent.is_dir():
         raise InvalidParameterError("path", "lie in a folder that exists", str(target))
+    check_writer(target)
+    return target
+
+
+def check_writer(target: Path) -> None:
+    """Say so if what writes a file of this kind is missing."""
+    suffix = target.suffix.lower()
     if suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise style.MissingExtraError("an MP4 file needs the program ffmpeg, which was not found; a GIF file does not")
     if suffix == ".gif":
@@ -46,7 +53,6 @@ def checked_target(path: str | os.PathLike[str]) -> Path:
             import PIL  # noqa: F401  # the import is the check
         except ImportError:
             raise style.MissingExtraError("a GIF file needs Pillow: pip install hrsafety[plot]") from None
-    return target
 
 
 def checked_instants(target: Path, end: float, frames_per_second: float, speed: float) -> npt.NDArray[np.float64]:
@@ -73,12 +79,30 @@ def checked_instants(target: Path, end: float, frames_per_second: float, speed: 
 
 
 def write(target: Path, frames: Iterator[Frame], frames_per_second: float) -> None:
-    """Write a GIF or MP4 file that appears under its name only when it is complete."""
+    """Write a GIF or MP4 file that appears under its name only when it is complete.
+
+    Parameters
+    ----------
+    target : Path
+        The file.
+    frames : iterator of ndarray
+        Its pictures.
+    frames_per_second : float
+        Pictures in a second.
+    """
     with complete_or_absent(target) as partial:
         if target.suffix.lower() == ".gif":
             write_gif(partial, frames, frames_per_second)
         else:
             write_mp4(partial, frames, frames_per_second)
+
+
+def counted(frames: Iterator[Frame], total: int, progress: Callable[[int, int], object] | None) -> Iterator[Frame]:
+    """Yield the frames and report each one that was drawn."""
+    for done, frame in enumerate(frames, start=1):
+        if progress is not None:
+            progress(done, total)
+        yield frame
 
 
 @contextmanager
@@ -88,6 +112,10 @@ def complete_or_absent(target: Path) -> Iterator[Path]:
     try:
         yield partial
         partial.replace(target)
+    except OSError as error:
+        if error.filename in (None, str(partial), partial):
+            error.filename = str(target)
+        raise
     finally:
         with suppress(FileNotFoundError):
             partial.unlink()

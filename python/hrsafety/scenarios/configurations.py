@@ -6,6 +6,7 @@ from collections.abc import Callable
 from types import MappingProxyType
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["CONFIGURATIONS", "configuration"]
@@ -155,5 +156,6 @@ def configuration(name: str) -> nav.Scenario:
     """
     builder = _BUILDERS.get(name) if isinstance(name, str) else None
     if builder is None:
-        raise InvalidParameterError("name", f"be one of {', '.join(CONFIGURATIONS)}", name)
+        rule = f"be one of {', '.join(CONFIGURATIONS)}"
+        raise InvalidParameterError("name", rule, name, meant(name, CONFIGURATIONS))
     return builder()

@@ -10,8 +10,9 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import readable
 from hrsafety.datasets import load_track
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 from hrsafety.scenarios.laws import law_of
@@ -117,7 +118,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     - ``[law]`` with ``type`` and the fields of its class: ``"virtual_force_field"``,
       ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"virtual_impedance"``,
       ``"velocity_obstacle"``, ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
-      ``"optimal_reciprocal_collision_avoidance"``.
+      ``"optimal_reciprocal_collision_avoidance"``, or a short name: ``"vff"``, ``"vo"``, ``"rrt"``,
+      ``"dstar"``, ``"orca"``.
 
     Parameters
     ----------
@@ -162,24 +164,25 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
 
 def parsed(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as read."""
-    if not path.is_file():
-        raise InvalidParameterError("path", "name a readable file", str(path))
+    readable("path", path)
     try:
         with path.open("rb") as file:
             return tomllib.load(file)
     except OSError as error:
-        raise InvalidParameterError("path", "name a readable file", f"{path} ({error.strerror})") from None
+        raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
     except UnicodeDecodeError as error:
-        raise InvalidParameterError(path.name, "be UTF-8 text", f"byte {error.object[error.start]:#04x}") from None
+        raise InvalidParameterError(
+            path.name, "be UTF-8 text", Shown(f"byte {error.object[error.start]:#04x} at offset {error.start}")
+        ) from None
     except RecursionError:
-        raise InvalidParameterError(path.name, "be a TOML file", "brackets nested too deeply") from None
+        raise InvalidParameterError(path.name, "be a TOML file", Shown("brackets nested too deeply")) from None
     except ValueError as error:
-        raise InvalidParameterError(path.name, "be a TOML file", f"an error: {error}") from None
+        raise InvalidParameterError(path.name, "be a TOML file", Shown(f"an error: {error}")) from None
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:
     name = kind.word("robot.type", table.get("type", "holonomic"))
-    _one_of("robot.type", name, tuple(_ROBOTS))
+    kind.one_of("robot.type", name, _ROBOTS)
     robot, keys = _ROBOTS[name]
     given = checked("robot", table, keys)
     given.pop("type", None)
@@ -187,16 +190,10 @@ def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveR
         return robot(**given)
 
 
-def _one_of(path: str, word: str, words: tuple[str, ...]) -> None:
-    if word not in words:
-        raise InvalidParameterError(path, f"be {' or '.join(words)}", kind.shown(word))
-
-
 def _obstacle(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
     if "type" not in table:
-        raise InvalidParameterError(f"{path}.type", "be given", "nothing")
-    word = kind.word(f"{path}.type", table["type"])
-    _one_of(f"{path}.type", word, tuple(_OBSTACLES))
+        raise kind.missing(f"{path}.type", f"write one of {', '.join(_OBSTACLES)}")
+    word = kind.one_of(f"{path}.type", kind.word(f"{path}.type", table["type"]), _OBSTACLES)
     return _OBSTACLES[word](path, table, folder)
 
 
@@ -263,7 +260,7 @@ def _track(path: str, file: Path) -> tuple[object, object]:
         return load_track(file)
     except InvalidParameterError as error:
         argument = f"{path}.path" if error.argument == "path" else f"{path}.path: {error.argument}"
-        raise InvalidParameterError(argument, error.requirement, error.value) from None
+        raise error.renamed(argument) from None
 
 
 _OBSTACLES: MappingProxyType[str, Callable[[str, dict[str, Any], Path], nav.Obstacle]] = MappingProxyType(

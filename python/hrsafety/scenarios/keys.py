@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Callable, Iterator, Mapping
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
 from typing import Any
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety._arguments import meant
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = [
     "Keys",
@@ -17,18 +19,25 @@ __all__ = [
     "checked",
     "integer",
     "located",
+    "missing",
     "number",
     "numbers",
+    "one_of",
     "pair",
     "pairs",
+    "quoted",
     "segments",
     "shown",
     "table",
     "tables",
     "triple",
+    "unknown_key",
     "word",
     "words",
 ]
+
+MOST_QUOTED = 80
+"""Longest text that is shown whole and looked at for a number in quotes."""
 
 Kind = Callable[[str, Any], Any]
 Keys = Mapping[str, Kind]
@@ -36,18 +45,31 @@ Keys = Mapping[str, Kind]
 
 def shown(value: object) -> object:
     """Return a value as it goes into a message: short, whatever it is."""
-    if isinstance(value, (bool, float)):
+    if isinstance(value, (float, Shown)) or (isinstance(value, str) and len(value) <= MOST_QUOTED):
         return value
+    if isinstance(value, bool):
+        return Shown("true" if value else "false")
     if isinstance(value, dict):
-        return "a table"
+        return Shown("a table")
     if isinstance(value, int) and abs(value) >= 10**30:
-        return f"an integer of {value.bit_length()} bits"
+        return Shown(f"an integer of {value.bit_length()} bits")
     if isinstance(value, list) and len(value) > 6:
-        return f"an array of {len(value)} values"
+        return Shown(f"an array of {len(value)} values")
     try:
-        return reprlib.repr(value)
+        return Shown(reprlib.repr(value))
     except ValueError:
-        return "a number with too many digits"
+        return Shown("a number with too many digits")
+
+
+def quoted(value: object) -> str | None:
+    """Return how to write a number, truth value or array that was put in quotes; ``None`` for anything else."""
+    if not isinstance(value, str) or len(value) > MOST_QUOTED:
+        return None
+    try:
+        meaning = tomllib.loads(f"value = {value.strip().lower()}")["value"]
+    except (ValueError, RecursionError):
+        return None
+    return None if isinstance(meaning, str) else f"write it without quotes: {value.strip().lower()}"
 
 
 def join(path: str, key: str) -> str:
@@ -61,11 +83,10 @@ def located(path: str) -> Iterator[None]:
     try:
         yield
     except InvalidParameterError as error:
-        short = isinstance(error.value, str) and len(error.value) <= 80
-        value = error.value if short else shown(error.value)
-        raise InvalidParameterError(join(path, error.argument), error.requirement, value) from None
+        argument = join(path, error.argument)
+        raise InvalidParameterError(argument, error.requirement, shown(error.value), error.remedy) from None
     except ShapeError as error:
-        given = f"an array of shape {error.actual}"
+        given = Shown(f"an array of shape {error.actual}")
         raise InvalidParameterError(join(path, error.argument), f"have shape {error.expected}", given) from None
 
 
@@ -96,13 +117,30 @@ def checked(path: str, given: Any, keys: Keys, *, required: tuple[str, ...] = ()
     table(path, given)
     for key in given:
         if key not in keys:
-            raise InvalidParameterError(
-                join(path, reprlib.repr(key)[1:-1]), f"be one of the keys {', '.join(keys)}", "an unknown key"
-            )
+            raise unknown_key(path, key, keys)
     for key in required:
         if key not in given:
-            raise InvalidParameterError(join(path, key), "be given", "nothing")
+            raise missing(join(path, key))
     return {key: keys[key](join(path, key), value) for key, value in given.items()}
+
+
+def unknown_key(path: str, key: str, keys: Iterable[str]) -> InvalidParameterError:
+    """Return the error about a key that a table does not have."""
+    rule = f"be one of the keys {', '.join(keys)}"
+    return InvalidParameterError(join(path, reprlib.repr(key)[1:-1]), rule, Shown("an unknown key"), meant(key, keys))
+
+
+def missing(path: str, remedy: str | None = None) -> InvalidParameterError:
+    """Return the error about a key that must be there."""
+    return InvalidParameterError(path, "be given", Shown("nothing"), remedy)
+
+
+def one_of(path: str, value: str, words: Iterable[str]) -> str:
+    """Check a text that must be one of a few, and say which one is near."""
+    known = tuple(words)
+    if value not in known:
+        raise InvalidParameterError(path, f"be {' or '.join(known)}", shown(value), meant(value, known))
+    return value
 
 
 def _is_number(value: object) -> bool:
@@ -112,7 +150,7 @@ def _is_number(value: object) -> bool:
 def number(path: str, value: Any) -> float:
     """Check a number."""
     if not _is_number(value):
-        raise InvalidParameterError(path, "be a number", shown(value))
+        raise InvalidParameterError(path, "be a number", shown(value), quoted(value))
     try:
         return float(value)
     except OverflowError:
@@ -122,21 +160,22 @@ def number(path: str, value: Any) -> float:
 def integer(path: str, value: Any) -> int:
     """Check an integer."""
     if not isinstance(value, int) or isinstance(value, bool) or abs(value) >= 2**64:
-        raise InvalidParameterError(path, "be an integer of 64 bits", shown(value))
+        raise InvalidParameterError(path, "be an integer of 64 bits", shown(value), quoted(value) or _rounded(value))
     return value
 
 
 def boolean(path: str, value: Any) -> bool:
     """Check a truth value."""
     if not isinstance(value, bool):
-        raise InvalidParameterError(path, "be true or false", shown(value))
+        raise InvalidParameterError(path, "be true or false", shown(value), quoted(value))
     return value
 
 
 def word(path: str, value: Any) -> str:
     """Check a text."""
     if not isinstance(value, str):
-        raise InvalidParameterError(path, "be a text in quotes", shown(value))
+        remedy = f'write "{value}"' if _is_number(value) and len(repr(value)) < MOST_QUOTED else None
+        raise InvalidParameterError(path, "be a text in quotes", shown(value), remedy)
     return value
 
 
@@ -148,12 +187,15 @@ def words(path: str, value: Any) -> list[str]:
 def table(path: str, value: Any) -> dict[str, Any]:
     """Check a table."""
     if not isinstance(value, dict):
-        raise InvalidParameterError(path, "be a table", shown(value))
+        raise InvalidParameterError(path, "be a table", shown(value), f"write [{path}] above its keys")
     return value
 
 
 def tables(path: str, value: Any) -> list[dict[str, Any]]:
     """Check an array of tables."""
+    if isinstance(value, dict):
+        remedy = f"write [[{path}]] with two brackets above each of them"
+        raise InvalidParameterError(path, "be an array of tables", Shown("a single table"), remedy)
     return [table(f"{path}[{index}]", entry) for index, entry in enumerate(_array(path, value, "tables"))]
 
 
@@ -193,11 +235,27 @@ def segments(path: str, value: Any) -> list[tuple[float, tuple[float, float], tu
 
 def _array(path: str, value: Any, of: str) -> list[Any]:
     if not isinstance(value, list):
-        raise InvalidParameterError(path, f"be an array of {of}", shown(value))
+        raise InvalidParameterError(path, f"be an array of {of}", shown(value), _bracketed(value))
     return value
+
+
+def _bracketed(value: Any) -> str | None:
+    """Return how to write one entry where several may stand."""
+    if isinstance(value, str):
+        return quoted(value) or (f'write ["{value}"]' if len(value) <= MOST_QUOTED else None)
+    return f"write [{value!r}]" if _is_number(value) and abs(value) < 1e30 else None
+
+
+def _rounded(value: Any) -> str | None:
+    """Return how to write an integer that has a decimal point."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
+    return f"write {int(value)}" if whole else None
 
 
 def _numbers(path: str, value: Any, count: int) -> list[float]:
     if not isinstance(value, list) or len(value) != count or not all(map(_is_number, value)):
-        raise InvalidParameterError(path, f"be an array of {count} numbers", shown(value))
+        remedy = quoted(value)
+        if isinstance(value, list):
+            remedy = next(filter(None, map(quoted, value)), None)
+        raise InvalidParameterError(path, f"be an array of {count} numbers", shown(value), remedy)
     return numbers(path, value)

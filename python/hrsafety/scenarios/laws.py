@@ -8,11 +8,12 @@ from types import MappingProxyType
 from typing import Any
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, Kind, checked, located
 
-__all__ = ["LAWS", "keys_of", "law_of", "name_of"]
+__all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of"]
 
 LAWS: Mapping[str, type[nav.Law]] = MappingProxyType(
     {
@@ -28,6 +29,26 @@ LAWS: Mapping[str, type[nav.Law]] = MappingProxyType(
         "optimal_reciprocal_collision_avoidance": nav.OptimalReciprocalCollisionAvoidance,
     }
 )
+SHORT_NAMES: Mapping[str, str] = MappingProxyType(
+    {
+        "vff": "virtual_force_field",
+        "zeng": "virtual_force_field",
+        "borenstein": "borenstein_koren",
+        "bk": "borenstein_koren",
+        "gecui": "ge_cui",
+        "impedance": "virtual_impedance",
+        "vo": "velocity_obstacle",
+        "velocity_obstacles": "velocity_obstacle",
+        "rrt": "rapidly_exploring_random_tree",
+        "tree": "rapidly_exploring_random_tree",
+        "dstar": "field_d_star",
+        "d_star": "field_d_star",
+        "field_dstar": "field_d_star",
+        "orca": "optimal_reciprocal_collision_avoidance",
+        "rvo2": "optimal_reciprocal_collision_avoidance",
+    }
+)
+"""Short names that files and the command line take for a law, too."""
 _KINDS: Mapping[str, Kind] = MappingProxyType(
     {"float": kind.number, "float | None": kind.number, "bool": kind.boolean, "int": kind.integer}
 )
@@ -44,14 +65,22 @@ def name_of(law: nav.Law) -> str:
     return next(name for name, each in LAWS.items() if each is type(law))
 
 
+def law_named(path: str, word: str) -> type[nav.Law]:
+    """Return the law of a name: long or short, with hyphens, blanks or capitals as in running text."""
+    plain = word.strip().lower().replace("*", "star").replace("-", "_").replace(" ", "_")
+    name = SHORT_NAMES.get(plain, plain)
+    if name not in LAWS:
+        near = meant(plain, [*LAWS, *SHORT_NAMES])
+        raise InvalidParameterError(path, f"be {' or '.join(LAWS)}", kind.shown(word), near)
+    return LAWS[name]
+
+
 def law_of(table: dict[str, Any]) -> nav.Law:
     """Return the law that a table ``[law]`` describes."""
     if "type" not in table:
-        raise InvalidParameterError("law.type", "be given", "nothing")
-    name = kind.word("law.type", table["type"])
-    if name not in LAWS:
-        raise InvalidParameterError("law.type", f"be {' or '.join(LAWS)}", kind.shown(name))
-    given = checked("law", table, keys_of(LAWS[name]))
+        raise kind.missing("law.type", 'write type = "virtual_force_field" or the name of another law')
+    law = law_named("law.type", kind.word("law.type", table["type"]))
+    given = checked("law", table, keys_of(law))
     del given["type"]
     with located("law"):
-        return LAWS[name](**given)
+        return law(**given)

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import word
 from hrsafety.datasets import Recording
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 
 __all__ = ["Crossing", "Selection", "crossings"]
 
@@ -20,6 +21,12 @@ Pair = tuple[float, float]
 Selection = Literal["busiest", "even"]
 
 START_GRID = 0.4
+LONGEST_RECORDING = 1e5
+"""More than a day in s; start instants are listed before any is chosen."""
+LONGEST_STAY = 3600.0
+"""In s. Each instant of a stay is compared with each start during it."""
+MOST_COMPARED = 1_000_000
+"""Pairs of instant and start that are held in memory at once."""
 """Start instants lie on this grid in s: the annotation step of the usual recordings."""
 DEFAULT_SPACING = 4.0
 """Least time between two start instants in s."""
@@ -202,8 +209,7 @@ def _check(recording: object, runs: object, selection: object) -> None:
         raise InvalidParameterError("recording", "be a Recording", recording)
     if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
         raise InvalidParameterError("runs", "be an integer, 1 or more", runs)
-    if selection not in ("busiest", "even"):
-        raise InvalidParameterError("selection", "be busiest or even", selection)
+    word("selection", selection, ("busiest", "even"))
 
 
 def _positive(name: str, value: object) -> None:
@@ -226,12 +232,20 @@ def _route(recording: Recording, length: float | None, clearance: float, robot: 
     return _Route(center - half, center + half, NOMINAL_SHARE * robot.max_speed)
 
 
+def _doubt(recording: Recording) -> str | None:
+    """Return what the recording itself is doubtful about, as the likely reason of a refusal."""
+    return next((found.message for found in recording.warnings), None)
+
+
 def _candidates(recording: Recording, route: _Route) -> Array:
     """Return all instants at which a run could start."""
     spare = recording.duration - route.duration
     if spare < 0.0:
         rule = f"last for one crossing of {route.duration:.1f} s at least"
-        raise InvalidParameterError("recording", rule, f"{recording.duration:.1f} s")
+        raise InvalidParameterError("recording", rule, Shown(f"{recording.duration:.1f} s"), _doubt(recording))
+    if spare > LONGEST_RECORDING:
+        rule = f"last for at most {LONGEST_RECORDING:g} s beyond one crossing"
+        raise InvalidParameterError("recording", rule, Shown(f"{recording.duration:.6g} s"), _doubt(recording))
     steps = np.arange(math.floor(spare / START_GRID + 1e-9) + 1)
     instants: Array = np.round(float(recording.time_s[0]) + START_GRID * steps, 9)
     return instants
@@ -258,11 +272,19 @@ def _traffic(recording: Recording, starts: Array, route: _Route, reach: float) -
     for person in recording.people():
         time, position = recording.track(int(person))
         seen = slice(*np.searchsorted(starts, (time[0] - route.duration, time[-1])))
+        if time[-1] - time[0] > LONGEST_STAY:
+            rule = f"hold nobody for longer than {LONGEST_STAY:g} s"
+            found = Shown(f"person {person} for {time[-1] - time[0]:.6g} s")
+            raise InvalidParameterError("recording", rule, found, _doubt(recording))
         instants = np.append(np.arange(time[0], time[-1], _SIGHTING_STEP), time[-1])
-        elapsed = instants - starts[seen, None]
-        under_way = (elapsed >= 0.0) & (elapsed <= route.duration)
-        away = np.linalg.norm(_along(time, position, instants) - route.position(elapsed), axis=-1)
-        count[seen] += (under_way & (away < reach)).any(axis=1)
+        walked = _along(time, position, instants)
+        rows = max(1, MOST_COMPARED // len(instants))
+        for begin in range(seen.start, seen.stop, rows):
+            some = slice(begin, min(begin + rows, seen.stop))
+            elapsed = instants - starts[some, None]
+            under_way = (elapsed >= 0.0) & (elapsed <= route.duration)
+            away = np.linalg.norm(walked - route.position(elapsed), axis=-1)
+            count[some] += (under_way & (away < reach)).any(axis=1)
     return count
 
 

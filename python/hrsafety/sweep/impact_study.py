@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hrsafety import impact
-from hrsafety._arguments import Array, number, positive, word
+from hrsafety._arguments import Array, number, positive, with_article, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.batch import STATUS_WORDS
 from hrsafety.sweep.axes import Column
@@ -111,7 +111,7 @@ class ImpactStudy(Study):
         for name, allowed in kinds.items():
             if getattr(self, name) is not None and not isinstance(getattr(self, name), allowed):
                 words = " or ".join(kind.__name__ for kind in allowed)
-                raise InvalidParameterError(name, f"be a {words}", getattr(self, name))
+                raise InvalidParameterError(name, f"be {with_article(words)}", getattr(self, name))
         word("fields", self.fields, ("all", "peaks"))
         if self.horizon is not None:
             object.__setattr__(self, "horizon", positive("horizon", self.horizon))

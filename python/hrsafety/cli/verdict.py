@@ -1,0 +1,102 @@
+"""How runs ended: plainly on the last line, and as exit code 3 where ``--fail-on`` names it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety._arguments import meant
+from hrsafety.cli.exit_codes import FAILED_RUN
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["FAILURES", "counted", "failures_of", "leave", "sentence"]
+
+Counts = Mapping[str, int]
+
+FAILURES = ("contact", "moving_contact", "timed_out", "stopped", "not_arrived", "any")
+"""Words of ``--fail-on``; the help says what each means."""
+_OTHER_WORDS = {"collided": "contact", "collision": "contact", "timeout": "timed_out"}
+
+
+def failures_of(text: str | None) -> tuple[str, ...]:
+    """Return the words of ``--fail-on``, each checked.
+
+    Parameters
+    ----------
+    text : str or None
+        Words between commas, as given.
+
+    Returns
+    -------
+    tuple of str
+        Among `FAILURES`; empty without the option.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a word is unknown or there is none.
+    """
+    if text is None:
+        return ()
+    found = []
+    for given in text.split(","):
+        plain = given.strip().lower().replace("-", "_")
+        word = _OTHER_WORDS.get(plain, plain)
+        if word not in FAILURES:
+            near = meant(plain, [*FAILURES, *_OTHER_WORDS])
+            raise InvalidParameterError("--fail-on", f"be among {', '.join(FAILURES)}, with commas", given, near)
+        found.append(word)
+    return tuple(dict.fromkeys(found))
+
+
+def counted(runs: nav.BatchSummary | nav.Trajectory) -> Counts:
+    """Return in how many runs each failure happened."""
+    outcome = np.asarray(runs.outcome)
+    masks = {
+        "contact": outcome == "collided",
+        "moving_contact": np.asarray(runs.contacts_moving) > 0,
+        "timed_out": outcome == "timed_out",
+        "stopped": outcome == "stopped",
+        "not_arrived": ~np.isfinite(runs.arrival_time),
+        "any": outcome != "arrived",
+    }
+    return {word: int(np.sum(masks[word])) for word in FAILURES}
+
+
+def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int) -> str:
+    """Return the last line of a command: how the runs ended, and what the exit code makes of it.
+
+    Parameters
+    ----------
+    said : str
+        How they ended.
+    counts : mapping of str to int
+        Of `counted`.
+    fail_on : sequence of str
+        Of `failures_of`.
+    runs : int
+        How many there are.
+    """
+    named = [word for word in fail_on if counts[word]]
+    if named:
+        shares = ", ".join(word if runs == 1 else f"{word} in {counts[word]} of {runs} runs" for word in named)
+        return f"FAILED  {said}; --fail-on {shares}: exit code {FAILED_RUN}"
+    if not counts["any"]:
+        return f"passed  {said}"
+    happened = ",".join(word for word in ("contact", "timed_out", "stopped") if counts[word])
+    note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
+    return f"NOTE    {said}; exit code 0 all the same, {note}"
+
+
+def leave(counts: Counts, fail_on: Sequence[str]) -> None:
+    """Leave with exit code 3 if a failure that counts happened.
+
+    Raises
+    ------
+    SystemExit
+        Then.
+    """
+    if any(counts[word] for word in fail_on):
+        raise SystemExit(FAILED_RUN)
