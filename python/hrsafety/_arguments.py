@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -12,12 +11,17 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._words import meant
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
 Kind = TypeVar("Kind")
 Call = TypeVar("Call", bound=Callable[..., object])
+
+
+LONGEST_SHOWN = 200
+"""Characters of a path that a message shows."""
 
 
 class Parameters:
@@ -114,28 +118,20 @@ def word(name: str, value: object, words: Sequence[str]) -> str:
     return value
 
 
-def meant(value: object, words: Iterable[str]) -> str | None:
-    """Return the question whether the nearest of the words was meant; ``None`` when none is near."""
-    if not isinstance(value, str):
-        return None
-    by_form = {each.lower().replace("-", "_"): each for each in words}
-    near = difflib.get_close_matches(value.lower().replace("-", "_"), list(by_form), n=1, cutoff=0.6)
-    return f'did you mean "{by_form[near[0]]}"?' if near else None
-
-
 def readable(name: str, path: Path) -> Path:
     """Return the path if a file stands there, or say what does and which file may have been meant."""
     rule = "name a readable file"
+    given = str(path) if len(str(path)) <= LONGEST_SHOWN else f"{str(path)[:LONGEST_SHOWN]}..."
     try:
         if path.is_file():
             return path
         if path.is_dir():
-            raise InvalidParameterError(name, rule, str(path), "this is a folder")
+            raise InvalidParameterError(name, rule, given, "this is a folder")
         if path.exists():
-            raise InvalidParameterError(name, rule, str(path), "this is no regular file")
+            raise InvalidParameterError(name, rule, given, "this is no regular file")
     except OSError as error:
-        raise InvalidParameterError(name, rule, Shown(f"{path} ({error.strerror})")) from None
-    raise InvalidParameterError(name, rule, str(path), _neighbour(path))
+        raise InvalidParameterError(name, rule, Shown(f"{given} ({error.strerror})")) from None
+    raise InvalidParameterError(name, rule, given, _neighbour(path))
 
 
 def _neighbour(path: Path) -> str:
@@ -144,7 +140,7 @@ def _neighbour(path: Path) -> str:
     try:
         if not folder.is_dir():
             return f"there is no folder {folder}"
-        names = [each.name for each in itertools.islice(folder.iterdir(), 1000) if each.suffix == path.suffix]
+        names = [each.name for each in itertools.islice(folder.iterdir(), 1000)]
     except (OSError, ValueError):
         return "it cannot be looked for"
     near = meant(path.name, names)

@@ -5,7 +5,16 @@ Every error derives from `HrsafetyError`, so one ``except`` clause catches them 
 
 from __future__ import annotations
 
+import re
+
+from hrsafety._words import meant
+
 __all__ = ["HrsafetyError", "InvalidParameterError", "MissingExtraError", "ShapeError", "SimulationError"]
+
+
+# A rule that lists words in quotes, as 'be "off", "capped" or "full"'.
+_CHOICE = re.compile(r'be (one of )?"')
+_QUOTED = re.compile(r'"([^"]+)"')
 
 
 class HrsafetyError(Exception):
@@ -37,6 +46,8 @@ class InvalidParameterError(HrsafetyError, ValueError):
     """
 
     def __init__(self, argument: str, requirement: str, value: object, remedy: str | None = None) -> None:
+        if remedy is None and isinstance(value, str) and _CHOICE.match(requirement):
+            remedy = meant(value, _QUOTED.findall(requirement))
         super().__init__(argument, requirement, value, remedy)
         self.argument = argument
         self.requirement = requirement

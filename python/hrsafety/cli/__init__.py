@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from hrsafety.cli import exit_codes, font_cache
 from hrsafety.cli.parsers import LAW_NAMES, UsageError, parser
-from hrsafety.errors import HrsafetyError
+from hrsafety.errors import HrsafetyError, InvalidParameterError
 
 __all__ = ["LAW_NAMES", "main"]
 
@@ -45,7 +46,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except HrsafetyError as error:
         return _fail(str(error))
     except OSError as error:
-        return _fail(f"{error.filename or 'file'}: {error.strerror or error}")
+        if error.filename is None:
+            _forget_output()  # nothing else is written without a name
+        return _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
     except ModuleNotFoundError as error:
         return _fail(str(error))
 
@@ -76,10 +79,22 @@ def _forget_output() -> None:
         sys.stdout = None
 
 
+@contextmanager
+def _as_options(*names: str) -> Iterator[None]:
+    """Give an argument that comes from the command line the name that it has there."""
+    try:
+        yield
+    except InvalidParameterError as error:
+        if error.argument not in names:
+            raise
+        raise error.renamed(f"--{error.argument}") from None
+
+
 def _reproduce(options: argparse.Namespace) -> None:
     from hrsafety import reproduce
 
-    page = reproduce.run(options.out, only=options.only, progress=_progress)
+    with _as_options("only", "out"):
+        page = reproduce.run(options.out, only=options.only, progress=_progress)
     print(f"summary page  {page}")
 
 
@@ -93,14 +108,16 @@ def _simulate(options: argparse.Namespace) -> None:
     if options.people is not None:
         from hrsafety.cli.people import simulate_people
 
-        simulate_people(options)
+        with _as_options("step", "runs", "selection"):
+            simulate_people(options)
         return
     for name in ("runs", "selection", "animate_run", "json"):
         if getattr(options, name) is not None:
             raise UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
     from hrsafety.cli.one_run import simulate_file
 
-    simulate_file(options)
+    with _as_options("step"):
+        simulate_file(options)
 
 
 def _foam(options: argparse.Namespace) -> None:

@@ -87,6 +87,7 @@ class FoamDesignFile:
     foams: dict[str, impact.Foam]
 
 
+@kind.top_level(_TOP)
 def load(path: str) -> FoamDesignFile:
     """Read a foam design file.
 

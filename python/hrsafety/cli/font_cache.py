@@ -1,4 +1,4 @@
-"""A cache of matplotlib for the commands alone: neither a stale list of fonts nor a private style gets into pictures."""
+"""A matplotlib cache of the commands: neither a stale list of fonts nor a private style gets into pictures."""
 
 from __future__ import annotations
 

@@ -116,6 +116,7 @@ class GainStudy:
         return str(self.search.get("objective", "performance"))
 
 
+@kind.top_level(_TOP)
 def load(path: str) -> GainStudy:
     """Read a gain study file.
 

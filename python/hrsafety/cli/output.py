@@ -101,7 +101,11 @@ def with_options(law: nav.Law, options: argparse.Namespace) -> nav.Law:
         changes["stabilizing"] = options.stabilizing
         if options.stabilizing != "capped":
             changes |= {"stabilizing_force_cap": None, "stabilizing_momentum_cap": None}
-    return law.replaced(**changes)
+    try:
+        return law.replaced(**changes)
+    except InvalidParameterError as error:
+        option = "--stabilizing" if error.argument == "stabilizing" else f"--gains: {error.argument}"
+        raise error.renamed(option) from None
 
 
 def law_words(law: nav.Law) -> str:
@@ -170,12 +174,14 @@ def located(file: str) -> Iterator[None]:
     except InvalidParameterError as error:
         if error.argument == "path" or error.argument.startswith("--"):
             raise
+        if error.argument == Path(file).name:
+            raise error.renamed(file) from None
         raise error.renamed(f"{file}: {error.argument}") from None
 
 
 def planned_folder(path: str) -> Path:
     """Return a folder that exists or can be made, and leave it to `folder` to make it."""
-    place = Path(path)
+    place = _named("--out", path)
     if _exists("--out", place) and not place.is_dir():
         raise InvalidParameterError("--out", "be a folder or not exist", path, "this is a file")
     _check_parents("--out", place)
@@ -201,7 +207,7 @@ def target(option: str, path: str, suffixes: Sequence[str] = ()) -> Path:
     suffixes : sequence of str
         Endings of which it must have one; any if there are none.
     """
-    place = Path(path)
+    place = _named(option, path)
     if suffixes and place.suffix.lower() not in suffixes:
         near = meant(place.suffix, suffixes)
         raise InvalidParameterError(option, f"end in {' or '.join(suffixes)}", path, near)
@@ -209,6 +215,12 @@ def target(option: str, path: str, suffixes: Sequence[str] = ()) -> Path:
         raise InvalidParameterError(option, "name a file", path, "this is a folder")
     _check_parents(option, place)
     return place
+
+
+def _named(option: str, path: str) -> Path:
+    if not path.strip():
+        raise InvalidParameterError(option, "name a file or folder", path)
+    return Path(path)
 
 
 def _exists(option: str, place: Path) -> bool:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import re
 from typing import Any, NoReturn
 
 from hrsafety import __version__
+from hrsafety._words import meant
 from hrsafety.cli.exit_codes import MEANINGS, WARNED
 from hrsafety.errors import HrsafetyError
 
@@ -65,6 +67,9 @@ pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
 """
 
 
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+
+
 class UsageError(HrsafetyError):
     """The command line itself is wrong."""
 
@@ -73,8 +78,46 @@ class _Parser(argparse.ArgumentParser):
     """Parser whose errors are exceptions, so that all errors look the same."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise instead of printing the usage and leaving."""
-        raise UsageError(f"{message} (see {self.prog} --help)")
+        """Raise instead of printing the usage and leaving; a word near a choice gets a question."""
+        choice = _CHOICE.search(message)
+        near = meant(choice[1], re.findall(r"[\w-]+", choice[2])) if choice else None
+        raise UsageError(f"{message}{f'; {near}' if near else ''} (see {self.prog} --help)")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse what is left over here, where the options that may have been meant are known."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            near = meant(rest[0].partition("=")[0], self._option_string_actions) if rest[0].startswith("-") else None
+            if near is None and f"--{rest[0]}" in self._option_string_actions:
+                near = f"did you mean --{rest[0]}?"
+            self.error(f"unrecognized arguments: {' '.join(rest)}{f'; {near}' if near else ''}")
+        return found, rest
+
+
+def _number(text: str) -> float:
+    """Return a number, or say what is wrong with it."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a number, got {text[:40]!r}{_advice(text)}") from None
+
+
+def _advice(text: str) -> str:
+    """Return how a number on the command line is written."""
+    several = re.fullmatch(r"[-+.\deE]+([,; ]+[-+.\deE]+)+", text.strip())
+    if several and not re.fullmatch(r"\d+,\d+", text.strip()):
+        return "; write blanks between several numbers, without quotes"
+    if "," in text:
+        return "; decimals need a point"
+    return "; numbers have no units" if re.match(r"[-+.\d]", text) else ""
+
+
+def _count(text: str) -> int:
+    """Return a whole number, or say what is wrong with it."""
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be an integer, got {text[:40]!r}") from None
 
 
 def parser() -> argparse.ArgumentParser:
@@ -154,7 +197,7 @@ def _add_simulate(commands: Any) -> None:
     law.add_argument(
         "--gains",
         nargs="+",
-        type=float,
+        type=_number,
         metavar="K",
         help="numbers of the law in its order; of the virtual force field K1 K3 K5 b in N/m, N/m, N/m^2, s: "
         "attraction, repulsion, detour, and damping of each as a share of its gain",
@@ -164,17 +207,19 @@ def _add_simulate(commands: Any) -> None:
     stepping.add_argument(
         "--integrator", choices=["semi_implicit_euler", "rk4"], default="semi_implicit_euler", help="[%(default)s]"
     )
-    stepping.add_argument("--step", type=float, default=0.01, metavar="S", help="motion step in s [%(default)s]")
+    stepping.add_argument("--step", type=_number, default=0.01, metavar="S", help="motion step in s [%(default)s]")
     stepping.add_argument(
         "--no-hold", dest="hold", action="store_false", help="compute the force at every step, not every control period"
     )
     people = parser.add_argument_group("recorded people (instead of a scenario file)")
     people.add_argument("--people", metavar="FILE.csv", help="recorded people to cross")
-    people.add_argument("--runs", type=int, metavar="N", help="number of start times [24]")
+    people.add_argument("--runs", type=_count, metavar="N", help="number of start times [24]")
     people.add_argument(
         "--selection", choices=["busiest", "even"], help="start times with most traffic, or evenly spaced [busiest]"
     )
-    people.add_argument("--animate-run", type=int, metavar="K", help="animate run K, not the one that met most people")
+    people.add_argument(
+        "--animate-run", type=_count, metavar="K", help="animate run K, not the one that met most people"
+    )
     people.add_argument("--json", metavar="FILE", help="all results as JSON")
 
 
@@ -201,7 +246,7 @@ def _add_optimize(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
     parser.add_argument("--resume", action="store_true", help="go on with an interrupted search, if there is one")
     _add_strict(parser)
-    parser.add_argument("--threads", type=int, metavar="N", help="number of threads [all cores]")
+    parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
 
 def _add_sweep(commands: Any) -> None:
@@ -217,6 +262,8 @@ def _add_sweep(commands: Any) -> None:
     )
     parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
     _add_strict(parser)
-    parser.add_argument("--threads", type=int, metavar="N", help="threads of one chunk [all cores; one with workers]")
-    parser.add_argument("--workers", type=int, metavar="N", help="compute chunks in so many processes")
+    parser.add_argument(
+        "--threads", type=_count, metavar="N", help="threads of one chunk [all cores; one with workers]"
+    )
+    parser.add_argument("--workers", type=_count, metavar="N", help="compute chunks in so many processes")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute chunks on the Dask cluster of this scheduler")

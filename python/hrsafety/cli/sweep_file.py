@@ -113,6 +113,7 @@ class SweepFile:
     show: tuple[str, ...]
 
 
+@kind.top_level(_TOP)
 def load(path: str) -> SweepFile:
     """Read a sweep file.
 

@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety._words import meant
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.calibration import scipy_least_squares
 from hrsafety.reproduce import (
     built_figures,
@@ -172,9 +173,9 @@ def _parts(only: str | Iterable[str] | None) -> tuple[str, ...]:
     choice = f"be among {', '.join(PARTS)}"
     for name in named:
         if name not in PARTS:
-            raise InvalidParameterError("only", choice, name)
+            raise InvalidParameterError("only", choice, name, meant(name, PARTS))
     if not named:
-        raise InvalidParameterError("only", choice, "nothing")
+        raise InvalidParameterError("only", choice, Shown("nothing"))
     return tuple(part for part in PARTS if part in named)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from os import PathLike
@@ -99,6 +100,7 @@ _RECTANGLE: Keys = MappingProxyType(
 )
 
 
+@kind.top_level(_TOP)
 def load(path: str | PathLike[str]) -> ScenarioFile:
     r"""Read a scenario file.
 
@@ -165,9 +167,10 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
 def parsed(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as read."""
     readable("path", path)
+    text = ""
     try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
+        text = path.read_bytes().decode("utf-8-sig")
+        return tomllib.loads(text)
     except OSError as error:
         raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
     except UnicodeDecodeError as error:
@@ -177,7 +180,32 @@ def parsed(path: Path) -> dict[str, Any]:
     except RecursionError:
         raise InvalidParameterError(path.name, "be a TOML file", Shown("brackets nested too deeply")) from None
     except ValueError as error:
-        raise InvalidParameterError(path.name, "be a TOML file", Shown(f"an error: {error}")) from None
+        raise _not_toml(path, text, str(error)) from None
+
+
+_LINE = re.compile(r"\(at line (\d+), column \d+\)")
+# What stands where TOML wants something else, and what to write instead.
+_HABITS = (
+    (re.compile(r"=.*\d,\d+\s*($|#)"), "decimals need a point"),
+    (re.compile(r"^\s*[\w.\-]+\s*:"), "keys and values are joined by ="),
+    (re.compile(r"=\s*\("), "arrays stand in brackets [ ]"),
+    (re.compile(r"=\s*[-+.\d]+\s*[A-Za-z]+"), "numbers have no units; they are SI and radians"),
+    (re.compile(r"=\s*(True|False)\b"), "truth values are true and false"),
+    (re.compile(r"=\s*[A-Za-z_./]+\s*($|#)"), "texts stand in quotes"),
+)
+
+
+def _not_toml(path: Path, text: str, reason: str) -> InvalidParameterError:
+    """Return the error about a text that is not TOML, with the line and a habit that may be behind it."""
+    if path.suffix.lower() == ".csv":
+        reason, remedy = "a table (.csv)", "recorded people are given with --people"
+        return InvalidParameterError(path.name, "be a TOML file", Shown(reason), remedy)
+    place = _LINE.search(reason)
+    lines = text.splitlines()
+    line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""
+    found = f"an error: {reason}" + (f", {line.strip()[:60]}" if line.strip() else "")
+    remedy = next((advice for habit, advice in _HABITS if habit.search(line)), None)
+    return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy)
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:
@@ -193,7 +221,11 @@ def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveR
 def _obstacle(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
     if "type" not in table:
         raise kind.missing(f"{path}.type", f"write one of {', '.join(_OBSTACLES)}")
-    word = kind.one_of(f"{path}.type", kind.word(f"{path}.type", table["type"]), _OBSTACLES)
+    word = kind.word(f"{path}.type", table["type"])
+    if word.lower() in _EVERYDAY:
+        rule, remedy = f"be {' or '.join(_OBSTACLES)}", f'did you mean "{_EVERYDAY[word.lower()]}"?'
+        raise InvalidParameterError(f"{path}.type", rule, word, remedy)
+    kind.one_of(f"{path}.type", word, _OBSTACLES)
     return _OBSTACLES[word](path, table, folder)
 
 
@@ -242,6 +274,8 @@ def _moving(
         if body is nav.MovingDisc:
             known["acceleration"] = kind.pair
         needed = (place, "velocity")
+    if "velocity" in needed and "velocity" not in table and place in table:
+        raise kind.missing(f"{path}.velocity", "or give segments, time and position, or path")
     given = checked(path, table, known, required=(*needed, *required))
     del given["type"]
     if "path" in given:
@@ -263,6 +297,7 @@ def _track(path: str, file: Path) -> tuple[object, object]:
         raise error.renamed(argument) from None
 
 
+_EVERYDAY = {"person": "human", "pedestrian": "human", "circle": "disc", "box": "rectangle", "wall": "rectangle"}
 _OBSTACLES: MappingProxyType[str, Callable[[str, dict[str, Any], Path], nav.Obstacle]] = MappingProxyType(
     {"disc": _disc, "rectangle": _rectangle, "moving_disc": _moving_disc, "human": _human}
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import reprlib
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -30,6 +31,7 @@ __all__ = [
     "shown",
     "table",
     "tables",
+    "top_level",
     "triple",
     "unknown_key",
     "word",
@@ -38,6 +40,8 @@ __all__ = [
 
 MOST_QUOTED = 80
 """Longest text that is shown whole and looked at for a number in quotes."""
+
+UNKNOWN_KEY = Shown("an unknown key")
 
 Kind = Callable[[str, Any], Any]
 Keys = Mapping[str, Kind]
@@ -51,6 +55,8 @@ def shown(value: object) -> object:
         return Shown("true" if value else "false")
     if isinstance(value, dict):
         return Shown("a table")
+    if isinstance(value, datetime.date | datetime.time):
+        return Shown("a date or time")
     if isinstance(value, int) and abs(value) >= 10**30:
         return Shown(f"an integer of {value.bit_length()} bits")
     if isinstance(value, list) and len(value) > 6:
@@ -65,11 +71,15 @@ def quoted(value: object) -> str | None:
     """Return how to write a number, truth value or array that was put in quotes; ``None`` for anything else."""
     if not isinstance(value, str) or len(value) > MOST_QUOTED:
         return None
-    try:
-        meaning = tomllib.loads(f"value = {value.strip().lower()}")["value"]
-    except (ValueError, RecursionError):
-        return None
-    return None if isinstance(meaning, str) else f"write it without quotes: {value.strip().lower()}"
+    plain = value.strip().lower()
+    for form in (plain, f"[{plain.strip('()')}]"):
+        try:
+            meaning = tomllib.loads(f"value = {form}")["value"]
+        except (ValueError, RecursionError):
+            continue
+        if meaning != [] and not isinstance(meaning, str):
+            return f"write it without quotes: {form}"
+    return None
 
 
 def join(path: str, key: str) -> str:
@@ -118,16 +128,30 @@ def checked(path: str, given: Any, keys: Keys, *, required: tuple[str, ...] = ()
     for key in given:
         if key not in keys:
             raise unknown_key(path, key, keys)
+    values = {key: keys[key](join(path, key), value) for key, value in given.items()}
     for key in required:
         if key not in given:
             raise missing(join(path, key))
-    return {key: keys[key](join(path, key), value) for key, value in given.items()}
+    return values
+
+
+@contextmanager
+def top_level(keys: Keys) -> Iterator[None]:
+    """Say so where a key that belongs to the top of a file stands below a table."""
+    try:
+        yield
+    except InvalidParameterError as error:
+        table_path, _, key = error.argument.rpartition(".")
+        if error.value != UNKNOWN_KEY or not table_path or key not in keys:
+            raise
+        remedy = f"{key} belongs to the top of the file, above the first table"
+        raise InvalidParameterError(error.argument, error.requirement, error.value, remedy) from None
 
 
 def unknown_key(path: str, key: str, keys: Iterable[str]) -> InvalidParameterError:
     """Return the error about a key that a table does not have."""
     rule = f"be one of the keys {', '.join(keys)}"
-    return InvalidParameterError(join(path, reprlib.repr(key)[1:-1]), rule, Shown("an unknown key"), meant(key, keys))
+    return InvalidParameterError(join(path, reprlib.repr(key)[1:-1]), rule, UNKNOWN_KEY, meant(key, keys))
 
 
 def missing(path: str, remedy: str | None = None) -> InvalidParameterError:
@@ -187,7 +211,8 @@ def words(path: str, value: Any) -> list[str]:
 def table(path: str, value: Any) -> dict[str, Any]:
     """Check a table."""
     if not isinstance(value, dict):
-        raise InvalidParameterError(path, "be a table", shown(value), f"write [{path}] above its keys")
+        form = "{ key = value, ... }" if path.endswith("]") else f"[{path}] above its keys"
+        raise InvalidParameterError(path, "be a table", shown(value), f"write {form}")
     return value
 
 

@@ -49,6 +49,13 @@ SHORT_NAMES: Mapping[str, str] = MappingProxyType(
     }
 )
 """Short names that files and the command line take for a law, too."""
+_SYMBOLS = {
+    **dict.fromkeys(("k1", "k_1"), "attractive_gain"),
+    **dict.fromkeys(("k3", "k_3"), "repulsive_gain"),
+    **dict.fromkeys(("k5", "k_5"), "detour_gain"),
+    "b": "gain_ratio",
+}
+"""Symbols of the source for the gains of the field, which files name by their words."""
 _KINDS: Mapping[str, Kind] = MappingProxyType(
     {"float": kind.number, "float | None": kind.number, "bool": kind.boolean, "int": kind.integer}
 )
@@ -67,7 +74,7 @@ def name_of(law: nav.Law) -> str:
 
 def law_named(path: str, word: str) -> type[nav.Law]:
     """Return the law of a name: long or short, with hyphens, blanks or capitals as in running text."""
-    plain = word.strip().lower().replace("*", "star").replace("-", "_").replace(" ", "_")
+    plain = word.strip().lower().replace("-", "_").replace(" ", "_").replace("d*", "d_star")
     name = SHORT_NAMES.get(plain, plain)
     if name not in LAWS:
         near = meant(plain, [*LAWS, *SHORT_NAMES])
@@ -80,6 +87,11 @@ def law_of(table: dict[str, Any]) -> nav.Law:
     if "type" not in table:
         raise kind.missing("law.type", 'write type = "virtual_force_field" or the name of another law')
     law = law_named("law.type", kind.word("law.type", table["type"]))
+    for key in table:
+        if law is nav.VirtualForceField and key.lower() in _SYMBOLS:
+            error = kind.unknown_key("law", key, keys_of(law))
+            remedy = f"did you mean {_SYMBOLS[key.lower()]}?"
+            raise InvalidParameterError(error.argument, error.requirement, error.value, remedy)
     given = checked("law", table, keys_of(law))
     del given["type"]
     with located("law"):
