@@ -258,11 +258,16 @@ def _rows(report: FoamReport) -> Iterator[list[object]]:
 
 def _picture(report: FoamReport) -> Figure:
     from hrsafety import plotting
+    from hrsafety.plotting.boundaries import refined
 
+    file = report.file
+    design = impact.design_foam(file.manipulator, file.limits, closing_speed=file.closing_speed)
+    curves = [curve for curve, found in ((design.upper, report.upper), (design.lower, report.lower)) if found]
+    damping = refined(file.damping, curves)
     return plotting.foam_boundaries(
-        report.file.damping,
-        report.upper,
-        report.lower,
+        damping,
+        design.upper(damping) if report.upper else None,
+        design.lower(damping) if report.lower else None,
         foams=report.file.foams,
         accepted={judged.name: judged.accepted for judged in report.foams},
         upper_label="upper",

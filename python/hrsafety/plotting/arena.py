@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.simulation import Trajectory
-from hrsafety.plotting import inputs, law_looks, shapes, style
+from hrsafety.plotting import inputs, labels, law_looks, notes, shapes, style
 from hrsafety.plotting.law_looks import Runs
 from hrsafety.plotting.scenes import _draw_path
 from hrsafety.plotting.sequences import COLUMNS, MOST_INSTANTS, _draw_velocity, obstacle_velocity
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
 __all__ = ["plot_arena_distances", "plot_arena_paths", "plot_arena_sequence"]
 
@@ -33,7 +34,9 @@ BEYOND_REGION = 1.25  # the axis of distances ends here, in reaches of the large
 
 
 @style.styled
-def plot_arena_paths(runs: Mapping[str, Trajectory], *, regions: bool = False, title: str | None = None) -> Figure:
+def plot_arena_paths(
+    runs: Mapping[str, Trajectory], *, regions: bool = False, view: str = "scene", title: str | None = None
+) -> Figure:
     """Draw the paths of several laws through one scenario.
 
     Each kind of law has its color; planners are dashed, and a second law of a kind has another
@@ -48,6 +51,8 @@ def plot_arena_paths(runs: Mapping[str, Trajectory], *, regions: bool = False, t
         Runs by the names of their laws, all of the same scenario.
     regions : bool
         Whether active and critical regions of stationary obstacles are drawn.
+    view : {"scene", "paths"}
+        Whether everything that stands is in view, or only the paths and what is near them.
     title : str or None
         Title of the figure.
 
@@ -75,15 +80,16 @@ def plot_arena_paths(runs: Mapping[str, Trajectory], *, regions: bool = False, t
     given = law_looks.checked_runs(runs)
     looks = law_looks.looks_of(given)
     scenario = law_looks.longest(given).scenario
-    limits = law_looks.limits_of(given)
+    limits = law_looks.limits_of(given, whole=inputs.checked_view(view))
     marks = [law_looks.handle("each second", marker=(3, 0, -90.0), markersize=8), *law_looks.event_handles(given)]
     handles = [*law_looks.law_handles(looks), *marks, *law_looks.scene_handles(given, regions=regions)]
     figure = _scene_figure(limits, handles, title=title)
     axes = figure.subplots()
     style.frame_scene(axes, limits)
+    named: list[Annotation] = []
     for index, obstacle in enumerate(scenario.obstacles):
         if shapes.is_mobile(obstacle):
-            _draw_places(axes, given, index, limits)
+            named += _draw_places(axes, given, index, limits)
         else:
             color = law_looks.obstacle_color(obstacle)
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), color, regions=regions)
@@ -91,6 +97,8 @@ def plot_arena_paths(runs: Mapping[str, Trajectory], *, regions: bool = False, t
         _draw_path(axes, run, looks[name])
     shapes.add_start_and_goal(axes, scenario)
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    notes.add_warnings(figure, *given.values())
+    labels.clear_labels(figure, named)
     return figure
 
 
@@ -160,11 +168,14 @@ def plot_arena_distances(
     axes.set_xlabel("time (s)")
     axes.set_ylabel("distance of the surfaces (m)")
     axes.legend(handles=handles, **style.LEGEND_BESIDE)
+    notes.add_warnings(figure, *given.values())
     return figure
 
 
 @style.styled
-def plot_arena_sequence(runs: Mapping[str, Trajectory], times: Sequence[float], *, title: str | None = None) -> Figure:
+def plot_arena_sequence(
+    runs: Mapping[str, Trajectory], times: Sequence[float], *, view: str = "scene", title: str | None = None
+) -> Figure:
     """Draw the robots of several laws at chosen instants, one panel for each instant.
 
     Every panel shows the obstacles and, for each law, the disc of the robot and its path so
@@ -177,6 +188,8 @@ def plot_arena_sequence(runs: Mapping[str, Trajectory], times: Sequence[float], 
         Runs by the names of their laws, all of the same scenario.
     times : sequence of float
         Instants in s, from 1 to 24 of them. The nearest row of each run is drawn.
+    view : {"scene", "paths"}
+        Whether everything that stands is in view, or only the paths and what is near them.
     title : str or None
         Title of the figure.
 
@@ -207,7 +220,7 @@ def plot_arena_sequence(runs: Mapping[str, Trajectory], times: Sequence[float], 
     given = law_looks.checked_runs(runs)
     chosen = _checked_times(given, times)
     looks = law_looks.looks_of(given)
-    limits = law_looks.limits_of(given, least_ratio=0.75)
+    limits = law_looks.limits_of(given, whole=inputs.checked_view(view), least_ratio=0.75)
     columns = min(COLUMNS, len(chosen))
     rows = -(-len(chosen) // columns)
     handles = [
@@ -229,6 +242,7 @@ def plot_arena_sequence(runs: Mapping[str, Trajectory], times: Sequence[float], 
             axes.set_xlabel("x (m)")
             axes.tick_params(labelbottom=True)
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    notes.add_warnings(figure, *given.values())
     return figure
 
 
@@ -299,8 +313,8 @@ def _scene_figure(
     return style.new_figure(height, title=title, compressed=True)
 
 
-def _draw_places(axes: Axes, runs: Runs, index: int, limits: style.Limits) -> None:
-    """Draw the way of a moving obstacle, and the obstacle at some instants while it is in view."""
+def _draw_places(axes: Axes, runs: Runs, index: int, limits: style.Limits) -> list[Annotation]:
+    """Draw the way of a moving obstacle, and the obstacle while all of it is in view; return the labels of the times."""
     run = law_looks.longest(runs)
     end = max((other.arrival_time for other in runs.values() if np.isfinite(other.arrival_time)), default=np.inf)
     obstacle, place = run.scenario.obstacles[index], run.obstacle_position[:, index]
@@ -308,17 +322,16 @@ def _draw_places(axes: Axes, runs: Runs, index: int, limits: style.Limits) -> No
     shown = np.flatnonzero(np.isfinite(place).all(axis=1) & (run.time <= end))
     axes.plot(place[shown, 0], place[shown, 1], ":", color=color, linewidth=1.4, zorder=2.5)
     low, high = np.array(limits).T
-    seen = shown[((place[shown] > low) & (place[shown] < high)).all(axis=1)]
+    seen = shown[((place[shown] - radius > low) & (place[shown] + radius < high)).all(axis=1)]
     rows = _chosen_rows(run.time, place, seen, radius)
     if len(run.scenario.obstacles) > shapes.MOST_COLORS:
         rows = rows[len(rows) // 2 :][:1]
-    back: style.Properties = {"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8}
-    words: style.Properties = {"color": color, "ha": "center", "va": "center", "clip_on": True, "bbox": back}
+    named = []
     for row in rows:
         faint: style.Properties = {"alpha": 0.25, "edgecolor": color, "linewidth": 1.0, "zorder": 2.6}
         shapes.add(axes, [shapes.body(obstacle, place[row], facecolor=color, **faint)])
-        x, y = place[row]
-        axes.text(x, y - 0.5 * radius, f"{run.time[row]:g} s", fontsize=style.SMALL_FONT_SIZE, zorder=2.7, **words)
+        named.append(labels.label(axes, f"{run.time[row]:g} s", tuple(place[row]), color=color))
+    return named
 
 
 def _chosen_rows(time: inputs.Array, place: inputs.Array, seen: Rows, radius: float) -> list[int]:

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, labels, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
     from hrsafety.impact import Foam, FoamBoundary
 
-__all__ = ["foam_boundaries", "foam_map"]
+__all__ = ["foam_boundaries", "foam_map", "refined"]
 
 KILO = 1000.0
 UPPER_COLOR, LOWER_COLOR, BETWEEN_COLOR = "#D55E00", "#0072B2", "#009E73"
@@ -26,11 +27,21 @@ STATUS_STYLES: dict[str, Any] = {
     "jump": (0, (1.2, 1.4)),
     "end_of_impact_period": (0, (5, 2)),
     "initial_step": (0, (4, 1.5, 1, 1.5)),
+    "beyond_linear_range": (0, (1, 3)),
+    "bottomed": (0, (1, 5)),
 }
+_ROUNDS = 8  # halvings of the step of the damping where a curve changes its meaning
 STATUS_WORDS = {
     "jump": "a jump of the impact period",
     "end_of_impact_period": "at the end of the impact period",
     "initial_step": "at first contact",
+    "beyond_linear_range": "beyond the linear range",
+    "bottomed": "bottomed",
+}
+# Foams that a linear model does not describe: no verdict of the limits, whatever the numbers say.
+BEYOND_MARKS: dict[str, style.Properties] = {
+    "beyond_linear_range": {"marker": "^", "color": "#E69F00"},
+    "bottomed": {"marker": "v", "color": "black"},
 }
 ACCEPTED, REJECTED = "#00795C", style.CONTACT_COLOR
 DAMPING_LABEL, STIFFNESS_LABEL = "foam damping (N s/m)", "foam stiffness (kN/m)"
@@ -44,6 +55,7 @@ def foam_boundaries(
     *,
     foams: Mapping[str, Foam] | None = None,
     accepted: Mapping[str, bool] | None = None,
+    statuses: Mapping[str, str] | None = None,
     upper_label: str = "upper: head acceleration",
     lower_label: str = "lower: compression",
     title: str | None = None,
@@ -64,6 +76,9 @@ def foam_boundaries(
     accepted : mapping of str to bool or None
         Whether a foam meets all limits: a filled circle, or a cross. Foams that are not named
         here are open circles.
+    statuses : mapping of str to str or None
+        Status of the impact with a foam: ``"beyond_linear_range"`` and ``"bottomed"`` are marked
+        by triangles of their own, since no limit counts as kept there.
     upper_label, lower_label : str
         What the curves keep.
     title : str or None
@@ -103,13 +118,15 @@ def foam_boundaries(
         _curve(axes, grid, tops, _words(upper), UPPER_COLOR, upper_label)
     if lower is not None:
         _curve(axes, grid, bottoms, _words(lower), LOWER_COLOR, lower_label)
-    _foams(axes, foams or {}, accepted or {})
+    named = _foams(axes, foams or {}, accepted or {}, statuses or {})
     axes.set_xlim(grid[0], grid[-1])
     axes.set_ylim(0.0, height)
     axes.set_xlabel(DAMPING_LABEL)
     axes.set_ylabel(STIFFNESS_LABEL)
     handles, texts = axes.get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=2, columnspacing=1.4)
+    notes.add_warnings(figure, upper, lower)
+    labels.clear_labels(figure, named)
     return figure
 
 
@@ -173,13 +190,60 @@ def foam_map(
     if limit is not None and np.nanmin(table) < limit < np.nanmax(table):
         axes.contour(columns, rows / KILO, table, levels=[limit], colors="white", linewidths=1.8)
         bar.ax.axhline(limit, color="white", linewidth=1.8)
+    named = []
     for name, foam in (foams or {}).items():
-        axes.plot([foam.damping], [foam.stiffness / KILO], "o", color="white", markeredgecolor="black")
-        axes.annotate(name, (foam.damping, foam.stiffness / KILO), (7, 6), textcoords="offset points", color="white")
+        axes.plot([foam.damping], [foam.stiffness / KILO], "o", color="white", markeredgecolor="black", clip_on=False)
+        named.append(labels.label(axes, name, (foam.damping, foam.stiffness / KILO), color="white", **_shadow()))
     axes.grid(visible=False)
     axes.set_xlabel(DAMPING_LABEL)
     axes.set_ylabel(STIFFNESS_LABEL)
+    axes.set_xlim(columns[0], columns[-1])
+    axes.set_ylim(rows[0] / KILO, rows[-1] / KILO)
+    labels.clear_labels(figure, named)
     return figure
+
+
+def refined(damping: npt.ArrayLike, curves: Sequence[Callable[[inputs.Array], FoamBoundary]]) -> inputs.Array:
+    """Return a damping with more points where a boundary changes its meaning, begins or ends.
+
+    Without them a picture shows the step of the damping there: slanted edges in place of steep ones,
+    and a curve that ends up to one step too early.
+
+    Parameters
+    ----------
+    damping : array_like, shape (n,)
+        Foam damping in N s/m, rising.
+    curves : sequence of callable
+        The boundaries as functions of the damping, for example ``FoamDesign.upper``.
+
+    Returns
+    -------
+    ndarray
+        ``damping`` and the points between; the last step is 1/256 of the one that was given.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> from hrsafety.plotting.boundaries import refined
+    >>> design = impact.design_foam(impact.MANIPULATOR_2, impact.FoamLimits(), closing_speed=1.25)
+    >>> len(refined([250.0, 300.0, 340.0], [design.lower])) > 3
+    True
+    """
+    grid = _rising(damping)
+    for curve in curves:
+        for _ in range(_ROUNDS):
+            found = curve(grid)
+            known, words = np.isfinite(np.asarray(found.stiffness)), np.array([_look(word) for word in _words(found)])
+            changes = np.flatnonzero((known[1:] != known[:-1]) | (words[1:] != words[:-1]))
+            grid = np.union1d(grid, (grid[changes] + grid[changes + 1]) / 2.0)
+    return grid
+
+
+def _shadow() -> style.Properties:
+    """Return what makes white words readable on every color."""
+    from matplotlib.patheffects import withStroke
+
+    return {"path_effects": [withStroke(linewidth=2.0, foreground="#303030")]}
 
 
 def _rising(values: npt.ArrayLike, name: str = "damping") -> inputs.Array:
@@ -250,11 +314,19 @@ def _look(word: str) -> str:
     return word if word in STATUS_STYLES else "root"
 
 
-def _foams(axes: Axes, foams: Mapping[str, Foam], accepted: Mapping[str, bool]) -> None:
+def _foams(
+    axes: Axes, foams: Mapping[str, Foam], accepted: Mapping[str, bool], statuses: Mapping[str, str]
+) -> list[Annotation]:
+    """Mark foams by their verdict, and return their labels."""
+    found = []
     for name, foam in foams.items():
-        fits = accepted.get(name)
+        fits, status = accepted.get(name), statuses.get(name, "")
         look: style.Properties = {"markersize": 8.5, "linestyle": "none", "zorder": 4.0}
-        if fits is None:
+        verdict = {None: "", True: ": fits", False: ": does not fit"}[fits]
+        if status in BEYOND_MARKS:
+            look |= {**BEYOND_MARKS[status], "markeredgecolor": "black", "markersize": 10.0}
+            verdict = f": {STATUS_WORDS[status]}"
+        elif fits is None:
             look |= {"marker": "o", "color": "black", "fillstyle": "none"}
         elif fits:
             look |= {"marker": "o", "color": ACCEPTED}
@@ -262,7 +334,5 @@ def _foams(axes: Axes, foams: Mapping[str, Foam], accepted: Mapping[str, bool]) 
             look |= {"marker": "X", "color": REJECTED}
         x, y = foam.damping, foam.stiffness / KILO
         axes.plot([x], [y], **look)
-        verdict = {None: "", True: ": fits", False: ": does not fit"}[fits]
-        axes.annotate(
-            f"{name}{verdict}", (x, y), (9, -3), textcoords="offset points", fontsize=style.SMALL_FONT_SIZE, zorder=5.0
-        )
+        found.append(labels.label(axes, f"{name}{verdict}", (x, y)))
+    return found

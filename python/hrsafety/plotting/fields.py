@@ -32,6 +32,8 @@ RIM_QUANTILE = 0.2  # so that the rim of a critical region is flat instead of sh
 LOW_QUANTILE = 0.005  # where a color scale begins, unless the decades are used up before
 LEVELS = 25
 SURFACE_ZOOM = 0.95
+LOGARITHMIC_DECADES = 2.0  # below the highest value; the height of a surface is linear further down
+INSIDE_COLOR = (0.78, 0.78, 0.78, 1.0)  # of critical regions, where nothing is defined
 DECADES = 3.0  # most decades of a color scale
 GRID_TOLERANCE = 1e-9  # m, below which coordinates of a grid are equal
 
@@ -228,8 +230,9 @@ def potential_valley(
 ) -> Figure:
     """Draw the valley that leads around obstacles, as contours and as a surface.
 
-    Critical regions, where the field is not defined, are blank. Both scales are logarithmic
-    and cover at most three decades. They end at a value that four of five grid points beside a
+    Critical regions, where the field is not defined, are blank, and grey tops of the surface. The
+    color scale is logarithmic and covers at most three decades; the height of the surface is
+    logarithmic over two, and linear below. Both end at a value that four of five grid points beside a
     critical region exceed, since the field grows without bound there; what is higher is drawn
     at the upper end, what is lower, or zero, at the lower end.
 
@@ -315,19 +318,30 @@ def _draw_contours(axes: Axes, grid: Grid, values: Array, levels: Array) -> None
 
 
 def _draw_surface(axes: Axes3D, grid: Grid, values: Array, levels: Array) -> None:
-    """Draw a surface whose height is the logarithm of the values, with ticks of the values."""
+    """Draw a surface whose height is linear near zero and logarithmic beyond, with ticks of the values.
+
+    A height that is logarithmic throughout would fall from the border of an active region without end, and show
+    the grid as teeth of a curtain. Critical regions are grey tops: without them the walls would be torn where the
+    grid meets their borders.
+    """
     from matplotlib import colormaps
 
     low, high = np.log10(levels[[0, -1]])
-    clipped = np.log10(np.where(np.isnan(values), np.nan, np.clip(values, levels[0], levels[-1])))
-    colors = colormaps["viridis"]((np.nan_to_num(clipped, nan=low) - low) / (high - low))
+    inside = np.isnan(values)
+    filled = np.where(inside, levels[-1], np.clip(values, 0.0, levels[-1]))
+    colors = colormaps["viridis"]((np.log10(np.maximum(filled, levels[0])) - low) / (high - low))
+    cells = inside[:-1, :-1] & inside[1:, :-1] & inside[:-1, 1:] & inside[1:, 1:]
+    colors[:-1, :-1][cells] = INSIDE_COLOR
     x, y = np.meshgrid(grid.x, grid.y)
+    softening = levels[-1] / 10.0**LOGARITHMIC_DECADES
     look: style.Properties = {"rstride": 1, "cstride": 1, "linewidth": 0.0, "antialiased": False, "shade": True}
-    axes.plot_surface(x, y, clipped, facecolors=colors, **look)
-    ticks, names = style.log_ticks(levels[0], levels[-1])
-    axes.set_zticks(np.log10(ticks), names)
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
+    axes.plot_surface(x, y, np.arcsinh(filled / softening), facecolors=colors, **look)
+    ticks, names = style.log_ticks(softening, levels[-1])
+    axes.set_zticks(np.arcsinh(np.array([0.0, *ticks]) / softening), ["0", *names])
+    axes.locator_params(axis="x", nbins=4)
+    axes.locator_params(axis="y", nbins=4)
+    axes.set_xlabel("x (m)", labelpad=8.0)
+    axes.set_ylabel("y (m)", labelpad=8.0)
     span = np.ptp(grid.x), np.ptp(grid.y)
     axes.set_box_aspect((span[0], span[1], 0.55 * max(span)), zoom=SURFACE_ZOOM)
     axes.view_init(elev=40.0, azim=-60.0)

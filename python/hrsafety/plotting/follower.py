@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import style
+from hrsafety.plotting import labels, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
     from hrsafety._statistics import Share
     from hrsafety.reactive import FollowerRun, VirtualImpedance
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["follower_rates", "follower_runs", "impedance_forces"]
 
 ROBOT_COLOR, LEADER_COLOR = style.RUN_COLORS[0], style.GOAL_COLOR
+STANDING_COLOR = "#8A8A8A"
 MOST_COLUMNS = 2
 MARGIN = 0.5  # free space around everything, in m
 SHORT_BAR = 0.1
@@ -71,20 +73,26 @@ def follower_runs(
     height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=2, titled=title is not None)
     figure = style.new_figure(height, title=title)
     panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
+    named: list[Annotation] = []
     for axes, (name, run) in zip(panels, runs.items(), strict=False):
-        _draw_run(axes, run, times)
         style.frame_scene(axes, limits)
+        named += _draw_run(axes, run, times, limits)
         axes.label_outer()
         axes.set_title(f"{name}\n{_ending(run)}", fontsize=style.SMALL_FONT_SIZE)
     for axes in panels[len(runs) :]:
         axes.set_axis_off()
-    style.legend_below(figure, _handles(), columns=4)
+    style.legend_below(figure, _handles(list(runs.values()), panels), columns=3)
+    labels.clear_labels(figure, named)
     return figure
 
 
 def view_of(runs: Sequence[FollowerRun]) -> style.Limits:
-    """Return what has to be seen: paths, and obstacles while they are near them."""
+    """Return what has to be seen: paths, all that stands, and moving obstacles while they are near them."""
     points = [np.vstack([run.position, run.source]) for run in runs]
+    for run in runs:
+        for mover in run.scene.movers:
+            if mover.velocity == (0.0, 0.0):
+                points.append(patch_of(mover.shape, np.zeros(2)).get_extents().get_points())
     both = np.vstack(points)
     (left, low), (right, high) = both.min(axis=0), both.max(axis=0)
     reach = max(2.0, high + MARGIN, -low + MARGIN)
@@ -98,15 +106,19 @@ def _ending(run: FollowerRun) -> str:
     return f"least clearance {run.min_clearance:.2f} m, ends {run.source_distance:.2f} m from the source"
 
 
-def _draw_run(axes: Axes, run: FollowerRun, times: Sequence[float] | None) -> None:
+def _draw_run(
+    axes: Axes, run: FollowerRun, times: Sequence[float] | None, limits: style.Limits
+) -> list[Annotation]:
+    """Draw one run and return the labels of its instants."""
     from matplotlib.patches import Circle
 
+    named: list[Annotation] = []
     end = float(run.time[-1])
     wanted = np.linspace(0.0, end, 5)[1:-1] if times is None else np.array([each for each in times if each < end])
     axes.plot(*run.source.T, color=LEADER_COLOR, linewidth=1.2, linestyle="--")
     axes.plot(*run.source[-1], marker="*", color=LEADER_COLOR, markersize=11, linestyle="none", zorder=5)
     axes.plot(*run.position.T, color=ROBOT_COLOR, zorder=3)
-    shown = [*(int(np.searchsorted(run.time, each)) for each in wanted), len(run) - 1]
+    shown = _apart(run, [int(np.searchsorted(run.time, each)) for each in wanted])
     for rank, row in enumerate(shown):
         last = rank == len(shown) - 1
         strength = 0.25 + 0.55 * (rank + 1) / len(shown)
@@ -115,24 +127,43 @@ def _draw_run(axes: Axes, run: FollowerRun, times: Sequence[float] | None) -> No
         axes.add_patch(
             Circle(tuple(run.position[row]), run.body_radius, fill=False, edgecolor=color, alpha=strength, zorder=4)
         )
-        above = run.position[row] + (0.0, run.body_radius + 0.13)
-        _label(axes, above, f"{run.time[row]:.0f} s", ROBOT_COLOR)
+        named.append(_label(axes, run.position[row], f"{run.time[row]:.0f} s", color))
         for index, mover in enumerate(run.scene.movers):
             moves = mover.velocity != (0.0, 0.0)
             if not moves and not last:
                 continue
             body = patch_of(mover.shape, run.shift[row, index])
             edge = style.PERSON_COLORS[index % 2]
-            body.set(facecolor=edge if moves else "#8A8A8A", alpha=0.55 * strength if moves else 0.8, linewidth=0.8)
+            if moves and not _within(body, limits):
+                continue
+            body.set(facecolor=edge if moves else STANDING_COLOR, alpha=0.55 * strength if moves else 0.8, linewidth=0.8)
             axes.add_patch(body)
             if moves:
                 center = np.asarray(getattr(mover.shape, "center", (0.0, 0.0))) + run.shift[row, index]
-                _label(axes, center, f"{run.time[row]:.0f} s", "black")
+                named.append(_label(axes, center, f"{run.time[row]:.0f} s", "black"))
+    return named
 
 
-def _label(axes: Axes, place: Any, text: str, color: str) -> None:
-    look: style.Properties = {"fontsize": 7.0, "ha": "center", "va": "center", "clip_on": True, "zorder": 6}
-    axes.text(float(place[0]), float(place[1]), text, color=color, **look)
+def _apart(run: FollowerRun, rows: Sequence[int]) -> list[int]:
+    """Return the rows at which a robot stands beside the ones that are drawn already, and the end."""
+    end = len(run) - 1
+    found: list[int] = []
+    for row in rows:
+        others = run.position[[*found, end]]
+        if np.hypot(*(others - run.position[row]).T).min() > 2.0 * run.body_radius:
+            found.append(row)
+    return [*found, end]
+
+
+def _within(body: Any, limits: style.Limits) -> bool:
+    """Return whether all of a body is in view."""
+    box = body.get_extents()
+    (left, right), (bottom, top) = limits
+    return bool(box.x0 >= left and box.x1 <= right and box.y0 >= bottom and box.y1 <= top)
+
+
+def _label(axes: Axes, place: Any, text: str, color: str) -> Annotation:
+    return labels.label(axes, text, (float(place[0]), float(place[1])), fontsize=8.5, color=color)
 
 
 def patch_of(shape: Any, shift: Any) -> Any:
@@ -150,17 +181,27 @@ def patch_of(shape: Any, shift: Any) -> Any:
     return Polygon(ends, closed=False, fill=False)
 
 
-def _handles() -> list[Artist]:
+def _handles(runs: Sequence[FollowerRun], panels: Iterable[Axes]) -> list[Artist]:
+    """Return the legend: only what is drawn."""
+    from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     star: style.Properties = {"marker": "*", "linestyle": "--", "linewidth": 1.2, "markersize": 10}
-    return [
-        Line2D([], [], color=ROBOT_COLOR, label="follower, with times"),
+    ring: style.Properties = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markersize": 10}
+    handles: list[Artist] = [
+        Line2D([], [], color=ROBOT_COLOR, label="follower, with times", **(ring | {"linestyle": "-"})),
         Line2D([], [], color=LEADER_COLOR, label="source of the sound", **star),
-        Patch(facecolor=style.PERSON_COLORS[0], alpha=0.5, label="moving box"),
-        Patch(facecolor="#8A8A8A", label="standing box"),
     ]
+    if any(run.collided for run in runs):
+        handles.append(Line2D([], [], markeredgecolor=style.CONTACT_COLOR, label="contact", **ring))
+    drawn = {to_rgb(patch.get_facecolor()) for axes in panels for patch in axes.patches}
+    for index, color in enumerate(style.PERSON_COLORS[:2]):
+        if to_rgb(color) in drawn:
+            handles.append(Patch(facecolor=color, alpha=0.5, label=f"moving obstacle {index + 1}, with times"))
+    if to_rgb(STANDING_COLOR) in drawn:
+        handles.append(Patch(facecolor=STANDING_COLOR, label="standing obstacle"))
+    return handles
 
 
 @style.styled

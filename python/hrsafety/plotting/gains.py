@@ -13,11 +13,12 @@ from hrsafety._arguments import instance
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.gain_changes import GainSensitivity
 from hrsafety.navigation.gain_results import Flatness
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, labels, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
 __all__ = ["flatness", "gain_sensitivity"]
 
@@ -85,13 +86,14 @@ def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) 
         lower.plot(changes[order], 100.0 * np.abs(found.relative_sensitivity[index][order]), **look)
     _frame_changes(lower, changes[order])
     upper.set_ylim(*_view(np.ravel(found.mean_performance)))
-    _mark_deep(upper)
+    deep = _mark_deep(upper)
     upper.set_ylabel("mean H")
-    lower.set_ylabel("relative sensitivity of mean H (%)")
-    _frame_sensitivity(lower)
-    lower.set_xlabel("change of one gain (%)")
+    uneven = _frame_sensitivity(lower)
+    lower.set_ylabel("relative sensitivity of mean H (%)" + uneven)
+    lower.set_xlabel(f"change of one gain (%); axis linear up to ±{LINEAR_UP_TO:g} %, logarithmic beyond")
     figure.legend(*upper.get_legend_handles_labels(), loc="outside lower center", ncols=2, columnspacing=1.4)
     figure.align_ylabels()
+    labels.clear_labels(figure, deep)
     return figure
 
 
@@ -200,8 +202,8 @@ def _summary(found: GainSensitivity, index: int) -> str:
     return f"{symbol(found.gain_names[index])}: {average:.2f} % on average, {largest:.2f} % at most"
 
 
-def _frame_sensitivity(axes: Axes) -> None:
-    """Give sensitivities in % an axis from zero, logarithmic beyond 1 % where some are large."""
+def _frame_sensitivity(axes: Axes) -> str:
+    """Give sensitivities in % an axis from zero, logarithmic beyond 1 % where some are large; return what to say."""
     top = axes.get_ylim()[1]
     if top > LARGE_SENSITIVITY:
         axes.set_yscale("symlog", linthresh=1.0, linscale=0.7)
@@ -209,21 +211,23 @@ def _frame_sensitivity(axes: Axes) -> None:
         axes.set_yticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         axes.minorticks_off()
     axes.set_ylim(0.0, top)
+    return ",\naxis logarithmic beyond 1 %" if top > LARGE_SENSITIVITY else ""
 
 
-def _mark_deep(axes: Axes) -> None:
+def _mark_deep(axes: Axes) -> list[Annotation]:
     """Tell the values that lie below the axis: an arrow at its foot and the number, in rows."""
     bottom, top = axes.get_ylim()
     row = 0.07 * (top - bottom)
     deep = [line for line in axes.lines if np.nanmin(np.asarray(line.get_ydata(), dtype=np.float64)) < bottom]
+    found = []
     for index, line in enumerate(deep):
         height = bottom - (len(deep) - index - 0.5) * row
         for x, y in zip(np.asarray(line.get_xdata()), np.asarray(line.get_ydata()), strict=True):
             if np.isfinite(y) and y < bottom:
-                look: style.Properties = {"fontsize": style.SMALL_FONT_SIZE, "color": line.get_color()}
                 axes.plot([x], [height], marker="v", markersize=5.0, color=line.get_color(), linestyle="none")
-                axes.annotate(f"{y:.2f}", (float(x), height), (5, -3.5), textcoords="offset points", **look)
+                found.append(labels.label(axes, f"{y:.2f}", (float(x), height), color=line.get_color()))
     axes.set_ylim(bottom - len(deep) * row, top)
+    return found
 
 
 def _frame_changes(axes: Axes, changes: inputs.Array) -> None:

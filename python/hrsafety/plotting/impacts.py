@@ -9,9 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
+from hrsafety.plotting import labels as placing
+from hrsafety.plotting.boundaries import BEYOND_MARKS, STATUS_WORDS
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -34,6 +37,8 @@ QUANTITIES = {
     "head_velocity": ("head velocity (m/s)", 1.0),
 }
 LIMIT_LOOK: style.Properties = {"color": style.CONTACT_COLOR, "linewidth": 1.1, "linestyle": (0, (5, 3))}
+LIMIT_GID = "limit"  # tells the lines of limits from others
+PEAK_LOOK: style.Properties = {"marker": "*", "markersize": 11.0, "linestyle": "none"}
 MEASURED_COLOR = "#D55E00"
 
 
@@ -59,7 +64,8 @@ def impact_histories(
     quantities : sequence of str
         Names of fields of the responses; accelerations are drawn in g, lengths in mm.
     peaks : sequence of int
-        Indices of the impacts whose largest value within the impact period gets an asterisk.
+        Indices of the impacts whose largest value within the impact period gets an asterisk,
+        which the legend explains.
     limits : mapping of str to float or None
         Limit of a quantity in the unit of its axis, drawn as a dashed line.
     title : str or None
@@ -97,15 +103,17 @@ def impact_histories(
                 continue
             look = style.run_look(index)
             axes.plot(MILLI * run.time, values, label=name, **look)
+            _mark_beyond(axes, run, values, look["color"])
             if index in marked:
                 _mark_peak(axes, run, values, look["color"])
         _finish(axes, quantity, limits)
-    handles, texts = panels[0].get_legend_handles_labels()
-    if len(runs) > 1 or labels is not None:
-        figure.legend(handles, texts, loc="outside lower center", ncols=min(len(runs), 2), columnspacing=1.4)
+    handles = _history_handles(runs, names if len(runs) > 1 or labels is not None else [], panels)
+    if handles:
+        style.legend_below(figure, handles, columns=min(len(handles), 3))
     panels[-1].set_xlabel("time (ms)")
     panels[-1].set_xlim(0.0, MILLI * max(float(run.time[-1]) for run in runs))
     figure.align_ylabels()
+    notes.add_warnings(figure, *(source for run in runs for source in (run, getattr(run, "metrics", None))))
     return figure
 
 
@@ -183,6 +191,7 @@ def measured_impact(
     )
     handles, texts = left.get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=3)
+    notes.add_warnings(figure, run, run.metrics)
     return figure
 
 
@@ -249,9 +258,10 @@ def impact_study(
         axes.plot(grid, line, label=name, **style.run_look(index))
     if limit is not None:
         axes.axhline(limit, label=f"limit {limit:g}", **LIMIT_LOOK)
+    named = []
     for name, (x, y) in (marks or {}).items():
-        axes.plot([x], [y], marker="*", markersize=12.0, color="black", linestyle="none")
-        axes.annotate(name, (x, y), (8, 8), textcoords="offset points", fontsize=style.SMALL_FONT_SIZE)
+        axes.plot([x], [y], marker="*", markersize=12.0, color="black", linestyle="none", zorder=5.0)
+        named.append(placing.label(axes, name, (x, y)))
     if log_parameter:
         axes.set_xscale("log")
         ticks, texts = style.log_ticks(float(grid.min()), float(grid.max()))
@@ -263,6 +273,7 @@ def impact_study(
     axes.set_ylabel(quantity)
     handles, texts = axes.get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=min(3, len(handles)))
+    placing.clear_labels(figure, named)
     return figure
 
 
@@ -319,7 +330,39 @@ def _peak_row(run: Any, values: inputs.Array) -> int:
 
 def _mark_peak(axes: Axes, run: Any, values: inputs.Array, color: str) -> None:
     row = _peak_row(run, values)
-    axes.plot([MILLI * run.time[row]], [values[row]], marker="*", markersize=11.0, color=color, linestyle="none")
+    axes.plot([MILLI * run.time[row]], [values[row]], color=color, zorder=4.0, **PEAK_LOOK)
+
+
+def _mark_beyond(axes: Axes, run: Any, values: inputs.Array, color: str) -> None:
+    """Mark the deepest compression of an impact that a linear foam does not describe."""
+    status = _status(run)
+    if status in BEYOND_MARKS:
+        row = int(np.nanargmax(run.compression))
+        look = {**BEYOND_MARKS[status], "markeredgecolor": color, "markersize": 9.0, "zorder": 5.0}
+        axes.plot([MILLI * run.time[row]], [values[row]], linestyle="none", **look)
+
+
+def _status(run: Any) -> str:
+    """Return the status word of a response; empty without one."""
+    return str(getattr(getattr(run, "metrics", run), "status", ""))
+
+
+def _history_handles(runs: Sequence[Any], names: Sequence[str], panels: Sequence[Axes]) -> list[Artist]:
+    """Return the legend: each named impact, then every mark and limit that is drawn."""
+    from matplotlib.lines import Line2D
+
+    handles: list[Artist] = [Line2D([], [], label=name, **style.run_look(i)) for i, name in enumerate(names)]
+    lines = [line for axes in panels for line in axes.lines]
+    if any(line.get_marker() == "*" for line in lines):
+        handles.append(Line2D([], [], label="largest within the impact period", color=style.NEUTRAL, **PEAK_LOOK))
+    for status in dict.fromkeys(_status(run) for run in runs):
+        if status in BEYOND_MARKS:
+            look = {**BEYOND_MARKS[status], "markeredgecolor": style.NEUTRAL, "markersize": 9.0}
+            label = f"deepest, {STATUS_WORDS[status]}: no limit counts as kept"
+            handles.append(Line2D([], [], label=label, linestyle="none", **look))
+    if any(line.get_gid() == LIMIT_GID for line in lines):
+        handles.append(Line2D([], [], label="limit", **LIMIT_LOOK))
+    return handles
 
 
 def _finish(axes: Axes, quantity: str, limits: Mapping[str, float] | None) -> None:
@@ -327,4 +370,4 @@ def _finish(axes: Axes, quantity: str, limits: Mapping[str, float] | None) -> No
     axes.set_ylabel(QUANTITIES[quantity][0])
     axes.axhline(0.0, color=style.NEUTRAL, linewidth=0.8)
     if limits is not None and quantity in limits:
-        axes.axhline(limits[quantity], **LIMIT_LOOK)
+        axes.axhline(limits[quantity], gid=LIMIT_GID, **LIMIT_LOOK)

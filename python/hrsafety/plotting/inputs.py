@@ -7,11 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import Trajectory
 from hrsafety.plotting.style import Limits
 
+VIEWS = ("scene", "paths")
 Array = npt.NDArray[np.float64]
 
 
@@ -97,6 +99,11 @@ def view_limits(points: Sequence[npt.ArrayLike], *, margin: float, least_ratio: 
     x = (float(center[0] - width / 2.0), float(center[0] + width / 2.0))
     y = (float(center[1] - height / 2.0), float(center[1] + height / 2.0))
     return x, y
+
+
+def checked_view(view: str) -> bool:
+    """Return whether all that stands is to be in view."""
+    return word("view", view, VIEWS) == "scene"
 
 
 def time_limit(runs: Sequence[Trajectory]) -> float:

@@ -83,14 +83,14 @@ def looks_of(runs: Runs) -> dict[str, style.Properties]:
     return found
 
 
-def limits_of(runs: Runs, *, least_ratio: float = 0.4) -> style.Limits:
-    """Return limits that hold all paths and what stands within reach of them."""
+def limits_of(runs: Runs, *, whole: bool, least_ratio: float = 0.4) -> style.Limits:
+    """Return limits that hold all paths and what stands: all of it, or what is within reach of the paths."""
     first = next(iter(runs.values())).scenario
     points = [run.position for run in runs.values()] + [np.array([first.start, first.goal])]
     for index, obstacle in enumerate(first.obstacles):
         if not shapes.is_mobile(obstacle):
             near = min(float(np.nanmin(run.distance[:, index])) for run in runs.values())
-            if near < shapes.region_radii(obstacle)[0]:
+            if whole or near < shapes.region_radii(obstacle)[0]:
                 points.append(shapes.body(obstacle, shapes.center(obstacle)).get_extents().get_points())
     return inputs.view_limits(points, margin=MARGIN, least_ratio=least_ratio)
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import inputs, notes, shapes, style
+from hrsafety.plotting import labels as placing
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
 
-    from hrsafety.navigation.obstacles import Obstacle
     from hrsafety.navigation.simulation import Trajectory
 
 __all__ = ["paths"]
@@ -24,6 +25,12 @@ MARGIN = 0.35  # free space around what must be in view, in m
 SECOND = 1.0
 SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which a direction marker would point anywhere
 LEGEND_COLUMNS = 4
+NARROWEST, STEP_OF_WIDTH = 1.5, 2.4  # pt, widths of paths that lie on each other
+CLOSE_PATHS = 0.008  # of the extent of both paths: about the width of a line
+SHARE_ON_EACH_OTHER = 0.4
+MOST_COMPARED = 400  # points of a path
+NUMBER_COLOR = "#6B3E00"
+SAME_PLACE = 0.5  # radii of an obstacle between two places that are drawn once
 
 
 @style.styled
@@ -32,6 +39,7 @@ def paths(
     *,
     labels: Sequence[str] | None = None,
     regions: bool = True,
+    view: str = "scene",
     title: str | None = None,
 ) -> Figure:
     """Draw the paths of one or several runs through one scene.
@@ -41,8 +49,9 @@ def paths(
     If the robot entered its active region, it is shown, with its regions, where it was when
     the robot came closest, together with the robot and a line between the two; with several
     runs, once for each run and edged in the color of that run. Of more than six obstacles the
-    moving ones are shown without regions, but with their number. A first contact is marked by
-    a cross.
+    moving ones are shown without regions, but with their number; the dotted paths are only of
+    those that came near. Runs whose paths lie on each other are lines of decreasing width, so
+    that each can be seen. A first contact is marked by a cross.
 
     Parameters
     ----------
@@ -52,6 +61,8 @@ def paths(
         One name for each run; numbered when ``None``.
     regions : bool
         Whether active and critical regions are drawn.
+    view : {"scene", "paths"}
+        Whether everything that stands is in view, or only the paths and what is near them.
     title : str or None
         Title of the figure.
 
@@ -79,29 +90,51 @@ def paths(
     runs = inputs.checked_runs(trajectories)
     names = inputs.checked_labels(labels, len(runs), stem="robot" if len(runs) == 1 else "run")
     inputs.check_same_scene(runs)
-    limits = _limits_of_runs(runs, regions=regions)
+    limits = _limits_of_runs(runs, regions=regions, whole=inputs.checked_view(view))
     scenario = runs[0].scenario
-    handles = _path_handles(runs, names, regions=regions)
+    looks = _run_looks(runs)
+    handles = _path_handles(runs, names, looks, limits, regions=regions)
     legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
     height = style.scene_height(limits, legend_rows=legend_rows, titled=title is not None)
     figure = style.new_figure(height, title=title, compressed=True)
     axes = figure.subplots()
     style.frame_scene(axes, limits)
+    named: list[Annotation] = []
     for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
         if shapes.is_mobile(obstacle):
-            _draw_encounters(axes, runs, index, look, regions=regions)
+            named += _draw_encounters(axes, runs, index, look, regions=regions)
         else:
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), look.color, regions=regions)
     for index, run in enumerate(runs):
-        _draw_path(axes, run, style.run_look(index))
+        _draw_path(axes, run, looks[index])
     shapes.add_start_and_goal(axes, scenario, sorted({run.scenario.start for run in runs}))
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    notes.add_warnings(figure, *runs)
+    placing.clear_labels(figure, named)
     return figure
 
 
-def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool) -> style.Limits:
-    """Return limits that hold all paths and the obstacles that matter to them."""
-    points: list[Any] = []
+def _run_looks(runs: Sequence[Trajectory]) -> list[style.Properties]:
+    """Return the look of each run: lines of decreasing width where paths lie on each other."""
+    looks = [style.run_look(index) for index in range(len(runs))]
+    if any(_coincide(run, other) for index, run in enumerate(runs) for other in runs[:index]):
+        for index, look in enumerate(looks):
+            look |= {"linewidth": NARROWEST + STEP_OF_WIDTH * (len(runs) - 1 - index), "linestyle": "-"}
+    return looks
+
+
+def _coincide(run: Trajectory, other: Trajectory) -> bool:
+    """Return whether a good part of two paths can hardly be told apart."""
+    some = run.position[:: max(1, len(run.position) // MOST_COMPARED)]
+    all_others = other.position[:: max(1, len(other.position) // MOST_COMPARED)]
+    away = np.sqrt(((some[:, np.newaxis] - all_others) ** 2).sum(axis=2)).min(axis=1)
+    extent = float(np.ptp(np.concatenate([run.position, other.position]), axis=0).max())
+    return bool(np.count_nonzero(away < CLOSE_PATHS * extent) > SHARE_ON_EACH_OTHER * len(some))
+
+
+def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool, whole: bool) -> style.Limits:
+    """Return limits that hold all paths, the obstacles that matter to them and, if wanted, all that stand."""
+    points: list[Any] = shapes.scene_points(runs[0].scenario.obstacles) if whole else []
     for run in runs:
         points += [run.position, run.scenario.start, run.scenario.goal]
         for index, obstacle in enumerate(run.scenario.obstacles):
@@ -116,41 +149,48 @@ def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool) -> style.Limit
     return inputs.view_limits(points, margin=MARGIN)
 
 
-def _draw_encounters(axes: Axes, runs: Sequence[Trajectory], index: int, look: shapes.Look, *, regions: bool) -> None:
-    """Draw a moving obstacle's path, and where it was at the closest approach of each run."""
+def _draw_encounters(
+    axes: Axes, runs: Sequence[Trajectory], index: int, look: shapes.Look, *, regions: bool
+) -> list[Annotation]:
+    """Draw a moving obstacle's path, and where it was at the closest approach of each run; return labels."""
     from matplotlib.patches import Circle
 
     longest = max((run for run in runs if run.scenario.obstacles), key=lambda run: float(run.time[-1]))
-    trace = longest.obstacle_position[:, index]
-    axes.plot(trace[:, 0], trace[:, 1], ":", color=look.color, linewidth=1.6, zorder=2.5)
     several, many = len(runs) > 1, len(longest.scenario.obstacles) > shapes.MOST_COLORS
+    met = list(_encounters(runs, index))
+    if met or not many:
+        trace = longest.obstacle_position[:, index]
+        axes.plot(trace[:, 0], trace[:, 1], ":", color=look.color, linewidth=1.0 if many else 1.6, zorder=2.5)
+    named, drawn = [], []
+    for number, run, row in met:
+        obstacle, place, robot = run.scenario.obstacles[index], run.obstacle_position[row, index], run.position[row]
+        color = style.run_look(number)["color"]
+        radius = float(getattr(obstacle, "radius", 0.0))
+        if all(np.hypot(*(place - other)) > SAME_PLACE * radius for other in drawn):
+            edge = str(color) if several else None
+            if regions and not many:
+                shapes.add(axes, shapes.region_patches(obstacle, place, edge or look.color, filled=not several))
+            ring: style.Properties = {"facecolor": look.color, "alpha": 0.55 if several else 0.9}
+            ring |= {"edgecolor": edge or "white", "linewidth": 1.6, "zorder": 3.2}
+            if many:  # faint, so that paths and other people can be seen through it
+                ring |= {"alpha": 0.3, "edgecolor": look.color, "linewidth": 1.0}
+            shapes.add(axes, [shapes.body(obstacle, place, **ring)])
+            drawn.append(place)
+            if many:
+                back: style.Properties = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+                words = placing.label(axes, look.name.split()[-1], tuple(place), color=NUMBER_COLOR, bbox=back)
+                named.append(words)
+        axes.add_patch(Circle((robot[0], robot[1]), run.scenario.robot.radius, fill=False, color=color, zorder=3.5))
+        axes.plot([place[0], robot[0]], [place[1], robot[1]], color=color, linewidth=0.8, zorder=3.4)
+    return named
+
+
+def _encounters(runs: Sequence[Trajectory], index: int) -> Iterator[tuple[int, Trajectory, int]]:
+    """Yield number, run and row of the closest approach of the runs that entered the active region."""
     for number, run in enumerate(runs):
         row = inputs.closest_row(run, index) if run.scenario.obstacles else None
-        obstacle = runs[0].scenario.obstacles[index] if row is None else run.scenario.obstacles[index]
-        if row is None or run.distance[row, index] >= shapes.region_radii(obstacle)[0]:
-            continue
-        place, robot = run.obstacle_position[row, index], run.position[row]
-        edge = str(style.run_look(number)["color"]) if several else None
-        if regions and not many:
-            shapes.add(axes, shapes.region_patches(obstacle, place, edge or look.color, filled=not several))
-        alpha = 0.55 if several else 0.9
-        ring: style.Properties = {
-            "facecolor": look.color,
-            "edgecolor": edge or "white",
-            "linewidth": 1.6,
-            "zorder": 3.2,
-        }
-        shapes.add(axes, [shapes.body(obstacle, place, alpha=alpha, **ring)])
-        if many:
-            letters: style.Properties = {"color": "white", "fontsize": style.SMALL_FONT_SIZE, "clip_on": True}
-            axes.text(
-                place[0], place[1], look.name.split()[-1], ha="center", va="center_baseline", zorder=5.8, **letters
-            )
-        line_color = edge or style.run_look(number)["color"]
-        axes.add_patch(
-            Circle((robot[0], robot[1]), run.scenario.robot.radius, fill=False, color=line_color, zorder=3.5)
-        )
-        axes.plot([place[0], robot[0]], [place[1], robot[1]], color=line_color, linewidth=0.8, zorder=3.4)
+        if row is not None and run.distance[row, index] < shapes.region_radii(run.scenario.obstacles[index])[0]:
+            yield number, run, row
 
 
 def _draw_path(axes: Axes, run: Trajectory, look: style.Properties) -> None:
@@ -184,17 +224,36 @@ _CONTACT: style.Properties = {
 }
 
 
-def _has_regions(obstacles: Sequence[Obstacle]) -> bool:
-    """Return whether regions of any of these obstacles are drawn."""
-    few = len(obstacles) <= shapes.MOST_COLORS
-    return few or any(not shapes.is_mobile(obstacle) for obstacle in obstacles)
+def _in_view(runs: Sequence[Trajectory], limits: style.Limits) -> list[int]:
+    """Return which obstacles, or their ways, are at least partly in view."""
+    longest = max(runs, key=lambda run: (len(run.scenario.obstacles), float(run.time[-1])))
+    many = len(longest.scenario.obstacles) > shapes.MOST_COLORS
+    low, high = np.array(limits).T
+    found = []
+    for index, obstacle in enumerate(longest.scenario.obstacles):
+        if shapes.is_mobile(obstacle):
+            trace = longest.obstacle_position[:, index]
+            seen = ((trace > low) & (trace < high)).all(axis=1).any() and (not many or any(_encounters(runs, index)))
+        else:
+            box = shapes.body(obstacle, shapes.center(obstacle)).get_extents()
+            seen = bool((box.max > low).all() and (box.min < high).all())
+        if seen:
+            found.append(index)
+    return found
 
 
-def _path_handles(runs: Sequence[Trajectory], names: Sequence[str], *, regions: bool) -> list[Artist]:
-    """Return the legend of a picture of paths."""
+def _path_handles(
+    runs: Sequence[Trajectory],
+    names: Sequence[str],
+    looks: Sequence[style.Properties],
+    limits: style.Limits,
+    *,
+    regions: bool,
+) -> list[Artist]:
+    """Return the legend of a picture of paths: only what is in view."""
     from matplotlib.lines import Line2D
 
-    handles: list[Artist] = [Line2D([], [], label=name, **style.run_look(i)) for i, name in enumerate(names)]
+    handles: list[Artist] = [Line2D([], [], label=name, **look) for name, look in zip(names, looks, strict=True)]
     mark: style.Properties = {"marker": (3, 0, -90.0), "color": style.NEUTRAL, "markersize": 8, "linestyle": "none"}
     handles.append(Line2D([], [], label="each second", **mark))
     handles += shapes.start_and_goal_handles()
@@ -204,14 +263,13 @@ def _path_handles(runs: Sequence[Trajectory], names: Sequence[str], *, regions: 
     if any(np.isfinite(run.contact_time).any() for run in runs):
         handles.append(Line2D([], [], label="first contact", **_CONTACT))
     obstacles = next((run.scenario.obstacles for run in runs if run.scenario.obstacles), ())
-    handles += shapes.obstacle_handles(obstacles, regions=regions and _has_regions(obstacles))
-    if any(shapes.is_mobile(obstacle) for obstacle in obstacles):
-        closest: style.Properties = {
-            "color": style.NEUTRAL,
-            "linewidth": 0.8,
-            "marker": "o",
-            "markerfacecolor": "none",
-            "markersize": 9,
-        }
+    seen = _in_view(runs, limits)
+    met = [index for index in seen if shapes.is_mobile(obstacles[index]) and any(_encounters(runs, index))]
+    few = len(obstacles) <= shapes.MOST_COLORS
+    regional = regions and any(not shapes.is_mobile(obstacles[index]) or (few and index in met) for index in seen)
+    handles += shapes.obstacle_handles(obstacles, regions=regional, shown=seen)
+    if met:
+        closest: style.Properties = {"color": style.NEUTRAL, "linewidth": 0.8, "marker": "o"}
+        closest |= {"markerfacecolor": "none", "markersize": 9}
         handles.append(Line2D([], [], label="closest approach", **closest))
     return handles

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import inputs, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -34,14 +34,15 @@ def time_sequence(
     *,
     instants: int | Sequence[float] = 6,
     regions: bool = True,
+    view: str = "scene",
     title: str | None = None,
 ) -> Figure:
     """Draw the scene of one run at several instants, side by side.
 
     Each panel shows the robot, its path so far and every obstacle that is present, with
     arrows for the way of one second at the present velocity (that of an obstacle by
-    differences of its positions). The view follows the path of the robot: obstacles far away
-    from it may be out of view.
+    differences of its positions). Among more than six obstacles the moving ones may be out of
+    view.
 
     Parameters
     ----------
@@ -53,6 +54,9 @@ def time_sequence(
     regions : bool
         Whether active and critical regions are drawn; those of a moving obstacle only while
         the robot is inside its active region.
+    view : {"scene", "paths"}
+        Whether everything that stands is in view, and of up to six obstacles those that move, or
+        only the path.
     title : str or None
         Title of the figure.
 
@@ -77,7 +81,7 @@ def time_sequence(
     """
     run = inputs.checked_trajectory("trajectory", trajectory)
     chosen = _checked_instants(run, instants)
-    limits = inputs.view_limits([run.position, run.scenario.start, run.scenario.goal], margin=MARGIN, least_ratio=0.75)
+    limits = _limits(run, chosen, whole=inputs.checked_view(view))
     columns = min(COLUMNS, len(chosen))
     rows = math.ceil(len(chosen) / columns)
     handles = _handles(run, regions=regions)
@@ -97,7 +101,23 @@ def time_sequence(
         axes.set_xlabel("x (m)")
         axes.tick_params(labelbottom=True)
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
+    notes.add_warnings(figure, run)
     return figure
+
+
+def _limits(run: Trajectory, instants: Sequence[float], *, whole: bool) -> style.Limits:
+    """Return limits that hold the path and, if wanted, the scene at all instants."""
+    points: list[Any] = [run.position, run.scenario.start, run.scenario.goal]
+    obstacles = run.scenario.obstacles
+    if whole:
+        points += shapes.scene_points(obstacles)
+        rows = [inputs.row_at(run, instant) for instant in instants]
+        for index, obstacle in enumerate(obstacles if len(obstacles) <= shapes.MOST_COLORS else ()):
+            places = run.obstacle_position[rows, index]
+            if shapes.is_mobile(obstacle):
+                found = places[np.isfinite(places).all(axis=1)]
+                points += [shapes.body(obstacle, place).get_extents().get_points() for place in found]
+    return inputs.view_limits(points, margin=MARGIN, least_ratio=0.75)
 
 
 def _checked_instants(run: Trajectory, instants: int | Sequence[float]) -> list[float]:

@@ -113,6 +113,13 @@ def region(obstacle: Obstacle, position: npt.ArrayLike, radius: float, **look: A
     return Circle((x, y), radius, **look)
 
 
+def scene_points(obstacles: Iterable[Obstacle]) -> list[Array]:
+    """Return corners of boxes around everything that stands, so that a view can hold the whole scene."""
+    return [
+        np.asarray(body(each, center(each)).get_extents().get_points()) for each in obstacles if not is_mobile(each)
+    ]
+
+
 def region_radii(obstacle: Obstacle) -> tuple[float, float]:
     """Return active and critical radius of an obstacle that belongs to a scenario, in m."""
     return obstacle.active_radius, obstacle.critical_radius  # type: ignore[attr-defined]  # filled in by the scenario
@@ -176,7 +183,7 @@ def add_start_and_goal(axes: Axes, scenario: Scenario, starts: Iterable[tuple[fl
     from matplotlib.patches import Circle
 
     for x, y in starts or [scenario.start]:
-        axes.plot(x, y, "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=3.9)
+        axes.plot(x, y, "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=5.7)
     look: style.Properties = {"facecolor": style.GOAL_COLOR, "alpha": 0.25, "zorder": 2.0}
     axes.add_patch(Circle(scenario.goal, scenario.arrival_tolerance, **look))
     axes.plot(*scenario.goal, "*", markersize=13, color=style.GOAL_COLOR, markeredgecolor="white", zorder=6.0)
@@ -194,17 +201,20 @@ def start_and_goal_handles() -> list[Artist]:
     ]
 
 
-def obstacle_handles(obstacles: Sequence[Obstacle], *, regions: bool) -> list[Artist]:
-    """Return legend entries for the obstacles and their regions."""
+def obstacle_handles(
+    obstacles: Sequence[Obstacle], *, regions: bool, shown: Sequence[int] | None = None
+) -> list[Artist]:
+    """Return legend entries for the obstacles, all or those with certain indices, and their regions."""
     from matplotlib.patches import Patch
 
     entries: dict[str, str] = {}
-    for obstacle, shown in zip(obstacles, looks(obstacles), strict=True):
-        entries.setdefault(shown.name if len(obstacles) <= MOST_COLORS else kind(obstacle), shown.color)
+    for index, (obstacle, look) in enumerate(zip(obstacles, looks(obstacles), strict=True)):
+        if shown is None or index in shown:
+            entries.setdefault(look.name if len(obstacles) <= MOST_COLORS else kind(obstacle), look.color)
     handles: list[Artist] = [Patch(facecolor=color, label=name) for name, color in entries.items()]
     if regions and obstacles:
         looks_of_regions = (("active region, $r_2$", style.ACTIVE_ALPHA, "--"), ("critical region, $r_3$", 0.45, ":"))
         for name, alpha, dashes in looks_of_regions:
-            look: style.Properties = {"facecolor": (0.25, 0.25, 0.25, alpha), "linestyle": dashes}
-            handles.append(Patch(edgecolor=style.NEUTRAL, label=name, **look))
+            face: style.Properties = {"facecolor": (0.25, 0.25, 0.25, alpha), "linestyle": dashes}
+            handles.append(Patch(edgecolor=style.NEUTRAL, label=name, **face))
     return handles

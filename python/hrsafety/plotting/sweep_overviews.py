@@ -156,7 +156,7 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.add_collection(lines)
     for place, axis in enumerate(varying):
         low, high = ends(axis)
-        axes.axvline(place, color=style.NEUTRAL, linewidth=1.0)
+        axes.plot([place, place], [0.0, 1.0], color=style.NEUTRAL, linewidth=1.0)
         for height, value, side in ((-0.03, low, "top"), (1.03, high, "bottom")):
             axes.text(place, height, f"{value:g}", ha="center", va=side, fontsize=style.SMALL_FONT_SIZE)
     axes.set_xlim(-0.25, max(len(varying) - 1, 1) + 0.25)

@@ -246,13 +246,13 @@ def _modes(name: str, words: str) -> Iterator[Drawing]:
 def _valley() -> Drawing:
     """Return the repulsive force between the two obstacles of configuration 3."""
     scenario = scenarios.configuration("c3")
-    x, y = np.meshgrid(np.linspace(1.0, 3.6, 131), np.linspace(-0.4, 2.3, 136))
+    x, y = np.meshgrid(np.linspace(0.6, 4.0, 137), np.linspace(-1.3, 2.4, 149))
     field = nav.force_field(
         _law("new_vff"), scenario, position=np.column_stack([x.ravel(), y.ravel()]), velocity=(-0.7, 0.0)
     )
     caption = (
         "Magnitude of the repulsive force of the disc and the rectangle of configuration 3 for a robot at "
-        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Left blank inside the critical regions."
+        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Critical regions are blank, and grey tops of the surface."
     )
     return "figure-6.12-valley", caption, partial(plotting.potential_valley, field, scenario, term="repulsive")
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety import impact, plotting
+from hrsafety.plotting.boundaries import refined
 from hrsafety.reproduce.figures import Picture, picture
 from hrsafety.reproduce.impact_appendix import drives
 from hrsafety.reproduce.impact_cases import (
@@ -201,18 +202,17 @@ def _boundaries() -> Iterator[Drawing]:
     foams = {f"Foam {key}": foam(key) for key in (1, 2, 3)}
     for arm, words in ARMS.items():
         own = manipulator(arm)
-        upper = impact.foam_stiffness_upper(own, damping=DAMPING, closing_speed=CLOSING_SPEED)
-        lower = impact.foam_stiffness_lower(own, damping=DAMPING, closing_speed=CLOSING_SPEED)
         design = impact.design_foam(own, impact.FoamLimits(), closing_speed=CLOSING_SPEED)
+        damping = refined(DAMPING, [design.upper, design.lower])
         yield (
             f"figure-3.{17 + arm}-boundaries",
             f"Foam stiffness between the two boundaries (as Fig. 3.{17 + arm}): {words}, 1.25 m/s, at most 10 g with "
             "the minimum head and 20 mm with the maximum head. Where a curve is broken it has another meaning.",
             partial(
                 plotting.foam_boundaries,
-                DAMPING,
-                upper,
-                lower,
+                damping,
+                design.upper(damping),
+                design.lower(damping),
                 foams=foams,
                 accepted={name: design.accepts(each) for name, each in foams.items()},
                 upper_label="upper: 10 g",

@@ -1,0 +1,57 @@
+"""Doubts about a result, written below its picture."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from hrsafety.plotting import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_WARNINGS = 2  # more are counted
+_LINE = 0.19  # in
+_CHARACTERS_PER_INCH = 12.5  # of the small font
+_EDGE = 0.08  # in
+
+
+def add_warnings(figure: Figure, *results: object) -> None:
+    """Write the warnings that results carry below everything else, and make room for them.
+
+    Parameters
+    ----------
+    figure : Figure
+        Finished but for this note.
+    *results : object
+        What is drawn. Each warning of their attribute ``warnings`` is written once; of more than
+        two the others are counted.
+    """
+    words = warning_lines(results, float(figure.get_figwidth()))
+    if not words:
+        return
+    room = _LINE * len(words) + _EDGE
+    height = float(figure.get_figheight()) + room
+    figure.set_figheight(height)
+    share = room / height
+    rect = (0.0, share, 1.0, 1.0 - share)
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(rect=rect)  # type: ignore[call-arg]  # constrained layout has a rectangle
+    for legend in figure.legends:
+        legend.set_bbox_to_anchor(rect, transform=figure.transFigure)
+    look: style.Properties = {"fontsize": style.SMALL_FONT_SIZE, "color": style.CONTACT_COLOR, "va": "bottom"}
+    left = 0.1 / float(figure.get_figwidth())
+    note = figure.text(left, 0.5 * _EDGE / height, "\n".join(words), linespacing=1.15, **look)
+    note.set_in_layout(False)
+
+
+def warning_lines(results: Iterable[object], width: float) -> list[str]:
+    """Return the lines of a note that is so many inch wide; none without warnings."""
+    found = list(dict.fromkeys(str(each) for result in results for each in getattr(result, "warnings", ())))
+    shown = found[:MOST_WARNINGS]
+    if len(found) > len(shown):
+        shown.append(f"and {len(found) - len(shown)} more warnings: see .warnings of the result")
+    limit = max(int(_CHARACTERS_PER_INCH * width), 20)
+    return [line for each in shown for line in textwrap.wrap(each.replace("$", r"\$"), limit)]
