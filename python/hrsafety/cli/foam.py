@@ -270,6 +270,8 @@ def _picture(report: FoamReport) -> Figure:
         design.lower(damping) if report.lower else None,
         foams=report.file.foams,
         accepted={judged.name: judged.accepted for judged in report.foams},
+        statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},
+        results=[design],
         upper_label="upper",
         lower_label="lower",
         title=report.file.title,

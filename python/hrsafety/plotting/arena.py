@@ -314,7 +314,7 @@ def _scene_figure(
 
 
 def _draw_places(axes: Axes, runs: Runs, index: int, limits: style.Limits) -> list[Annotation]:
-    """Draw the way of a moving obstacle, and the obstacle while all of it is in view; return the labels of the times."""
+    """Draw the way of a moving obstacle, and the obstacle while all of it is in view; return labels of times."""
     run = law_looks.longest(runs)
     end = max((other.arrival_time for other in runs.values() if np.isfinite(other.arrival_time)), default=np.inf)
     obstacle, place = run.scenario.obstacles[index], run.obstacle_position[:, index]

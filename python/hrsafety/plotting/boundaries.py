@@ -56,6 +56,7 @@ def foam_boundaries(
     foams: Mapping[str, Foam] | None = None,
     accepted: Mapping[str, bool] | None = None,
     statuses: Mapping[str, str] | None = None,
+    results: Sequence[object] = (),
     upper_label: str = "upper: head acceleration",
     lower_label: str = "lower: compression",
     title: str | None = None,
@@ -79,6 +80,9 @@ def foam_boundaries(
     statuses : mapping of str to str or None
         Status of the impact with a foam: ``"beyond_linear_range"`` and ``"bottomed"`` are marked
         by triangles of their own, since no limit counts as kept there.
+    results : sequence of object
+        What else the picture shows, for example the design: their warnings stand below it, as
+        those of the boundaries do.
     upper_label, lower_label : str
         What the curves keep.
     title : str or None
@@ -125,7 +129,7 @@ def foam_boundaries(
     axes.set_ylabel(STIFFNESS_LABEL)
     handles, texts = axes.get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=2, columnspacing=1.4)
-    notes.add_warnings(figure, upper, lower)
+    notes.add_warnings(figure, upper, lower, *results, *(foams or {}).values())
     labels.clear_labels(figure, named)
     return figure
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.navigation.built import BuiltTrajectory
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,6 +81,7 @@ def energy(
     panels[-1].set_xlabel("time (s)")
     panels[-1].set_xlim(0.0, inputs.time_limit(runs))
     figure.align_ylabels()
+    notes.add_warnings(figure, *runs)
     return figure
 
 

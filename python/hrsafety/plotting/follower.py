@@ -106,9 +106,7 @@ def _ending(run: FollowerRun) -> str:
     return f"least clearance {run.min_clearance:.2f} m, ends {run.source_distance:.2f} m from the source"
 
 
-def _draw_run(
-    axes: Axes, run: FollowerRun, times: Sequence[float] | None, limits: style.Limits
-) -> list[Annotation]:
+def _draw_run(axes: Axes, run: FollowerRun, times: Sequence[float] | None, limits: style.Limits) -> list[Annotation]:
     """Draw one run and return the labels of its instants."""
     from matplotlib.patches import Circle
 
@@ -136,7 +134,9 @@ def _draw_run(
             edge = style.PERSON_COLORS[index % 2]
             if moves and not _within(body, limits):
                 continue
-            body.set(facecolor=edge if moves else STANDING_COLOR, alpha=0.55 * strength if moves else 0.8, linewidth=0.8)
+            body.set(
+                facecolor=edge if moves else STANDING_COLOR, alpha=0.55 * strength if moves else 0.8, linewidth=0.8
+            )
             axes.add_patch(body)
             if moves:
                 center = np.asarray(getattr(mover.shape, "center", (0.0, 0.0))) + run.shift[row, index]

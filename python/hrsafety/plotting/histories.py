@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import inputs, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -91,6 +91,7 @@ def distances(
     panels[0].set_ylim(0.0, max(tops))
     panels[0].set_xlim(0.0, inputs.time_limit(runs))
     panels[-1].set_xlabel("time (s)")
+    notes.add_warnings(figure, *runs)
     return figure
 
 
@@ -215,7 +216,7 @@ def lyapunov(
 
     runs = inputs.checked_runs(trajectories)
     names = inputs.checked_labels(labels, len(runs), stem="robot" if len(runs) == 1 else "run")
-    figure = style.new_figure(3.6, title=title)
+    figure = style.new_figure(3.8, title=title)
     axes = figure.subplots()
     gaps = False
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
@@ -240,5 +241,6 @@ def lyapunov(
     handles: list[Artist] = list(axes.get_lines())
     if gaps:
         handles.append(Patch(color=style.NEUTRAL, alpha=0.5, linewidth=0.0, label="in a critical region"))
-    axes.legend(handles=handles, loc="upper right")
+    style.legend_below(figure, handles, columns=4)
+    notes.add_warnings(figure, *runs)
     return figure

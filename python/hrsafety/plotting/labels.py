@@ -97,9 +97,7 @@ def _offsets(half: Array, scale: float) -> Iterator[tuple[float, Array]]:
 
 def _hits(box: Bbox, points: Array, boxes: list[Bbox], room: Bbox) -> float:
     """Return how much of a picture a box would cover; 0 for none, much for leaving the axes."""
-    inside = (
-        (points[:, 0] > box.x0) & (points[:, 0] < box.x1) & (points[:, 1] > box.y0) & (points[:, 1] < box.y1)
-    )
+    inside = (points[:, 0] > box.x0) & (points[:, 0] < box.x1) & (points[:, 1] > box.y0) & (points[:, 1] < box.y1)
     texts = sum(1 for other in boxes if box.overlaps(other))
     outside = box.x0 < room.x0 or box.x1 > room.x1 or box.y0 < room.y0 or box.y1 > room.y1
     return float(inside.sum()) + 1e4 * texts + (1e6 if outside else 0.0)
@@ -114,7 +112,9 @@ def text_box(text: object) -> Bbox:
 
 def _boxes(axes: Axes, placed_later: list[Annotation]) -> list[Bbox]:
     """Return the boxes of texts that stay where they are."""
-    return [text_box(text) for text in axes.texts if text not in placed_later and text.get_visible() and text.get_text()]
+    return [
+        text_box(text) for text in axes.texts if text not in placed_later and text.get_visible() and text.get_text()
+    ]
 
 
 def _curve_points(axes: Axes) -> Array:

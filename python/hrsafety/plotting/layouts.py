@@ -154,4 +154,7 @@ def _layout_handles(scenario: Scenario, *, regions: bool) -> list[Artist]:
     if any(shapes.is_mobile(obstacle) for obstacle in scenario.obstacles):
         arrow: style.Properties = {"marker": ">", "color": "black", "markersize": 7, "markevery": [1]}
         handles.append(Line2D([0, 1], [0, 0], label="way of 1 s", **arrow))
+    if any(shapes.is_mobile(each) and each.stop is not None for each in scenario.obstacles):  # type: ignore[attr-defined]  # movers have one
+        bar: style.Properties = {"marker": "|", "markersize": 12, "markeredgewidth": 2.0, "color": style.NEUTRAL}
+        handles.append(Line2D([], [], linestyle=":", label="way, stop", **bar))
     return handles

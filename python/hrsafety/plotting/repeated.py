@@ -11,9 +11,11 @@ from hrsafety.navigation.repeated import Band, Repeated
 from hrsafety.plotting import inputs, shapes, style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from hrsafety.navigation.scenario import Scenario
     from hrsafety.navigation.simulation import Trajectory
 
 __all__ = ["repeated_distances", "repeated_paths"]
@@ -98,8 +100,16 @@ def repeated_paths(
         axes.plot(*exact.position.T, label="compared with", zorder=5.0, **EXACT_LOOK)
     shapes.add_start_and_goal(axes, scenario)
     handles, _ = axes.get_legend_handles_labels()
+    handles = [*handles, *shapes.start_and_goal_handles(), *_standing_handles(scenario)]
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
     return figure
+
+
+def _standing_handles(scenario: Scenario) -> list[Artist]:
+    """Return the legend of the obstacles that are drawn: those that stand."""
+    obstacles = scenario.obstacles
+    standing = [index for index, obstacle in enumerate(obstacles) if not shapes.is_mobile(obstacle)]
+    return shapes.obstacle_handles(obstacles, regions=bool(standing), shown=standing)
 
 
 def _draw_paths(axes: Axes, repeated: Repeated, band: Band, share: float) -> None:
@@ -186,7 +196,10 @@ def repeated_distances(
         band = repeated.goal_band(share) if index == 0 else repeated.distance_band(index - 1, share)
         most = 2 * band.runs >= len(repeated)
         low, high = band.low[most], band.high[most]
-        axes.fill_between(band.abscissa[most], low, high, color=look.color, alpha=BAND_ALPHA, linewidth=0.0)
+        words = f"{100 * share:.0f} % of the runs"
+        axes.fill_between(
+            band.abscissa[most], low, high, color=look.color, alpha=BAND_ALPHA, linewidth=0.0, label=words
+        )
         axes.plot(band.abscissa[most], band.middle[most], color=look.color, label="median")
         if exact is not None:
             axes.plot(
@@ -194,7 +207,7 @@ def repeated_distances(
             )
         if index > 0:
             _, critical = shapes.region_radii(obstacles[index - 1])
-            axes.axhline(critical, color=look.color, linestyle=":", linewidth=1.1)
+            axes.axhline(critical, color=look.color, linestyle=":", linewidth=1.1, label="critical, $r_3$")
         axes.set_ylabel(f"{look.name} (m)")
         axes.set_ylim(bottom=0.0)
         axes.legend(**style.LEGEND_BESIDE)

@@ -108,9 +108,13 @@ def _draw_beams(axes: Axes, skirt: UltrasonicSkirt) -> None:
 def _distance_circles(axes: Axes, skirt: UltrasonicSkirt, size: float) -> list[Artist]:
     """Draw the safe distance in use and the one by the geometry, and return the legend."""
     from matplotlib.lines import Line2D
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, Patch
 
-    handles: list[Artist] = []
+    square: style.Properties = {"marker": "s", "markersize": 6, "linestyle": "none", "color": SENSOR_COLOR}
+    handles: list[Artist] = [
+        Line2D([], [], label="sensor, with its number", **square),
+        Patch(facecolor=BEAM_COLOR, alpha=0.35, label="beam up to the triggering distance"),
+    ]
     used = skirt.safe_distance if skirt.safe_distance is not None else skirt.meeting_distance
     dashed: style.Properties = {"linestyle": "--"}
     for words, radius, look in (("in use", used, {}), ("where beams meet", skirt.meeting_distance, dashed)):
@@ -165,7 +169,7 @@ def skirt_runs(runs: Mapping[str, SkirtRun], *, title: str | None = None) -> Fig
         axes.set_title(f"{name}\n{_ending(run)}", fontsize=style.SMALL_FONT_SIZE)
     for axes in panels[len(runs) :]:
         axes.set_axis_off()
-    style.legend_below(figure, _run_handles(), columns=3)
+    style.legend_below(figure, _run_handles(list(runs.values())), columns=3)
     return figure
 
 
@@ -198,19 +202,28 @@ def _draw_run(axes: Axes, run: SkirtRun) -> None:
     axes.add_patch(Circle(tuple(nearest), radius, fill=False, edgecolor=color))
 
 
-def _run_handles() -> list[Artist]:
+def _run_handles(runs: Sequence[SkirtRun]) -> list[Artist]:
+    """Return the legend: only what is drawn."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     ring: style.Properties = {"marker": "o", "markersize": 11, "linestyle": "none", "markerfacecolor": "none"}
-    return [
+    handles: list[Artist] = [
         Line2D([], [], color=style.RUN_COLORS[0], label="path of the robot"),
         Line2D([], [], markeredgecolor=style.NEUTRAL, label="at the start", **ring),
-        Line2D([], [], markeredgecolor=style.RUN_COLORS[0], label="nearest to a disc", **ring),
-        Line2D([], [], markeredgecolor=style.CONTACT_COLOR, label="contact", **ring),
-        Patch(facecolor=SEEN_COLOR, edgecolor="#404040", label="disc"),
-        Patch(facecolor=UNSEEN_COLOR, edgecolor="#404040", hatch="////", label="disc below the sensors"),
     ]
+    touched = [math.isfinite(run.contact_time) for run in runs]
+    if not all(touched):
+        handles.append(Line2D([], [], markeredgecolor=style.RUN_COLORS[0], label="nearest to a disc", **ring))
+    if any(touched):
+        handles.append(Line2D([], [], markeredgecolor=style.CONTACT_COLOR, label="contact", **ring))
+    seen = np.concatenate([run.disc_seen for run in runs])
+    if seen.any():
+        handles.append(Patch(facecolor=SEEN_COLOR, edgecolor="#404040", label="disc"))
+    if not seen.all():
+        unseen = Patch(facecolor=UNSEEN_COLOR, edgecolor="#404040", hatch="////", label="disc below the sensors")
+        handles.append(unseen)
+    return handles
 
 
 @style.styled

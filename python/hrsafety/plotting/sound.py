@@ -11,6 +11,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plotting import inputs, style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -214,9 +215,21 @@ def sound_fixes(
     axes.plot(0.0, 0.0, marker="s", color=style.NEUTRAL, markersize=5.0, linestyle="none", label="microphones")
     style.frame_scene(axes, limits)
     _label_sides(axes)
-    handles, texts = axes.get_legend_handles_labels()
-    figure.legend(handles, texts, loc="outside lower center", ncols=4, columnspacing=1.4)
+    handles, _ = axes.get_legend_handles_labels()
+    style.legend_below(figure, [*handles, *_fix_handles()], columns=4)
     return figure
+
+
+def _fix_handles() -> list[Artist]:
+    """Return legend entries for what every source has."""
+    from matplotlib.lines import Line2D
+
+    look: style.Properties = {"color": style.NEUTRAL, "linestyle": "none"}
+    return [
+        Line2D([], [], marker=".", markersize=6.0, label="fix", **look),
+        Line2D([], [], marker="+", markersize=9.0, markeredgewidth=1.6, label="true place", **look),
+        Line2D([], [], color=style.NEUTRAL, linewidth=1.3, label=f"{SIGMAS:g} standard deviations"),
+    ]
 
 
 def _curve(curve: Likeness, pair: str) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import inputs, style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -134,12 +135,28 @@ def wheel_identification(tests: Sequence[OpenLoopTest], fit: WheelFit, *, title:
         angle.plot(test.time[every], test.angle[every], "o", color=color, markersize=3.5, markerfacecolor="white")
         left.plot(test.time, MILLI * (test.angle - predicted), color=color, linewidth=0.5)
     angle.set_ylabel("angle (rad)")
-    angle.set_title("circles: read, line: identified wheel", loc="left", fontsize=style.SMALL_FONT_SIZE)
     angle.tick_params(labelbottom=False)
     left.set_ylabel("left (mrad)")
     left.set_xlabel("time (s)")
     _draw_line(line, fit, levels)
+    style.legend_below(figure, _identification_handles(fit), columns=4)
     return figure
+
+
+def _identification_handles(fit: WheelFit) -> list[Artist]:
+    """Return the legend; colors are commands, as on the right."""
+    from matplotlib.lines import Line2D
+
+    ring: style.Properties = {"marker": "o", "markerfacecolor": "white", "color": style.NEUTRAL, "linestyle": "none"}
+    handles: list[Artist] = [
+        Line2D([], [], label="read", **ring),
+        Line2D([], [], color=style.NEUTRAL, label="identified wheel"),
+        Line2D([], [], marker="o", color=style.NEUTRAL, linestyle="none", label="acceleration of a test"),
+    ]
+    if not fit.moved.all():
+        cross: style.Properties = {"marker": "x", "color": style.CONTACT_COLOR, "linestyle": "none"}
+        handles.append(Line2D([], [], label="did not move", **cross))
+    return handles
 
 
 def _color(index: int, count: int) -> tuple[float, float, float, float]:

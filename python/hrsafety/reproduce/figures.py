@@ -233,6 +233,8 @@ def _modes(name: str, words: str) -> Iterator[Drawing]:
     scenario = scenarios.configuration(name)
     runs = [nav.simulate(scenario, _law("new_vff", mode)) for mode in COMPARED_MODES]
     where = f"configuration {name[1]}, {words}; New VFF, stabilizing force off and capped"
+    if name == "c4":
+        where += " (lines of decreasing width, because the paths lie on each other)"
     yield from paths_and_distances(
         runs,
         labels=COMPARED_MODES,
@@ -252,7 +254,8 @@ def _valley() -> Drawing:
     )
     caption = (
         "Magnitude of the repulsive force of the disc and the rectangle of configuration 3 for a robot at "
-        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Critical regions are blank, and grey tops of the surface."
+        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Critical regions are blank, and grey tops of the "
+        "surface."
     )
     return "figure-6.12-valley", caption, partial(plotting.potential_valley, field, scenario, term="repulsive")
 
@@ -280,7 +283,7 @@ def _speed_figure(time: np.ndarray, measured: np.ndarray, true: np.ndarray) -> F
     """Draw measured and true velocity over time."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
     axes = figure.subplots()
     axes.step(time, measured, where="pre", color="#D55E00", linewidth=1.0, label="measured")
     axes.step(time, true, where="pre", color="black", linewidth=1.8, label="true")
@@ -289,7 +292,7 @@ def _speed_figure(time: np.ndarray, measured: np.ndarray, true: np.ndarray) -> F
     axes.set_xlim(0.0, float(time[-1]))
     axes.grid(color="#E3E3E3", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="upper right")
+    figure.legend(frameon=False, loc="outside lower center", ncols=2)
     return figure
 
 

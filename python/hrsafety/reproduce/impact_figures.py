@@ -215,6 +215,8 @@ def _boundaries() -> Iterator[Drawing]:
                 design.lower(damping),
                 foams=foams,
                 accepted={name: design.accepts(each) for name, each in foams.items()},
+                statuses={name: getattr(design.margin(each), "status", "") for name, each in foams.items()},
+                results=[design],
                 upper_label="upper: 10 g",
                 lower_label="lower: 20 mm",
             ),
