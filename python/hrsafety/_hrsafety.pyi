@@ -577,6 +577,8 @@ class GainProblem:
         lower_bound_factor: float | None,
         objectives: Sequence[str | None],
         constraints: Sequence[_Bounded],
+        require_arrival: bool,
+        cap_ratios: bool,
         scorer: Callable[[list[_BatchFields]], tuple[_Array, _Array]] | None,
         scorer_constraints: int,
         lanes: int | None,

@@ -9,7 +9,14 @@ import re
 
 from hrsafety._words import meant
 
-__all__ = ["HrsafetyError", "InvalidParameterError", "MissingExtraError", "ShapeError", "SimulationError"]
+__all__ = [
+    "HrsafetyError",
+    "InfeasibleError",
+    "InvalidParameterError",
+    "MissingExtraError",
+    "ShapeError",
+    "SimulationError",
+]
 
 
 # A rule that lists words in quotes, as 'be "off", "capped" or "full"'.
@@ -93,6 +100,40 @@ class ShapeError(HrsafetyError, ValueError):
     def __str__(self) -> str:
         """Return the sentence that names argument, rule and shape."""
         return f"{self.argument} must have shape {self.expected}, got {self.actual}"
+
+
+class InfeasibleError(HrsafetyError):
+    """A search found nothing that keeps every constraint.
+
+    Parameters
+    ----------
+    finding : str
+        What was found instead.
+    remedy : str
+        What would mend it.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> from hrsafety.errors import InfeasibleError
+    >>> search = nav.optimize_gains(
+    ...     [scenarios.configuration("c1")], bounds={"attractive_gain": (0.0, 0.0)}, method="cma_es", evaluations=20
+    ... )
+    >>> try:
+    ...     search.best
+    ... except InfeasibleError as error:
+    ...     print(error.finding)
+    no gain set arrives without a contact everywhere; the nearest fails in 1 of 1 runs
+    """
+
+    def __init__(self, finding: str, remedy: str) -> None:
+        super().__init__(finding, remedy)
+        self.finding = finding
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        """Return what was found and the remedy."""
+        return f"{self.finding}; {self.remedy}"
 
 
 class SimulationError(HrsafetyError):

@@ -245,12 +245,38 @@ def test_constraint_of_one_scenario_is_kept(tmp_path: Path) -> None:
 
 def test_study_that_no_gain_set_can_meet_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     limit = '[[constraints]]\nmetric = "arrival_time"\nat_most = 1.0\n'
-    assert main(["optimize", written(tmp_path / "fast.toml", SMALL + limit), "--out", str(tmp_path / "out")]) == 0
+    assert main(["optimize", written(tmp_path / "fast.toml", SMALL + limit), "--out", str(tmp_path / "out")]) == 3
     found = results(tmp_path / "out")
-    assert found["feasible"] is False
+    assert (found["status"], found["feasible"]) == ("infeasible", False)
     assert found["violation"] > 0.0
-    assert "no gain set keeps all constraints" in capsys.readouterr().out
-    assert "Not feasible: no gain set" in (tmp_path / "out" / "summary.html").read_text(encoding="utf-8")
+    assert found["best_gains"] is found["best_value"] is None
+    assert found["gain_sets"][0]["name"] == "nearest"
+    printed, errors = capsys.readouterr()
+    assert "best gains     none: no gain set keeps all constraints" in printed
+    assert "hrsafety: nothing feasible: no gain set keeps all constraints" in errors
+    page = (tmp_path / "out" / "summary.html").read_text(encoding="utf-8")
+    assert "Not feasible: no gain set" in page
+    assert "To mend it, widen the bounds" in page
+    assert "Best gains" not in page
+
+
+def test_study_in_which_nothing_arrives_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = SMALL + "[bounds]\nattractive_gain = [0.0, 0.001]\n"
+    assert main(["optimize", written(tmp_path / "slow.toml", text), "--out", str(tmp_path / "out")]) == 3
+    assert "no gain set arrives without a contact everywhere" in capsys.readouterr().err
+    found = results(tmp_path / "out")
+    assert found["settings"]["require_arrival"] is found["settings"]["cap_ratios"] is True
+    assert found["shortcoming"].startswith("no gain set arrives")
+    assert "widen the bounds" in found["remedy"]
+
+
+def test_arrival_can_be_left_out_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = SMALL + "[bounds]\nattractive_gain = [0.0, 0.001]\n[objective]\nrequire_arrival = false\n"
+    assert main(["optimize", written(tmp_path / "slow.toml", text), "--out", str(tmp_path / "out")]) == 0
+    found = results(tmp_path / "out")
+    assert (found["status"], found["feasible"]) == ("found", False)
+    assert "which the study allows" in capsys.readouterr().out
+    assert "which the study allows" in (tmp_path / "out" / "summary.html").read_text(encoding="utf-8")
 
 
 def test_scenario_files_and_noise_seeds_give_an_interval(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -347,7 +373,10 @@ def test_ctrl_c_keeps_the_best_so_far_and_resume_ends_with_the_same_result(
     assert 0 < so_far["evaluations"] < 2 * 16**4
 
     assert main(arguments) == 2
-    assert "--resume must be given" in error_line(capsys)
+    line = error_line(capsys)
+    assert f"--out must hold no unfinished search without --resume, got {out / 'search.checkpoint'}" in line
+    assert "add --resume to go on with it, or remove" in line
+    assert "nothing" not in line
     assert main([*arguments, "--resume"]) == 0
     assert "since it was resumed" in capsys.readouterr().out
     assert main(["optimize", path, "--out", str(tmp_path / "whole")]) == 0

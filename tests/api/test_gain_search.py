@@ -14,6 +14,7 @@ from scipy import optimize, stats
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.errors import InfeasibleError
 from hrsafety.navigation.gain_confidence import confidence_of, student_quantile
 from hrsafety.navigation.gain_problem import gain_problem, noise_seeds
 
@@ -174,7 +175,9 @@ def test_callable_sees_every_gain_set_in_every_scenario() -> None:
         seen.append(table.gains[::3])
         return -table.gains[::3, 0]
 
-    found = nav.optimize_gains(SCENES, objective=first_gain, grid=(3, 3, 3, 3), refinements=0, local_starts=0)
+    found = nav.optimize_gains(
+        SCENES, objective=first_gain, grid=(3, 3, 3, 3), refinements=0, local_starts=0, require_arrival=False
+    )
     assert len(np.unique(np.vstack(seen), axis=0)) == 81
     assert found.best.attractive_gain == 0.0
     assert found.best_value == 0.0
@@ -196,8 +199,8 @@ def test_metric_as_objective_is_the_mean_over_the_scenarios(metric: str, column:
     found = nav.optimize_gains(SCENES, objective=metric, **(GRIDS_ONLY | {"refinements": 0}))
     table = batch(points_of(found.history[0]))
     values = sign * getattr(table, column).reshape(-1, 3).mean(axis=1)
-    if not metric.startswith("performance"):
-        values[~(table.outcome == "arrived").reshape(-1, 3).all(axis=1)] = -np.inf
+    # A set that fails has an avoidance all the same.
+    values[~(table.outcome == "arrived").reshape(-1, 3).all(axis=1)] = -np.inf
     assert found.best_value == pytest.approx(values.max(), rel=1e-12)
 
 
@@ -215,6 +218,98 @@ def test_weights_decide_what_counts() -> None:
     # H is 0 after a contact, H_T is not: with its weight alone both agree where all arrive.
     assert fast.feasible
     assert fast.best_value <= parts.best_value + 1e-12
+
+
+# ---- arrival and ratios ---------------------------------------------------------------------
+
+# Gains of this kind time out in c1 and c3 and score above 1 in c2, where the robot dawdles less than without the discs.
+HOLE: dict[str, tuple[float, float]] = {
+    "attractive_gain": (0.003, 0.0055),
+    "repulsive_gain": (120.0, 135.0),
+    "detour_gain": (420.0, 440.0),
+    "gain_ratio": (0.8, 0.9),
+}
+# The optimum of the source's procedure within its bounds, in this code, and how far others may end from it.
+OPTIMUM, APART = 0.6731, 0.0005
+# Enough of each method; with the default of 310,464 the ten seeds take minutes, see docs/guides/gains.md.
+FEW_SETS = {"cma_es": 10_000, "differential_evolution": 30_000}
+
+
+def test_gains_that_time_out_are_not_the_best_for_their_ratios() -> None:
+    found = nav.optimize_gains(SCENES, bounds=HOLE, **SMALL)
+    open_to_it = nav.optimize_gains(SCENES, bounds=HOLE, **SMALL, require_arrival=False, cap_ratios=False)
+    assert open_to_it.best_value > 0.9  # this was the best of the default bounds, too
+    assert not open_to_it.feasible
+    assert (found.status, found.feasible, found.valid) == ("infeasible", False, False)
+    with pytest.raises(InfeasibleError, match=r"no gain set arrives without a contact everywhere.*; widen the bounds"):
+        _ = found.best
+    assert found.violation in (1.0, 2.0)
+    assert found.convergence[-1, 1] == -np.inf
+    assert len(found.top) == 0
+
+
+def test_ratios_above_one_count_one() -> None:
+    points = np.array([[0.0053, 129.5, 434.8, 0.843], [10.07, 72.4, 500.0, 0.53], [4.3, 20.3, 240.7, 0.68]])
+    table = batch(points)
+    ratios = np.stack([table.performance_arrival_time, table.performance_energy_saving])
+    assert ratios.max() > 1.0
+    capped = np.minimum(ratios, 1.0)
+    total = np.where(table.performance_total > 0.0, (capped.sum(axis=0) + table.performance_avoidance) / 3.0, 0.0)
+    held = [nav.optimize_gains(SCENES, bounds=np.stack([point, point], axis=1), **ALONE) for point in points]
+    values = [each.best_value for each in held]
+    np.testing.assert_allclose(values, total.reshape(-1, 3).mean(axis=1), rtol=1e-14)
+    # What is printed stays as it is printed.
+    np.testing.assert_array_equal(held[0].best_performance, table.performance_total[:3])
+
+
+ALONE: dict[str, Any] = {"grid": (1, 1, 1, 1), "refinements": 0, "local_starts": 0, "require_arrival": False}
+
+
+@pytest.mark.parametrize("method", FEW_SETS)
+def test_global_methods_agree_with_the_procedure_of_the_source_for_ten_seeds(method: Any) -> None:
+    values = [
+        nav.optimize_gains(SCENES, method=method, evaluations=FEW_SETS[method], seed=k).best_value for k in range(10)
+    ]
+    assert np.abs(np.array(values) - OPTIMUM).max() <= APART
+
+
+def test_a_callable_has_to_arrive_too() -> None:
+    def gentle(table: nav.BatchSummary) -> np.ndarray:
+        return -table.gains[:: len(SCENES), 0]
+
+    found = nav.optimize_gains(SCENES, objective=gentle, **GRIDS_ONLY)
+    assert found.feasible
+    assert (batch(found.best.gains).outcome == "arrived").all()
+    limited = nav.optimize_gains(
+        SCENES, objective=gentle, constraints=[lambda table: table.gains[::3, 2] - 300.0], **GRIDS_ONLY
+    )
+    assert limited.feasible
+    assert limited.best.detour_gain >= 300.0
+    assert (batch(limited.best.gains).outcome == "arrived").all()
+
+
+def test_a_noisy_search_arrives_with_every_seed() -> None:
+    found = nav.optimize_gains(NOISY, seeds=4, **SMALL)
+    seeds = noise_seeds(found.settings, 4)
+    scenes = [replace(scene, seed=seed) for seed in seeds for scene in NOISY]
+    assert (nav.simulate_batch(scenes, found.best, stop_on_contact=True).outcome == "arrived").all()
+
+
+def test_history_of_a_global_search_counts_what_keeps_the_constraints_only() -> None:
+    limit = nav.GainConstraint(metric="min_clearance", at_least=0.26)
+    found = nav.optimize_gains(SCENES, constraints=[limit], method="cma_es", evaluations=2000)
+    assert found.feasible
+    assert (np.diff(found.convergence[:, 1]) >= 0.0).all()
+    assert found.convergence[-1, 1] == found.best_value
+
+
+def test_a_front_holds_what_arrives_only() -> None:
+    names = ("performance", "performance_avoidance")
+    options: dict[str, Any] = {"objectives": names, "grid": (4, 4, 4, 4), "refinements": 0}
+    front = nav.pareto_front(SCENES, **options)
+    assert (batch(front.gains).outcome == "arrived").all()
+    loose = nav.pareto_front(SCENES, require_arrival=False, **options)
+    assert not (batch(loose.gains).outcome == "arrived").all()
 
 
 # ---- constraints ----------------------------------------------------------------------------
@@ -240,7 +335,7 @@ def test_callable_constraint_is_the_same_as_the_named_one(search: nav.GainSearch
         **GRIDS_ONLY,
     )
     np.testing.assert_allclose(one.top_values, other.top_values, atol=1e-12)
-    assert one.best.gains == other.best.gains
+    assert one.nearest.gains == other.nearest.gains
 
 
 def test_constraint_on_one_scenario(search: nav.GainSearch) -> None:
@@ -260,7 +355,9 @@ def test_constraint_that_cannot_hold_is_reported() -> None:
     assert np.isneginf(found.convergence[:, 1]).all()
     assert len(found.top) == 0
     # The least violation is what the search falls back to.
-    slowest = batch(found.best.gains).arrival_time.max()
+    with pytest.raises(InfeasibleError, match="no gain set keeps all constraints; the nearest misses them by 5"):
+        _ = found.best
+    slowest = batch(found.nearest.gains).arrival_time.max()
     assert found.violation == pytest.approx(slowest - 1.0, abs=1e-9)
 
 
@@ -323,7 +420,7 @@ def test_constraint_has_to_hold_with_every_seed(robust: nav.GainSearch) -> None:
 
     limit = nav.GainConstraint(metric="min_clearance", at_least=least(robust.best) + 0.02)
     found = nav.optimize_gains(NOISY, LAW, seeds=8, seed=3, constraints=[limit], **SMALL)
-    assert (found.violation == 0.0) == (least(found.best) >= least(robust.best) + 0.02 - 1e-6)
+    assert (found.violation == 0.0) == (least(found.nearest) >= least(robust.best) + 0.02 - 1e-6)
     assert found.violation > 0.0 or found.best_value <= robust.best_value
 
 

@@ -36,6 +36,8 @@ def settings(**changes: Any) -> nav.SearchSettings:
         "objectives": ("performance",),
         "weights": (1 / 3, 1 / 3, 1 / 3),
         "constraints": (),
+        "require_arrival": True,
+        "cap_ratios": True,
         "seeds": 0,
         "seed": 0,
         "robustness": "mean",
@@ -74,7 +76,7 @@ def search(**changes: Any) -> nav.GainSearch:
     low, high = BOUNDS.T
     history = (grid(low, high, best=0.66, worst=0.61), grid(0.25 * high, 0.75 * high, best=0.665, worst=0.65))
     values: dict[str, Any] = {
-        "best": LAW,
+        "nearest": LAW,
         "best_value": 0.67,
         "best_performance": np.array([0.7, 0.64]),
         "violation": 0.0,

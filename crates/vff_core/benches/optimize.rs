@@ -40,6 +40,8 @@ fn problem() -> GainProblem {
             over: Over::Mean,
         }],
         constraints: Vec::new(),
+        require_arrival: true,
+        cap_ratios: true,
         time_limit: Some(10.0),
         seeds: Vec::new(),
         robustness: Robustness::Mean,

@@ -27,6 +27,29 @@ pub struct Performance {
     pub energy_saving: f64,
 }
 
+impl Performance {
+    /// The same with `T*/T` and `L*/L` of at most 1, as a search counts them: a law that dawdles
+    /// without obstacles would otherwise be paid for it.
+    pub(crate) fn with_capped_ratios(self, weights: Weights) -> Self {
+        // Nearly every run is slower among obstacles; its bits stay as they are.
+        if self.arrival_time <= 1.0 && self.energy_saving <= 1.0 {
+            return self;
+        }
+        let arrival_time = self.arrival_time.min(1.0);
+        let energy_saving = self.energy_saving.min(1.0);
+        let total = weights.arrival_time * arrival_time
+            + weights.avoidance * self.avoidance
+            + weights.energy_saving * energy_saving;
+        Self {
+            // A contact has set it to zero.
+            total: if self.total == 0.0 { 0.0 } else { total },
+            arrival_time,
+            energy_saving,
+            ..self
+        }
+    }
+}
+
 /// Least distance between the surfaces of robot and obstacle, in m.
 #[must_use]
 pub fn clearances(scenario: &Scenario, run: &RunSummary) -> Vec<f64> {

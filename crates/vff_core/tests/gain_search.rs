@@ -49,6 +49,8 @@ fn mean_performance() -> GainOptions {
             over: Over::Mean,
         }],
         constraints: Vec::new(),
+        require_arrival: false,
+        cap_ratios: false,
         time_limit: None,
         seeds: Vec::new(),
         robustness: Robustness::Mean,

@@ -27,7 +27,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         0 when done, 2 after an error (one line on stderr says which), 3 when a run ended as ``--fail-on``
-        says, 4 after warnings with ``--strict``, 130 after Ctrl-C, 1 when the output was closed early.
+        says or ``optimize`` found no gain set that keeps the constraints, 4 after warnings with ``--strict``,
+        130 after Ctrl-C, 1 when the output was closed early.
 
     Examples
     --------

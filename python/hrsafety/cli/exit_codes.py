@@ -15,7 +15,7 @@ MEANINGS = {
     DONE: "done, whatever the outcome of the runs",
     CLOSED_PIPE: "the reader of the output closed it early",
     ERROR: "an error: one line on stderr says which, nothing was left half written",
-    FAILED_RUN: "a run ended in a way that --fail-on names; everything was written",
+    FAILED_RUN: "a run ended as --fail-on names, or no gain set keeps the constraints; everything was written",
     WARNED: "there were warnings and --strict was given; everything was written",
     INTERRUPTED: "stopped by Ctrl-C",
 }

@@ -112,26 +112,10 @@ def _obstacle_table(run: nav.Trajectory) -> str:
 
 def _write(run: nav.Trajectory, place: Path) -> Iterator[Path]:
     """Write the trajectory and its pictures."""
-    yield output.write_csv(place / "trajectory.csv", _columns(run), _rows(run))
+    yield run.to_csv(place / "trajectory.csv")
     from hrsafety import plotting
 
     yield output.write_picture(place / "paths.png", plotting.paths([run]))
     yield output.write_picture(place / "time_sequence.png", plotting.time_sequence(run))
     yield output.write_picture(place / "distances.png", plotting.distances([run]))
     yield output.write_picture(place / "energy.png", plotting.energy([run]))
-
-
-def _columns(run: nav.Trajectory) -> list[str]:
-    names = ["t_s", "x_m", "y_m", "vx_m_per_s", "vy_m_per_s", "force_x_N", "force_y_N", "heading_rad"]
-    names += [f"current_{wheel}_A" for wheel in range(run.wheel_current.shape[1])]
-    for index in range(len(run.scenario.obstacles)):
-        names += [f"obstacle_{index}_x_m", f"obstacle_{index}_y_m", f"distance_{index}_m"]
-    return names
-
-
-def _rows(run: nav.Trajectory) -> Iterator[list[float]]:
-    for k in range(len(run.time)):
-        row = [run.time[k], *run.position[k], *run.velocity[k], *run.force[k], run.heading[k], *run.wheel_current[k]]
-        for index in range(len(run.scenario.obstacles)):
-            row += [*run.obstacle_position[k, index], run.distance[k, index]]
-        yield [float(value) for value in row]

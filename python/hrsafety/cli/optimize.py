@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import re
 import sys
 import time
@@ -12,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from hrsafety import navigation as nav
-from hrsafety.cli import optimize_page, optimize_pictures, optimize_record, output, progress
+from hrsafety.cli import exit_codes, optimize_page, optimize_pictures, optimize_record, output, progress
 from hrsafety.cli.optimize_file import GAIN_NAMES, Gains, GainStudy, load
 from hrsafety.cli.optimize_report import (
     MOST_PATHS,
+    NOT_EVERYWHERE,
     GainReport,
     Scored,
     confidence_words,
@@ -24,9 +24,8 @@ from hrsafety.cli.optimize_report import (
     scenario_words,
     search_words,
     set_table,
-    shortcoming,
 )
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gain_metrics import is_maximized
 
 __all__ = ["optimize_file"]
@@ -47,6 +46,8 @@ _TABLES = {
     "evaluations": "search",
     "seed": "search",
     "weights": "objective",
+    "require_arrival": "objective",
+    "cap_ratios": "objective",
     "seeds": "noise",
     "robustness": "noise",
     "integrator": "run",
@@ -68,6 +69,8 @@ def optimize_file(options: argparse.Namespace) -> None:
     ------
     KeyboardInterrupt
         After Ctrl-C, when checkpoint and best gains so far have been written.
+    SystemExit
+        With code 3, when everything has been written, if no gain set keeps the constraints.
     """
     output.planned_folder(options.out)
     output.require_matplotlib("optimize")
@@ -86,6 +89,10 @@ def optimize_file(options: argparse.Namespace) -> None:
         print(f"wrote {path}")
     for path in (*_checkpoints(study, place), place / SO_FAR):
         path.unlink(missing_ok=True)
+    if not report.search.valid:
+        search = report.search
+        print(f"hrsafety: nothing feasible: {search.shortcoming}; {search.remedy}", file=sys.stderr, flush=True)
+        raise SystemExit(exit_codes.FAILED_RUN)
 
 
 def _checkpoints(study: GainStudy, place: Path) -> tuple[Path, Path]:
@@ -119,8 +126,12 @@ def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> Gai
     checkpoint, front_checkpoint = _checkpoints(study, place)
     for path in (checkpoint, front_checkpoint):
         if path.exists() and not options.resume:
-            requirement = f"be given, or {path} be removed to start over: it holds an unfinished search"
-            raise InvalidParameterError("--resume", requirement, "nothing")
+            raise InvalidParameterError(
+                "--out",
+                "hold no unfinished search without --resume",
+                Shown(path),
+                f"add --resume to go on with it, or remove {path} to start over",
+            )
     if study.front is not None:
         _check_front(study)
     resumed, begin = checkpoint.exists(), time.perf_counter()
@@ -139,7 +150,7 @@ def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> Gai
         search=search,
         sets=tuple(_sets(study, search)),
         flatness=search.flatness(threads=options.threads),
-        sensitivity=_sensitivity(study, search.best, options.threads),
+        sensitivity=_sensitivity(study, search.nearest, options.threads),
         front=front,
         seconds=seconds,
         resumed=resumed,
@@ -185,7 +196,8 @@ def _front(
 
 def _front_arguments(study: GainStudy) -> dict[str, Any]:
     """Return the arguments of the front: its own and those that it shares with the search."""
-    names = ("bounds", "weights", "constraints", "seeds", "seed", "robustness", *_STEPPING, "time_limit")
+    names = ("bounds", "weights", "constraints", "require_arrival", "cap_ratios", "seeds", "seed", "robustness")
+    names += (*_STEPPING, "time_limit")
     return {name: study.search[name] for name in names if name in study.search} | (study.front or {})
 
 
@@ -203,8 +215,8 @@ def _check_front(study: GainStudy) -> None:
 def _leave(options: argparse.Namespace, study: GainStudy, search: nav.GainSearch, place: Path) -> None:
     """Write the best so far, say how to go on, and end as Ctrl-C does."""
     path = output.write_text(place / SO_FAR, optimize_record.best_so_far(options.study, study, search))
-    found = ""
-    if math.isfinite(search.best_value):
+    found = f"; {search.shortcoming}"
+    if search.valid:
         found = f"; best of {search.evaluations:,} gain sets so far: {gain_words(search.best.gains)}"
     print(f"hrsafety: interrupted{found}", file=sys.stderr)
     print(f"hrsafety: wrote {path}", file=sys.stderr)
@@ -222,10 +234,11 @@ def _scoring(study: GainStudy) -> dict[str, Any]:
 def _sets(study: GainStudy, search: nav.GainSearch) -> Iterator[Scored]:
     """Yield the best gain set and those of the file, scored in every scenario."""
     sign = 1.0 if is_maximized(study.objective) else -1.0
-    values = {"best": (search.best, sign * search.best_value)}
+    first = "best" if search.valid else "nearest"
+    values = {first: (search.nearest, sign * search.best_value)}
     for name, gains in study.compare.items():
         found = _alone(study, gains)
-        values[name] = (found.best, sign * found.best_value)
+        values[name] = (found.nearest, sign * found.best_value)
     stepping = {name: value for name, value in _scoring(study).items() if name != "weights"}
     for name, (law, value) in values.items():
         yield Scored(
@@ -269,10 +282,15 @@ def _summary(report: GainReport) -> Iterator[str]:
         f"counted        {search.evaluations:,} gain sets, {search.failures:,} of them with a contact or without "
         f"arrival; {search.episodes:,} runs in {report.seconds:.2f} s{since}"
     )
-    yield f"best gains     {gain_words(best.law.gains)}"
+    if search.valid:
+        yield f"best gains     {gain_words(best.law.gains)}"
+    else:
+        yield f"best gains     none: {search.shortcoming}"
+        yield f"remedy         {search.remedy}"
+        yield f"nearest gains  {gain_words(best.law.gains)}"
     yield f"objective      {report.objective} {best.value:.5f}{confidence_words(search)}"
-    if not search.feasible:
-        yield f"not feasible   {shortcoming(search)}"
+    if search.valid and not search.feasible:
+        yield f"not feasible   {NOT_EVERYWHERE}"
     yield ""
     yield output.aligned(*set_table(report), left=(0,))
     yield ""
@@ -290,7 +308,7 @@ def _write(report: GainReport, place: Path) -> Iterator[Path]:
     drawn = {name: output.write_picture(place / f"{name}.png", picture.figure) for name, picture in pictures.items()}
     yield from drawn.values()
     if report.front is not None:
-        yield output.write_csv(place / "front.csv", *optimize_record.front_table(report.front))
+        yield report.front.to_csv(place / "front.csv")
     yield output.write_text(place / "results.json", optimize_record.results(report))
     shown = {name: (f"{picture.caption}.", drawn[name].read_bytes()) for name, picture in pictures.items()}
     yield output.write_text(place / "summary.html", optimize_page.html(report, shown))

@@ -64,7 +64,9 @@ _SEARCH: Keys = MappingProxyType(
         "seed": kind.integer,
     }
 )
-_OBJECTIVE: Keys = MappingProxyType({"metric": kind.word, "weights": kind.triple})
+_OBJECTIVE: Keys = MappingProxyType(
+    {"metric": kind.word, "weights": kind.triple, "require_arrival": kind.boolean, "cap_ratios": kind.boolean}
+)
 _CONSTRAINT: Keys = MappingProxyType(
     {"metric": kind.word, "at_least": kind.number, "at_most": kind.number, "scenario": kind.word}
 )

@@ -13,6 +13,7 @@ from hrsafety.cli import optimize_record
 from hrsafety.cli.optimize_report import (
     METRIC_UNITS,
     MOST_PATHS,
+    NOT_EVERYWHERE,
     GainReport,
     confidence_words,
     gain_words,
@@ -20,7 +21,6 @@ from hrsafety.cli.optimize_report import (
     scenario_words,
     search_words,
     set_table,
-    shortcoming,
 )
 from hrsafety.reproduce.markup import figure, scroll
 
@@ -74,18 +74,24 @@ def _answer(report: GainReport) -> Iterator[str]:
     unit = f" {METRIC_UNITS[report.objective]}".rstrip()
     yield f"<p>Scenarios: {escape(scenario_words(report.study))}. Search: {escape(search_words(search))}.</p>"
     look = "banner" if search.feasible else "banner no"
-    yield (
-        f'<p class="{look}"><strong>Best gains: {escape(gain_words(best.law.gains))}.</strong> '
-        f"{escape(report.objective.replace('_', ' '))} {best.value:.5f}{unit}{escape(confidence_words(search))}."
-        f"{'' if search.feasible else f' Not feasible: {escape(shortcoming(search))}.'}</p>"
-    )
+    gains, objective = escape(gain_words(best.law.gains)), escape(report.objective.replace("_", " "))
+    reached = f"{objective} {best.value:.5f}{unit}{escape(confidence_words(search))}"
+    if search.valid:
+        doubt = "" if search.feasible else f" Not feasible: {NOT_EVERYWHERE}."
+        yield f'<p class="{look}"><strong>Best gains: {gains}.</strong> {reached}.{doubt}</p>'
+    else:
+        yield (
+            f'<p class="{look}"><strong>Not feasible: {escape(search.shortcoming)}.</strong> To mend it, '
+            f"{escape(search.remedy)}. Everything below is of the nearest gain set, which is no result: "
+            f"{gains}; {reached}.</p>"
+        )
     yield (
         f"<p>{search.evaluations:,} gain sets were evaluated in {search.episodes:,} runs; {search.failures:,} of them "
         f"touched something or did not arrive somewhere, and count. It took {report.seconds:.2f} s"
         f"{' since it was resumed' if report.resumed else ''}.</p>"
     )
     yield _table(*set_table(report))
-    yield "<h2>Best gains, scenario by scenario</h2>"
+    yield f"<h2>{best.name.capitalize()} gains, scenario by scenario</h2>"
     header, rows = scenario_table(report)
     yield _table(header, rows[:MOST_ROWS])
     if len(rows) > MOST_ROWS:

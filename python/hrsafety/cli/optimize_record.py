@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,9 @@ import numpy as np
 from hrsafety import __version__
 from hrsafety import navigation as nav
 from hrsafety.cli.optimize_file import GAIN_NAMES, GainStudy
-from hrsafety.cli.optimize_report import METRIC_UNITS, GainReport, Scored
+from hrsafety.cli.optimize_report import GainReport, Scored
 
-__all__ = ["best_so_far", "front_table", "results"]
-
-GAIN_UNITS = ("N_per_m", "N_per_m", "N_per_m2", "s")
+__all__ = ["best_so_far", "results"]
 
 
 def results(report: GainReport) -> str:
@@ -74,26 +72,6 @@ def best_so_far(path: str, study: GainStudy, search: nav.GainSearch) -> str:
     return _text(_head(path, study, search) | unfinished | {"history": [_round(entry) for entry in search.history]})
 
 
-def front_table(front: nav.ParetoFront) -> tuple[list[str], Iterator[list[float]]]:
-    """Return the front as header and rows of a CSV file.
-
-    Parameters
-    ----------
-    front : ParetoFront
-        What to write.
-
-    Returns
-    -------
-    (list of str, iterator of list of float)
-        Gains, then objectives, with units in the names.
-    """
-    header = [f"{name}_{unit}" for name, unit in zip(GAIN_NAMES, GAIN_UNITS, strict=True)]
-    header += [f"{name}_{METRIC_UNITS[name]}".rstrip("_") for name in front.objectives]
-    return header, (
-        [*gains, *values] for gains, values in zip(front.gains.tolist(), front.values.tolist(), strict=True)
-    )
-
-
 def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]:
     """Return what finished and interrupted searches share."""
     confidence = search.confidence
@@ -102,8 +80,13 @@ def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]
         "study": path,
         "title": study.title,
         "interrupted": search.interrupted,
-        "best_gains": _by_gain(search.best.gains),
-        "best_value": search.best_value,
+        "status": search.status,
+        "shortcoming": search.shortcoming or None,
+        "remedy": search.remedy or None,
+        "best_gains": _by_gain(search.nearest.gains) if search.valid else None,
+        "best_value": search.best_value if search.valid else None,
+        "nearest_gains": _by_gain(search.nearest.gains),
+        "nearest_value": search.best_value,
         "best_performance": dict(zip(study.names, search.best_performance, strict=True)),
         "feasible": search.feasible,
         "violation": search.violation,
@@ -133,7 +116,8 @@ def settings(study: GainStudy, found: nav.SearchSettings) -> dict[str, Any]:
     law = found.law
     modes = ("stabilizing", "stabilizing_force_cap", "stabilizing_momentum_cap", "pass_behind", "side_hysteresis")
     plain: tuple[str, ...] = ("method", "grid", "refinements", "survivors", "local_starts", "evaluations", "seed")
-    plain += ("objectives", "weights", "seeds", "robustness", "integrator", "step", "hold")
+    plain += ("objectives", "weights", "require_arrival", "cap_ratios", "seeds", "robustness")
+    plain += ("integrator", "step", "hold")
     return {
         "scenarios": list(study.names),
         "law": {"type": "virtual_force_field"} | {name: getattr(law, name) for name in modes},

@@ -11,6 +11,7 @@ from hrsafety.cli.output import decimal
 __all__ = [
     "METRIC_UNITS",
     "MOST_PATHS",
+    "NOT_EVERYWHERE",
     "GainReport",
     "Scored",
     "Table",
@@ -20,7 +21,6 @@ __all__ = [
     "scenario_words",
     "search_words",
     "set_table",
-    "shortcoming",
 ]
 
 Table = tuple[tuple[tuple[str, ...], tuple[str, ...]], list[tuple[str, ...]]]
@@ -39,6 +39,8 @@ METRIC_UNITS = {
 """Units of the metrics."""
 MOST_PATHS = 8
 """Scenarios whose paths are drawn."""
+NOT_EVERYWHERE = "they touch an obstacle or do not arrive somewhere, which the study allows (require_arrival = false)"
+"""What is wrong with best gains that need not arrive everywhere."""
 MOST_COLUMNS = 6
 """Scenarios that have a column of their own in the table of gain sets."""
 
@@ -50,7 +52,7 @@ class Scored:
     Attributes
     ----------
     name : str
-        As in the file; ``"best"`` for the best set.
+        As in the file; ``"best"`` for the best set, ``"nearest"`` if none keeps the constraints.
     law : Law
         The law with these gains.
     value : float
@@ -81,7 +83,7 @@ class GainReport:
     search : GainSearch
         What was found.
     sets : tuple of Scored
-        The best gain set, then those to compare with.
+        The best gain set, or the nearest where none is feasible, then those to compare with.
     flatness : Flatness
         The objective along each gain.
     sensitivity : GainSensitivity
@@ -135,13 +137,6 @@ def search_words(search: nav.GainSearch) -> str:
     )
 
 
-def shortcoming(search: nav.GainSearch) -> str:
-    """Return what is wrong with a best gain set that is not feasible."""
-    if search.violation > 0.0:
-        return f"no gain set keeps all constraints; the best one misses them by {search.violation:.4g} in all"
-    return "every gain set that keeps the constraints touches an obstacle or does not arrive somewhere"
-
-
 def confidence_words(search: nav.GainSearch) -> str:
     """Return what fresh noise says about the best value; empty without noise."""
     if search.confidence is None:
@@ -169,8 +164,9 @@ def set_table(report: GainReport) -> Table:
 
 
 def scenario_table(report: GainReport) -> Table:
-    """Return the runs of the best gain set as header and rows."""
-    names = ("best gains in", "outcome", "arrival", "energy", "path", "clearance", "H", "H_T", "H_D", "H_E")
+    """Return the runs of the best gain set, or the nearest without one, as header and rows."""
+    first = f"{report.sets[0].name} gains in"
+    names = (first, "outcome", "arrival", "energy", "path", "clearance", "H", "H_T", "H_D", "H_E")
     units = ("", "", "s", "J", "m", "m", "", "", "", "")
     table = report.sets[0].scores
     lengths = (table.arrival_time, table.energy, table.path_length)

@@ -14,6 +14,7 @@ from hrsafety._arguments import Array, callback, count, instance, numbers, posit
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria import ImpactMetrics
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.tables import Columns, Table
 
 __all__ = ["ImpactMetricsBatch", "metrics_batch"]
 
@@ -30,7 +31,7 @@ _FLAGS = ("status", "beyond_linear_range")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ImpactMetricsBatch:
+class ImpactMetricsBatch(Table):
     """Loads of many impacts: the fields of `ImpactMetrics` as arrays of the broadcast shape.
 
     Attributes
@@ -88,7 +89,7 @@ class ImpactMetricsBatch:
         """Return the length of the first axis."""
         return len(self._status_code)
 
-    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+    def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
 
         Returns

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, instance, number
 from hrsafety.impact.parameters import Foam, Head, Manipulator
+from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["DirectDrive", "DirectDriveResponse", "simulate_direct_drive"]
 
@@ -80,7 +81,7 @@ class DirectDrive(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class DirectDriveResponse:
+class DirectDriveResponse(Table):
     """Histories of a direct-drive joint in an impact, and their maxima.
 
     Attributes
@@ -129,6 +130,28 @@ class DirectDriveResponse:
     impact_duration: float
     saturated_from: float
     saturated_time: float
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each instant.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import impact
+        >>> drive = impact.DirectDrive(proportional=448.7, derivative=5.579)
+        >>> run = impact.simulate_direct_drive(drive, impact.FOAM_1, impact.Head.apparatus(), closing_speed=1.25)
+        >>> list(run.columns())[-2:]
+        ['command_V', 'requested_command_V']
+        """
+        units = {"time": "s", "contact_force": "N", "head_acceleration": "m/s^2"}
+        units |= dict.fromkeys(("head_position", "manipulator_position", "compression"), "m")
+        units |= dict.fromkeys(("head_velocity", "manipulator_velocity"), "m/s")
+        units |= dict.fromkeys(("command", "requested_command"), "V")
+        return with_units(self, units)
 
 
 def simulate_direct_drive(

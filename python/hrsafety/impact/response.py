@@ -13,6 +13,7 @@ from hrsafety._arguments import Array, Parameters, flag, instance, number, pair,
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria import ImpactMetrics, check_parts
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["ImpactResponse", "SetPoint", "simulate"]
 
@@ -137,7 +138,7 @@ def _segments(value: object) -> tuple[Segment, ...]:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ImpactResponse:
+class ImpactResponse(Table):
     """Histories of an impact, one row for each instant.
 
     Positions count from the manipulator's place at first contact; the head stands at the
@@ -176,6 +177,26 @@ class ImpactResponse:
     release_times: Array
     touch_times: Array
     metrics: ImpactMetrics
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each instant.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import impact
+        >>> run = impact.simulate(impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=0.8)
+        >>> list(run.columns())[:3]
+        ['t_s', 'contact_force_N', 'head_acceleration_m_per_s2']
+        """
+        units = {"time": "s", "contact_force": "N", "head_acceleration": "m/s^2"}
+        units |= dict.fromkeys(("head_position", "manipulator_position", "compression"), "m")
+        units |= dict.fromkeys(("head_velocity", "manipulator_velocity"), "m/s")
+        return with_units(self, units)
 
 
 def simulate(

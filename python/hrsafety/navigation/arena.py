@@ -17,6 +17,7 @@ from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import Integrator
 from hrsafety.navigation.statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
+from hrsafety.tables import Columns, Table, each, with_units
 
 __all__ = ["ArenaResult", "Metric", "Standing", "arena", "step_cost"]
 
@@ -55,7 +56,7 @@ class Standing:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ArenaResult:
+class ArenaResult(Table):
     """Runs of several laws in the same episodes: rows are laws, columns episodes.
 
     Attributes
@@ -92,6 +93,31 @@ class ArenaResult:
     min_distance: Array
     moving_contacts: npt.NDArray[np.int64]
     performance_total: Array
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each law and episode.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Laws by name, the episodes of a law in a row; units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> laws = {"field": nav.VirtualForceField(), "no detour": nav.VirtualForceField(detour_gain=0.0)}
+        >>> nav.arena(laws, {"c1": scenarios.configuration("c1")}).columns()["law"].tolist()
+        ['field', 'no detour']
+        """
+        laws, episodes = self.outcome.shape
+        names = np.array(self.scenario_names)[self.scenario]
+        found: Columns = {"law": np.repeat(np.array(self.laws), episodes), "scenario": np.tile(names, laws)}
+        found |= {"seed": np.tile(self.seed, laws), "outcome": self.outcome.ravel()}
+        units = {"arrival_time": "s", "energy": "J", "path_length": "m", "min_clearance": "m"}
+        units |= {"moving_contacts": "", "performance_total": ""}
+        found |= {name: values.ravel() for name, values in with_units(self, units).items()}
+        obstacles = self.min_distance.shape[2]
+        return found | each("min_distance_{}", self.min_distance.reshape(-1, obstacles), "m")
 
     def standing(self, law: str) -> Standing:
         """Return what one law did over all episodes.

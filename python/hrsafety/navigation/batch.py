@@ -15,6 +15,7 @@ from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Integrator, check_weights
+from hrsafety.tables import Columns, Table
 
 __all__ = ["BatchSummary", "simulate_batch"]
 
@@ -23,7 +24,7 @@ MOST_THREADS = 1024
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class BatchSummary:
+class BatchSummary(Table):
     """Summary columns of a batch, one row for each (gains, scenario).
 
     Rows run over the scenarios fastest: row = gain_index * number of scenarios +
@@ -91,7 +92,7 @@ class BatchSummary:
         """Return the number of rows."""
         return len(self.outcome)
 
-    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+    def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
 
         Returns
@@ -106,7 +107,7 @@ class BatchSummary:
         >>> round(float(table["min_distance_0"][0]), 3)
         0.536
         """
-        table: dict[str, npt.NDArray[np.generic]] = {}
+        table: Columns = {}
         for entry in fields(self):
             values = getattr(self, entry.name)
             if entry.name == "gain_names":

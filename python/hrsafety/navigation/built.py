@@ -21,6 +21,7 @@ from hrsafety.navigation.tracking_laws import (
 )
 from hrsafety.navigation.vision import Vision
 from hrsafety.navigation.wheels import WheelDrive
+from hrsafety.tables import Columns, each, plane
 
 __all__ = ["AsBuilt", "BuiltTrajectory", "PoseFusion", "evaluate_built", "simulate_built"]
 
@@ -173,6 +174,25 @@ class BuiltTrajectory(Trajectory):
     energy_used: Array
     reference_position: Array
     seen_position: Array
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each instant.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Those of `Trajectory`, then what motors and controller know.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> run = nav.simulate_built(scenarios.configuration("c1"), nav.VirtualForceField())
+        >>> list(run.columns())[-4:]
+        ['reference_x_m', 'reference_y_m', 'seen_x_m', 'seen_y_m']
+        """
+        found = Trajectory.columns(self) | each("wheel_{}_speed", self.wheel_speed, "rad/s")
+        found |= {"energy_used_J": self.energy_used, **plane("reference_{}", self.reference_position, "m")}
+        return found | plane("seen_{}", self.seen_position, "m")
 
 
 def simulate_built(

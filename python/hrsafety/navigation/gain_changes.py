@@ -14,6 +14,7 @@ from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_ba
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Integrator
+from hrsafety.tables import Columns, Table
 
 __all__ = ["GainSensitivity", "gain_sensitivity"]
 
@@ -22,7 +23,7 @@ CHANGES_PERCENT = (-50.0, -20.0, -10.0, -5.0, -2.0, 0.0, 2.0, 5.0, 10.0, 20.0, 5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GainSensitivity:
+class GainSensitivity(Table):
     """Runs and scores with one gain changed at a time: g gains, c changes, s scenarios.
 
     Row i of each array belongs to gain i; the other gains stay as the law has them. With the
@@ -97,7 +98,7 @@ class GainSensitivity:
         """
         return _over_changes(np.mean, self.relative_sensitivity)
 
-    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+    def columns(self) -> Columns:
         """Return one-dimensional columns by name, one row for each (gain, change).
 
         Returns
@@ -115,7 +116,7 @@ class GainSensitivity:
         (['attractive_gain', 'attractive_gain', 'repulsive_gain'], [-10.0, 10.0, -10.0])
         """
         shape = self.mean_performance.shape
-        table: dict[str, npt.NDArray[np.generic]] = {
+        table: Columns = {
             "gain": np.repeat(np.array(self.gain_names), shape[1]),
             "change_percent": np.tile(self.changes_percent, shape[0]),
         }

@@ -88,7 +88,7 @@ class Checkpoint:
 
     def _compare(self, settings: dict[str, str]) -> None:
         for key in [*self.settings, *settings]:
-            own, other = self.settings.get(key, "nothing"), settings.get(key, "nothing")
+            own, other = self.settings.get(key, "not given"), settings.get(key, "not given")
             if own != other:
                 name = key.removeprefix("settings.")
                 raise InvalidParameterError("checkpoint", f"be of the same settings: {name} is {own} now", other)

@@ -7,7 +7,6 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import callback, sequence
@@ -44,6 +43,8 @@ def pareto_front(
     refinements: int = 1,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     constraints: Sequence[Constraint] = (),
+    require_arrival: bool = True,
+    cap_ratios: bool = True,
     seeds: int | None = None,
     seed: int = 0,
     robustness: Robustness = "mean",
@@ -74,8 +75,10 @@ def pareto_front(
     refinements : int
         Number of rounds after the grid, each at half the distance of neighbors.
     weights, constraints, seeds, seed, robustness, integrator, step, hold, time_limit
-        As for `optimize_gains`; sets that miss a constraint,
-        touch an obstacle or do not arrive are not on the front.
+        As for `optimize_gains`; sets that miss a constraint are not on the front.
+    require_arrival, cap_ratios
+        As for `optimize_gains`; unless it is switched off, sets that touch an obstacle or do not
+        arrive everywhere are not on the front.
     checkpoint, threads
         As for `optimize_gains`.
     progress : callable or None
@@ -122,6 +125,8 @@ def pareto_front(
         objectives={f"objectives[{index}]": entry for index, entry in enumerate(entries)},
         weights=weights,
         constraints=constraints,
+        require_arrival=require_arrival,
+        cap_ratios=cap_ratios,
         seeds=seeds,
         seed=seed,
         robustness=robustness,
@@ -146,18 +151,17 @@ def pareto_front(
         save=None if file is None else file.save,
         progress=progress,
     )
-    failed = problem.evaluate(found["points"], threads=threads)["failed"]
-    return _result(settings, dict(found), ~failed)
+    return _result(settings, dict(found))
 
 
-def _result(settings: SearchSettings, found: dict[str, Any], kept: npt.NDArray[np.bool_]) -> ParetoFront:
-    """Return the kept points of a front, best in the first objective first."""
+def _result(settings: SearchSettings, found: dict[str, Any]) -> ParetoFront:
+    """Return the points of a front, best in the first objective first."""
     names = tuple(
         entry if isinstance(entry, str) else getattr(entry, "__name__", type(entry).__name__)
         for entry in settings.objectives
     )
     maximized = tuple(not isinstance(entry, str) or is_maximized(entry) for entry in settings.objectives)
-    points, raised = found["points"][kept], found["values"][kept]
+    points, raised = found["points"], found["values"]
     order = np.lexsort((*raised.T[1:], -raised[:, 0]))
     raised, signs = raised[order], np.where(maximized, 1.0, -1.0)
     worst = raised.min(axis=0) if len(raised) else np.full(len(names), np.nan)

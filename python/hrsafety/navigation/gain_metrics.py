@@ -7,7 +7,7 @@ from typing import Literal
 from hrsafety._arguments import Array, word
 from hrsafety.navigation.batch import BatchSummary
 
-__all__ = ["METRICS", "Metric", "check_metric", "is_maximized", "metric_values"]
+__all__ = ["METRICS", "METRIC_UNITS", "Metric", "check_metric", "is_maximized", "metric_values"]
 
 Metric = Literal[
     "performance",
@@ -31,6 +31,9 @@ METRICS: dict[str, tuple[str, bool]] = {
     "path_length": ("path_length", False),
     "min_clearance": ("min_clearance", True),
 }
+
+METRIC_UNITS = {"arrival_time": "s", "energy": "J", "path_length": "m", "min_clearance": "m"}
+"""Units of the metrics that have one."""
 
 
 def check_metric(name: str, value: object) -> str:

@@ -133,6 +133,8 @@ def gain_problem(
         lower_bound_factor=factor,
         objectives=metrics,
         constraints=[(entry.metric, entry.at_least, entry.at_most, entry.scenario) for entry in bounded],
+        require_arrival=settings.require_arrival,
+        cap_ratios=settings.cap_ratios,
         scorer=called if objectives or constraints else None,
         scorer_constraints=len(constraints),
         lanes=lanes,

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, positive
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InfeasibleError, InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gain_confidence import Confidence
+from hrsafety.navigation.gain_metrics import METRIC_UNITS
 from hrsafety.navigation.gain_problem import gain_problem, with_gains
 from hrsafety.navigation.gain_settings import SearchSettings
 from hrsafety.navigation.laws import Law
+from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "ParetoFront", "SearchRound"]
+
+Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -128,20 +134,23 @@ class Flatness:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GainSearch:
+class GainSearch(Table):
     """Best gains found, and how.
 
     Attributes
     ----------
-    best : Law
-        Law with the best gains; mode and side rules are those of the searched law.
+    nearest : Law
+        Law with the gains that miss the constraints least and, where none is missed, have the
+        best objective; mode and side rules are those of the searched law. `best` is this law
+        where it keeps every constraint.
     best_value : float
         Objective there, larger is better: a metric that is to be small enters with its sign
         changed.
     best_performance : ndarray, shape (scenarios,)
-        H in each scenario; the mean over the seeds with noise.
+        H in each scenario as printed, ratios above 1 included; the mean over the seeds with noise.
     violation : float
-        Sum by which constraints are missed there.
+        Sum by which constraints are missed there; where every scenario has to be arrived in,
+        each run that does not arrive or touches an obstacle counts 1.
     feasible : bool
         Whether every constraint holds there and no run failed.
     evaluations : int
@@ -158,8 +167,8 @@ class GainSearch:
     convergence : ndarray, shape (reports, 2)
         Gain sets evaluated, and the best value so far.
     top : ndarray, shape (n, 4)
-        Best points of all grids, best first: as many as survive a round. The best set alone
-        for the other methods.
+        Best points of all grids that keep the constraints, best first: as many as survive a
+        round. The best set alone for the other methods.
     top_values : ndarray, shape (n,)
         Objective there.
     confidence : Confidence or None
@@ -170,7 +179,7 @@ class GainSearch:
         Everything that is needed to run the same search again.
     """
 
-    best: Law
+    nearest: Law
     best_value: float
     best_performance: Array
     violation: float
@@ -187,8 +196,94 @@ class GainSearch:
     interrupted: bool
     settings: SearchSettings
 
+    @property
+    def best(self) -> Law:
+        """Law with the best gains found; of an interrupted search the best so far.
+
+        Raises
+        ------
+        InfeasibleError
+            If no gain set that was evaluated keeps every constraint; `nearest` is then the one
+            that misses them least.
+        """
+        if not self.valid:
+            raise InfeasibleError(self.shortcoming, self.remedy)
+        return self.nearest
+
+    @property
+    def valid(self) -> bool:
+        """Whether a gain set keeps every constraint and has a value: whether there is a `best`."""
+        return self.violation == 0.0 and self.best_value > -np.inf
+
+    @property
+    def status(self) -> Literal["found", "infeasible", "interrupted"]:
+        """How the search ended: ``"interrupted"`` before its end, with or without a best so far."""
+        if self.interrupted:
+            return "interrupted"
+        return "found" if self.valid else "infeasible"
+
+    @property
+    def shortcoming(self) -> str:
+        """Why there is no `best`, in one clause; empty where there is one."""
+        if self.valid:
+            return ""
+        so_far = " so far" if self.interrupted else ""
+        if not self.settings.constraints and self.settings.require_arrival:
+            runs = len(self.settings.scenarios) * max(self.settings.seeds, 1)
+            return (
+                f"no gain set{so_far} arrives without a contact everywhere; "
+                f"the nearest fails in {self.violation:.0f} of {runs} runs"
+            )
+        if self.violation > 0.0:
+            return f"no gain set{so_far} keeps all constraints; the nearest misses them by {self.violation:.4g} in all"
+        return f"no gain set{so_far} has a value of the objective: it needs runs that arrive"
+
+    @property
+    def remedy(self) -> str:
+        """What would give a `best`; empty where there is one."""
+        if self.valid:
+            return ""
+        if self.interrupted:
+            return "let the search run on, with the same checkpoint to resume it"
+        return "widen the bounds, make the grid finer, raise the time limit or loosen the constraints"
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each grid and local search.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Stage, gain sets evaluated up to its end, best feasible value until then (``-inf``
+            before there is one), then value, violation and gains of the stage itself; of a global
+            search a row wherever it became better, and one for its end, without the latter.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> search = nav.optimize_gains(
+        ...     [scenarios.configuration("c1")], grid=(4, 4, 4, 4), refinements=1, survivors=10, local_starts=1
+        ... )
+        >>> search.columns()["stage"].tolist()
+        ['grid 1', 'grid 2', 'local 1']
+        """
+        stages = [(f"grid {k}", each.best_value, each.violation, each.best_gains) for k, each in _counted(self.history)]
+        stages += [(f"local {k}", each.value, each.violation, each.gains) for k, each in _counted(self.local)]
+        rows = len(self.convergence)
+        if len(stages) != rows:
+            unknown = np.full(len(self.nearest.gains), np.nan)
+            stages = [("global", np.nan, np.nan, unknown)] * rows
+        gains = np.array([each[3] for each in stages]).reshape(rows, -1)
+        found: Columns = {
+            "stage": np.array([each[0] for each in stages], dtype=np.str_),
+            "evaluations": self.convergence[:, 0].astype(np.int64),
+            "best_value": self.convergence[:, 1],
+            "value": np.array([each[1] for each in stages], dtype=np.float64),
+            "violation": np.array([each[2] for each in stages], dtype=np.float64),
+        }
+        return found | _gain_columns(self.nearest, gains)
+
     def flatness(self, points: int = 41, *, tolerance: float = 0.01, threads: int | None = None) -> Flatness:
-        """Return the objective along each gain through the best set.
+        """Return the objective along each gain through the best set, or the nearest without a best.
 
         Each gain runs over its whole bounds while the others are held, so a picture shows at
         a glance which of them matter.
@@ -218,7 +313,7 @@ class GainSearch:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ParetoFront:
+class ParetoFront(Table):
     """Gain sets that no other one beats in every objective.
 
     Attributes
@@ -259,6 +354,26 @@ class ParetoFront:
         """Return the number of gain sets."""
         return len(self.gains)
 
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each gain set.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Gains, then objectives; units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> front = nav.pareto_front([scenarios.configuration("c1")], grid=(3, 3, 3, 3), refinements=0)
+        >>> list(front.columns())[2:]
+        ['detour_gain_N_per_m2', 'gain_ratio_s', 'arrival_time_s', 'min_clearance_m', 'energy_J']
+        """
+        found = _gain_columns(self.settings.law, self.gains)
+        units = (unit_suffix(METRIC_UNITS.get(name, "")) for name in self.objectives)
+        named = zip(self.objectives, units, self.values.T, strict=True)
+        return found | {f"{name}{unit}": values for name, unit, values in named}
+
     def law(self, index: int) -> Law:
         """Return the law with the gains of one point of the front.
 
@@ -283,8 +398,18 @@ class ParetoFront:
         return with_gains(self.settings.law, self.gains[row])
 
 
+def _counted(entries: tuple[Entry, ...]) -> Iterator[tuple[int, Entry]]:
+    return enumerate(entries, start=1)
+
+
+def _gain_columns(law: Law, gains: Array) -> Columns:
+    """Return a column for each gain, with its unit in the name."""
+    names = [f"{name}{unit_suffix(law.GAIN_UNITS.get(name, ''))}" for name in law.GAIN_NAMES]
+    return {name: gains[:, index] for index, name in enumerate(names)}
+
+
 def _flatness(search: GainSearch, points: int, tolerance: float, threads: int | None) -> Flatness:
-    best = np.array(search.best.gains)
+    best = np.array(search.nearest.gains)
     axes = [_axis(low, high, points, own) for (low, high), own in zip(search.settings.bounds, best, strict=True)]
     gains = np.stack(axes)
     sets = np.tile(best, (*gains.shape, 1))
@@ -298,7 +423,7 @@ def _flatness(search: GainSearch, points: int, tolerance: float, threads: int | 
     ends = [_unbroken(row, kept, own) for row, kept, own in zip(gains, good, best, strict=True)]
     low, high = np.array(ends).T
     return Flatness(
-        gain_names=search.best.GAIN_NAMES,
+        gain_names=search.nearest.GAIN_NAMES,
         best_gains=best,
         best_value=search.best_value,
         gains=gains,

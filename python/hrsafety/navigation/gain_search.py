@@ -56,6 +56,8 @@ def optimize_gains(
     objective: Objective = "performance",
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     constraints: Sequence[Constraint] = (),
+    require_arrival: bool = True,
+    cap_ratios: bool = True,
     seeds: int | None = None,
     seed: int = 0,
     robustness: Robustness = "mean",
@@ -110,6 +112,14 @@ def optimize_gains(
         margins, negative where it does not hold. A gain set that misses constraints by less
         is better than one that misses them by more, whatever the objective. One that is missed
         by no more than 1e-6 of its unit counts as kept.
+    require_arrival : bool
+        Whether every scenario has to be arrived in without a contact, with every seed: one more
+        constraint, which each run that fails misses by 1. Without it a gain set may fail where
+        that costs the objective less than it gains elsewhere.
+    cap_ratios : bool
+        Whether T*/T and L*/L above 1 count as 1 in H and its parts, as objectives and in
+        constraints: gains with which the robot dawdles even without obstacles are not paid for it.
+        H as printed everywhere else has no such cap; a callable sees that.
     seeds : int or None
         Number of seeds, of the noise and of a law that draws, that every scenario is run with;
         a callable is called for each seed, a constraint must hold for all. ``None``: the
@@ -139,7 +149,8 @@ def optimize_gains(
     -------
     GainSearch
         Best law, its value, and how it was found. After Ctrl-C the best so far, with
-        ``interrupted`` set.
+        ``interrupted`` set. If no gain set keeps the constraints, ``status`` says so, and asking
+        for ``best`` raises an `InfeasibleError` with what would mend it.
 
     Raises
     ------
@@ -156,7 +167,10 @@ def optimize_gains(
     Notes
     -----
     A gain set that touches an obstacle or does not arrive has H = 0 in that scenario, as in
-    the source, and is worst of all with the other metrics; ``failures`` counts them.
+    the source, and is worst of all with the other metrics; ``failures`` counts them. In the mean
+    that alone would not keep it away: with an attraction near zero, T*/T and L*/L of one
+    scenario can exceed 1 by more than two others lose. Hence ``require_arrival`` and
+    ``cap_ratios``, which change nothing in the published procedure.
 
     The local searches are those of COBYLA (Powell 1994): linear models on a simplex, for bounds
     and constraints without derivatives.
@@ -183,6 +197,8 @@ def optimize_gains(
         objectives={"objective": objective},
         weights=weights,
         constraints=constraints,
+        require_arrival=require_arrival,
+        cap_ratios=cap_ratios,
         seeds=seeds,
         seed=seed,
         robustness=robustness,
@@ -257,8 +273,9 @@ def _result(settings: SearchSettings, found: dict[str, Any], threads: int | None
     local = tuple(LocalSearch(**each) for each in found.get("local", ()))
     law = with_gains(settings.law, best["gains"])
     top, top_values = _top(found)
+    valid = best["violation"] == 0.0 and best["value"] > -np.inf
     return GainSearch(
-        best=law,
+        nearest=law,
         best_value=best["value"],
         best_performance=_performance(settings, law, threads),
         violation=best["violation"],
@@ -271,7 +288,7 @@ def _result(settings: SearchSettings, found: dict[str, Any], threads: int | None
         convergence=_convergence(found, rounds, local),
         top=top,
         top_values=top_values,
-        confidence=None if found["interrupted"] else _confidence(settings, best["gains"], threads),
+        confidence=None if found["interrupted"] or not valid else _confidence(settings, best["gains"], threads),
         interrupted=found["interrupted"],
         settings=settings,
     )
@@ -281,7 +298,8 @@ def _top(found: dict[str, Any]) -> tuple[Array, Array]:
     """Return the best points before local searches that keep the constraints, and their values."""
     best = found["best"]
     if "top" not in found:
-        return best["gains"][None, :], np.array([best["value"]])
+        kept = np.array([best["violation"] == 0.0])
+        return best["gains"][None, :][kept], np.array([best["value"]])[kept]
     kept = found["top_violation"] == 0.0
     return found["top"][kept], found["top_values"][kept]
 
@@ -289,7 +307,8 @@ def _top(found: dict[str, Any]) -> tuple[Array, Array]:
 def _convergence(found: dict[str, Any], rounds: Sequence[SearchRound], local: Sequence[LocalSearch]) -> Array:
     """Return evaluations and best value: after each grid and local search, or where a global one became better."""
     if "history" in found:
-        end = [[found["evaluations"], found["best"]["value"]]]
+        best = found["best"]
+        end = [[found["evaluations"], best["value"] if best["violation"] == 0.0 else -np.inf]]
         return np.vstack([found["history"], end])
     steps = [(entry.evaluations, entry.best_value, entry.violation) for entry in rounds]
     steps += [(entry.evaluations, entry.value, entry.violation) for entry in local]

@@ -112,6 +112,10 @@ class SearchSettings:
         Weights of time, distance and energy in H.
     constraints : tuple of GainConstraint or callable
         What has to hold.
+    require_arrival : bool
+        Whether every scenario has to be arrived in without a contact.
+    cap_ratios : bool
+        Whether T*/T and L*/L above 1 count as 1.
     seeds : int
         Number of noise seeds; 0: the scenarios with their own seeds.
     seed : int
@@ -135,6 +139,8 @@ class SearchSettings:
     objectives: tuple[Objective, ...]
     weights: tuple[float, float, float]
     constraints: tuple[Constraint, ...]
+    require_arrival: bool
+    cap_ratios: bool
     seeds: int
     seed: int
     robustness: Robustness
@@ -286,6 +292,8 @@ def search_settings(
     objectives: Mapping[str, object],
     weights: Sequence[float],
     constraints: Sequence[Constraint],
+    require_arrival: bool,
+    cap_ratios: bool,
     seeds: int | None,
     seed: int,
     robustness: Robustness,
@@ -313,6 +321,8 @@ def search_settings(
         objectives=tuple(wanted.values()),
         weights=check_weights(weights),
         constraints=limits,
+        require_arrival=flag("require_arrival", require_arrival),
+        cap_ratios=flag("cap_ratios", cap_ratios),
         seeds=check_seeds(seeds, robustness, scenes, searched),
         seed=checked_seed("seed", seed),
         robustness=robustness,

@@ -18,6 +18,7 @@ from hrsafety.navigation.built import AsBuilt, _checked
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.statistics import Share, wilson
+from hrsafety.tables import Columns, Table, each, with_units
 
 __all__ = ["Band", "Repeated", "repeat"]
 
@@ -46,7 +47,7 @@ class Band(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Repeated:
+class Repeated(Table):
     """Runs of one scenario with n seeds, k instants, m obstacles.
 
     The histories hold a row for every control period and one for the end of the run, and NaN
@@ -96,6 +97,26 @@ class Repeated:
     def __len__(self) -> int:
         """Return the number of runs."""
         return len(self.seed)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each run.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names, obstacles are numbered; the histories are not in it.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> runs = nav.repeat(scenarios.configuration("c1"), nav.VirtualForceField(), seeds=2)
+        >>> list(runs.columns())[:3]
+        ['seed', 'outcome', 'arrival_time_s']
+        """
+        units = {"seed": "", "outcome": "", "arrival_time": "s", "end_time": "s", "energy": "J", "path_length": "m"}
+        found = with_units(self, units) | each("min_distance_{}", self.min_distance, "m")
+        found |= each("contact_time_{}", self.contact_time, "s")
+        return found | each("contact_speed_{}", self.contact_speed, "m/s")
 
     @property
     def success(self) -> Share:

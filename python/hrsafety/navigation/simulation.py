@@ -15,6 +15,7 @@ from hrsafety.navigation.forces import check_law
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.tables import Columns, Table, each, plane
 
 __all__ = [
     "Performance",
@@ -28,7 +29,7 @@ Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Trajectory:
+class Trajectory(Table):
     """One run of a robot: n instants, m obstacles, w wheels.
 
     The rows are the motion steps and, last, the instant of arrival (linear inside its step).
@@ -104,6 +105,29 @@ class Trajectory:
     def contacts_standing(self) -> int:
         """Number of obstacles that touched the standing robot."""
         return int(np.sum(self.contact_speed <= _hrsafety.CONTACT_SPEED))
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each instant.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names; obstacles and wheels are numbered.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
+        >>> list(run.columns())[:5]
+        ['t_s', 'x_m', 'y_m', 'vx_m_per_s', 'vy_m_per_s']
+        """
+        found = {"t_s": self.time, **plane("{}", self.position, "m"), **plane("v{}", self.velocity, "m/s")}
+        found |= {**plane("force_{}", self.force, "N"), "heading_rad": self.heading}
+        found |= each("current_{}", self.wheel_current, "A")
+        for index in range(self.distance.shape[1]):
+            found |= plane(f"obstacle_{index}_{{}}", self.obstacle_position[:, index], "m")
+            found[f"distance_{index}_m"] = self.distance[:, index]
+        return found | plane("stabilizing_{}", self.stabilizing, "N") | {"lyapunov_N2": self.lyapunov}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

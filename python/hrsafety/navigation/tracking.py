@@ -15,6 +15,7 @@ from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.references import CircleReference, LineReference, PathReference, Reference
 from hrsafety.navigation.robots import DifferentialDriveRobot
 from hrsafety.navigation.tracking_laws import ExponentialTracking, FullSpeedTracking, NonlinearTracking, Tracking
+from hrsafety.tables import Columns, Table, plane
 
 __all__ = ["TrackingRun", "TrackingSummary", "track", "track_batch"]
 
@@ -22,7 +23,7 @@ LEVELS = (0.1, 0.01, 0.001)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class TrackingRun:
+class TrackingRun(Table):
     """A run of a two-wheel robot with ideal wheels after a reference: n instants.
 
     Attributes
@@ -66,9 +67,32 @@ class TrackingRun:
         offset = self.reference_position - self.position
         return np.hypot(offset[:, 0], offset[:, 1])
 
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each instant.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names; the distance to the reference is the last.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> run = nav.track(nav.LineReference(start=(0.0, 0.0), velocity=(0.5, 0.0)), duration=0.6)
+        >>> list(run.columns())[:4]
+        ['t_s', 'x_m', 'y_m', 'heading_rad']
+        """
+        found = {"t_s": self.time, **plane("{}", self.position, "m"), "heading_rad": self.heading}
+        found |= {"speed_m_per_s": self.speed, "turn_rate_rad_per_s": self.turn_rate}
+        found |= {"commanded_speed_m_per_s": self.commanded_speed}
+        found |= {"commanded_turn_rate_rad_per_s": self.commanded_turn_rate}
+        found |= plane("reference_{}", self.reference_position, "m")
+        found |= plane("reference_v{}", self.reference_velocity, "m/s")
+        return found | {"goal_phase": self.goal_phase, "error_m": self.error}
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class TrackingSummary:
+class TrackingSummary(Table):
     """Summary of many runs, one row for each start; k levels.
 
     Attributes
@@ -95,6 +119,26 @@ class TrackingSummary:
     def __len__(self) -> int:
         """Return the number of runs."""
         return len(self.final_error)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each start.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names; settling times by their level in m.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> line = nav.LineReference(start=(0.0, 0.0), velocity=(0.5, 0.0))
+        >>> list(nav.track_batch(line, starts=[(0.0, 0.5, 0.0)], levels=[0.1]).columns())[-1]
+        'settling_time_0.1_s'
+        """
+        found = {"final_error_m": self.final_error, "max_error_m": self.max_error}
+        found |= {"final_heading_rad": self.final_heading, "path_length_m": self.path_length}
+        times = zip(self.levels.tolist(), self.settling_time.T, strict=True)
+        return found | {f"settling_time_{level:g}_s": column for level, column in times}
 
 
 def track(

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, columns, instance, number, pair, positive, sequence, vector
 from hrsafety.errors import InvalidParameterError
+from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["DIFFERENTIAL_WHEELS", "HOLONOMIC_WHEELS", "WheelDrive", "WheelReference", "WheelRun", "follow_wheel"]
 
@@ -258,7 +259,7 @@ class WheelReference:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class WheelRun:
+class WheelRun(Table):
     """A wheel after its reference; states at the start of each wheel period, currents over it.
 
     Attributes
@@ -318,6 +319,27 @@ class WheelRun:
     def rms_speed_error(self) -> float:
         """Root of the mean squared error of the speed, in rad/s."""
         return float(np.sqrt(np.mean(self.speed_error**2)))
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each wheel period.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> run = nav.follow_wheel(nav.HOLONOMIC_WHEELS[0], nav.WheelReference.sine(duration=1.0))
+        >>> list(run.columns())[:3]
+        ['t_s', 'wanted_angle_rad', 'angle_rad']
+        """
+        angles = ("wanted_angle", "angle", "read_angle", "known_angle")
+        speeds = ("wanted_speed", "speed", "known_speed")
+        units = {"time": "s", **dict.fromkeys(angles, "rad"), **dict.fromkeys(speeds, "rad/s")}
+        units |= {"current": "A", "voltage": "V", "ideal_current": "A"}
+        return with_units(self, units)
 
 
 def _finite(name: str, value: object) -> float:

@@ -202,7 +202,7 @@ def _draw_values(axes: Axes, search: GainSearch, quantity: str) -> None:
 def _draw_ranges(figure: Figure, place: SubplotSpec, search: GainSearch) -> None:
     """Draw the range of each gain in each round, one panel for each gain."""
     rounds = search.history
-    names = search.best.GAIN_NAMES
+    names = search.nearest.GAIN_NAMES
     columns = place.subgridspec(1, len(names))
     for index, name in enumerate(names):
         axes = figure.add_subplot(columns[index])
@@ -217,7 +217,7 @@ def _draw_ranges(figure: Figure, place: SubplotSpec, search: GainSearch) -> None
                 axes.plot([entry.best_gains[index]], [row], label=label, **_star(style.RUN_COLORS[3]))
         labels = [f"grid {row}" for row in range(1, len(rounds) + 1)]
         if search.local:
-            axes.plot([search.best.gains[index]], [len(rounds) + 1], **_star(LOCAL_COLOR))
+            axes.plot([search.nearest.gains[index]], [len(rounds) + 1], **_star(LOCAL_COLOR))
             labels.append("local")
         axes.set_yticks(range(1, len(labels) + 1), labels=labels if index == 0 else [""] * len(labels))
         axes.set_ylim(len(labels) + 0.6, 0.4)

@@ -21,6 +21,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.impedance import VirtualImpedance
 from hrsafety.reactive.scenes import FollowerScene
 from hrsafety.reactive.sonar import Sonar
+from hrsafety.tables import Columns, Table, each, plane
 
 __all__ = [
     "FixDeviations",
@@ -123,7 +124,7 @@ class Follower(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FollowerRun:
+class FollowerRun(Table):
     """One run of the follower: a row for every control period, the last one at the end.
 
     Attributes
@@ -179,6 +180,35 @@ class FollowerRun:
     turning: float
     scene: FollowerScene = field(repr=False)
     follower: Follower = field(repr=False)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each control period.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names; sensors and obstacles are numbered.
+
+        Examples
+        --------
+        >>> from hrsafety import reactive
+        >>> scene = reactive.FollowerScene(
+        ...     leader=reactive.SoundLeader(start=(1.2, 0.0), end=(3.0, 0.0)),
+        ...     obstacles=[reactive.Box(center=(1.5, 1.2), size=(0.5, 0.5))], duration=10.0,
+        ... )
+        >>> list(reactive.follow(scene).columns())[:4]
+        ['t_s', 'x_m', 'y_m', 'heading_rad']
+        """
+        found = {"t_s": self.time, **plane("{}", self.position, "m"), "heading_rad": self.heading}
+        found |= plane("virtual_v{}", self.virtual_velocity, "m/s")
+        for index, side in enumerate(("left", "right")):
+            found[f"wheel_{side}_m_per_s"] = self.wheel_speed[:, index]
+        found |= plane("target_{}", self.target, "m") | plane("source_{}", self.source, "m")
+        found |= plane("attraction_{}", self.attraction, "N") | plane("repulsion_{}", self.repulsion, "N")
+        found |= each("reading_{}", self.readings, "m") | each("clearance_{}", self.clearance, "m")
+        for index in range(self.shift.shape[1]):
+            found |= plane(f"shift_{index}_{{}}", self.shift[:, index], "m")
+        return found
 
     @property
     def body_radius(self) -> float:

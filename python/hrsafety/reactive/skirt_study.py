@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hrsafety._arguments import Array, callback, count, number, positive, sequence, word
+from hrsafety._arguments import callback, count, number, positive, sequence, word
 from hrsafety._statistics import Share
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt import PUBLISHED_CHASSIS_RADIUS, PUBLISHED_SAFE_DISTANCE, Layout, Policy, UltrasonicSkirt
 from hrsafety.reactive.skirt_tests import SkirtMotion, SkirtScene, skirt_test
+from hrsafety.tables import Columns, Table
 
 __all__ = ["SmallestSkirt", "smallest_skirt"]
 
@@ -21,7 +22,7 @@ _COUNTS = {"even": tuple(range(3, 17)), "wheels": (6, 9, 12, 15, 18)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SmallestSkirt:
+class SmallestSkirt(Table):
     """What `smallest_skirt` found.
 
     Attributes
@@ -49,7 +50,7 @@ class SmallestSkirt:
     contacts: tuple[Share, ...]
     skirts: tuple[UltrasonicSkirt, ...]
 
-    def columns(self) -> dict[str, Array]:
+    def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
 
         Returns

@@ -25,6 +25,7 @@ from hrsafety._arguments import (
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt import MOTION_DIRECTIONS, UltrasonicSkirt
+from hrsafety.tables import Columns, Table, each, plane
 
 __all__ = ["SkirtMotion", "SkirtRun", "SkirtScene", "SkirtShares", "SkirtTest", "skirt_run", "skirt_test"]
 
@@ -152,7 +153,7 @@ class SkirtShares(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SkirtTest:
+class SkirtTest(Table):
     """Result of the avoidance test, one row for each test.
 
     Attributes
@@ -216,7 +217,7 @@ class SkirtTest:
         runs = len(self)
         return SkirtShares(wilson(clear, runs), wilson(runs - clear - touched, runs), wilson(touched, runs))
 
-    def columns(self) -> dict[str, npt.NDArray[np.generic]]:
+    def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
 
         Returns
@@ -304,7 +305,7 @@ def skirt_test(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SkirtRun:
+class SkirtRun(Table):
     """One test, step by step; row k is the state after firing k.
 
     Attributes
@@ -349,6 +350,24 @@ class SkirtRun:
     disc_seen: npt.NDArray[np.bool_]
     min_clearance: float
     contact_time: float
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each firing.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names; sensors are numbered.
+
+        Examples
+        --------
+        >>> from hrsafety import reactive
+        >>> list(reactive.skirt_run().columns())[:4]
+        ['t_s', 'x_m', 'y_m', 'vx_m_per_s']
+        """
+        found = {"t_s": self.time, **plane("{}", self.position, "m"), **plane("v{}", self.velocity, "m/s")}
+        found |= {"heading_rad": self.heading, "yaw_rate_rad_per_s": self.yaw_rate}
+        return found | each("reading_{}", self.readings, "m") | {"action": self.action}
 
 
 def skirt_run(

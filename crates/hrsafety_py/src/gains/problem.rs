@@ -47,7 +47,7 @@ pub struct GainProblem {
 impl GainProblem {
     #[new]
     #[pyo3(signature = (*, scenarios, law, weights, integrator, step, hold, seeds, lower_bound_factor,
-        objectives, constraints, scorer, scorer_constraints, lanes))]
+        objectives, constraints, require_arrival, cap_ratios, scorer, scorer_constraints, lanes))]
     #[allow(clippy::too_many_arguments)] // keyword-only in Python
     #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn new(
@@ -61,6 +61,8 @@ impl GainProblem {
         lower_bound_factor: Option<f64>,
         objectives: Vec<Option<String>>,
         constraints: Vec<Bounded>,
+        require_arrival: bool,
+        cap_ratios: bool,
         scorer: Option<Py<PyAny>>,
         scorer_constraints: usize,
         lanes: Option<usize>,
@@ -71,15 +73,17 @@ impl GainProblem {
             scenarios.iter().map(|scene| scene.0.clone()).collect();
         let width = lanes.map(Width::of).transpose().map_err(CoreError::from)?;
         let is_metric: Vec<bool> = objectives.iter().map(Option::is_some).collect();
+        let alone = !is_metric.contains(&true) && constraints.is_empty();
         let scorer = scorer.map(|call| Scorer {
             call,
             scenarios: seeded(&scenarios, &seeds),
             law: law.any.clone(),
             options: batch_options(run, weights_of(weights), width),
+            requires_arrival: require_arrival && alone,
             raised: Mutex::new(None),
         });
         let mut metrics: Vec<String> = objectives.into_iter().flatten().collect();
-        let native = if metrics.is_empty() && constraints.is_empty() {
+        let native = if alone {
             None
         } else {
             if metrics.is_empty() {
@@ -91,6 +95,8 @@ impl GainProblem {
                 weights: weights_of(weights),
                 objectives: objectives_of(&metrics)?,
                 constraints: constraints_of(&constraints)?,
+                require_arrival,
+                cap_ratios,
                 time_limit: None,
                 seeds,
                 robustness: lower_bound_factor
@@ -214,7 +220,8 @@ impl Problem for GainProblem {
 
     fn constraints(&self) -> usize {
         let own = self.native.as_ref().map_or(0, Problem::constraints);
-        own + self.scorer_constraints
+        let arrival = self.scorer.as_ref().is_some_and(|scorer| scorer.requires_arrival);
+        own + self.scorer_constraints + usize::from(arrival)
     }
 
     fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {

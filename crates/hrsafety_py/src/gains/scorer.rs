@@ -6,7 +6,7 @@ use groundwork::error::{Failure, Result};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use vff_core::optimize::Evaluation;
+use vff_core::optimize::{Evaluation, arrival_margin};
 use vff_core::scenario::Scenario;
 use vff_core::simulate::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
 
@@ -22,6 +22,8 @@ pub struct Scorer {
     pub law: AnyLaw,
     /// How the runs are made.
     pub options: BatchOptions,
+    /// Whether the last constraint is that every run arrives without a contact.
+    pub requires_arrival: bool,
     /// What the callable raised, until it is taken.
     pub raised: Mutex<Option<PyErr>>,
 }
@@ -30,6 +32,7 @@ impl Scorer {
     /// Runs the gain sets and has them scored; the interpreter is held for the second part only.
     pub fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
         let mut tables = Vec::with_capacity(self.scenarios.len());
+        let mut failures = vec![0; into.failed.len()];
         for scenarios in &self.scenarios {
             let table = run_batch(
                 scenarios,
@@ -40,12 +43,16 @@ impl Scorer {
                 &|_| {},
             )?;
             let runs = table.outcome.chunks_exact(scenarios.len());
-            for (failed, outcomes) in into.failed.iter_mut().zip(runs) {
-                *failed |= outcomes.iter().any(|outcome| *outcome != Outcome::Arrived);
+            for (count, outcomes) in failures.iter_mut().zip(runs) {
+                let failed = |outcome: &&Outcome| **outcome != Outcome::Arrived;
+                *count += outcomes.iter().filter(failed).count();
             }
             tables.push(table);
         }
-        Python::attach(|py| self.score(py, points, tables, into)).map_err(|error| {
+        for (failed, count) in into.failed.iter_mut().zip(&failures) {
+            *failed |= *count > 0;
+        }
+        Python::attach(|py| self.score(py, points, tables, &failures, into)).map_err(|error| {
             if let Ok(mut slot) = self.raised.lock() {
                 slot.get_or_insert(error);
             }
@@ -58,6 +65,7 @@ impl Scorer {
         py: Python<'_>,
         points: &[f64],
         tables: Vec<BatchTable>,
+        failures: &[usize],
         into: &mut Evaluation<'_>,
     ) -> PyResult<()> {
         let dimension = self.law.gain_names().len();
@@ -68,7 +76,18 @@ impl Scorer {
         let (values, margins): (PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>) =
             self.call.bind(py).call1((list,))?.extract()?;
         fill(into.values, &values);
-        fill(into.margins, &margins);
+        if !self.requires_arrival {
+            fill(into.margins, &margins);
+            return Ok(());
+        }
+        let each = into.margins.len() / failures.len().max(1);
+        let rows = into.margins.chunks_exact_mut(each).zip(failures);
+        for ((slots, count), called) in rows.zip(margins.as_array().rows()) {
+            for (slot, margin) in slots.iter_mut().zip(called) {
+                *slot = *margin;
+            }
+            slots[each - 1] = arrival_margin(*count);
+        }
         Ok(())
     }
 }

@@ -134,6 +134,20 @@ impl MetricConstraint {
     }
 }
 
+/// Margin of the constraint that every run arrives without a contact: 1 when all do, else minus the
+/// number of runs that fail.
+///
+/// It is well away from zero where it holds, so that a method with linear models sees a constraint
+/// that is not active.
+#[must_use]
+pub fn arrival_margin(failures: usize) -> f64 {
+    if failures == 0 {
+        1.0
+    } else {
+        -(failures as f64)
+    }
+}
+
 /// How the value of a gain set comes from its values with different seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Robustness {

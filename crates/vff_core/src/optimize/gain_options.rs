@@ -19,6 +19,11 @@ pub struct GainOptions {
     pub objectives: Vec<Objective>,
     /// What has to hold.
     pub constraints: Vec<MetricConstraint>,
+    /// Whether every scenario has to be arrived in without a contact: one more constraint, the
+    /// last, which is missed by the number of runs that fail.
+    pub require_arrival: bool,
+    /// Whether `T*/T` and `L*/L` above 1 count as 1.
+    pub cap_ratios: bool,
     /// Longest simulated time in s, if it is shorter than a scenario's own.
     pub time_limit: Option<f64>,
     /// Every scenario is run with every seed; as it is when there is none.

@@ -5,7 +5,9 @@ use std::sync::Mutex;
 
 use crate::error::{Failure, Result};
 use crate::metrics::{Nominal, score};
-use crate::optimize::gain_objective::{Judged, Metric, MetricConstraint, Objective, Over};
+use crate::optimize::gain_objective::{
+    Judged, Metric, MetricConstraint, Objective, Over, arrival_margin,
+};
 use crate::optimize::gain_options::GainOptions;
 use crate::optimize::problem::{Evaluation, Problem};
 use crate::scenario::Scenario;
@@ -205,7 +207,11 @@ impl GainProblem {
                     *slot = distance(obstacle);
                 }
                 let own = distances.iter().copied();
-                let performance = score(scenario, run.into(), own, free[set], self.options.weights);
+                let weights = self.options.weights;
+                let mut performance = score(scenario, run.into(), own, free[set], weights);
+                if self.options.cap_ratios {
+                    performance = performance.with_capped_ratios(weights);
+                }
                 let clearance = min_clearance(scenario, &distances);
                 judged[set * count + index] = Judged::new(run, performance, clearance);
             })?;
@@ -262,7 +268,7 @@ impl Problem for GainProblem {
     }
 
     fn constraints(&self) -> usize {
-        self.options.constraints.len()
+        self.options.constraints.len() + usize::from(self.options.require_arrival)
     }
 
     fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
@@ -279,15 +285,20 @@ impl Problem for GainProblem {
             self.judge(index, points, &free[self.ways.of(index)], &mut judged)?;
         }
         let (objectives, constraints) = (&self.options.objectives, &self.options.constraints);
+        let margins_each = self.constraints();
         for (point, runs) in judged.chunks_exact(count).enumerate() {
-            into.failed[point] = runs.iter().any(|run| run.failed);
+            let failures = runs.iter().filter(|run| run.failed).count();
+            into.failed[point] = failures > 0;
             let values = &mut into.values[point * objectives.len()..];
             for (slot, objective) in values.iter_mut().zip(objectives) {
                 *slot = self.objective(objective, runs);
             }
-            let margins = &mut into.margins[point * constraints.len()..];
+            let margins = &mut into.margins[point * margins_each..(point + 1) * margins_each];
             for (slot, constraint) in margins.iter_mut().zip(constraints) {
                 *slot = self.margin(constraint, runs);
+            }
+            if self.options.require_arrival {
+                margins[constraints.len()] = arrival_margin(failures);
             }
         }
         Ok(())

@@ -56,8 +56,8 @@ pub struct GlobalSearch {
     pub evaluations: u64,
     /// Failures among them.
     pub failures: u64,
-    /// Evaluations in all, counted as if the islands took turns, at which the best became better,
-    /// and its value.
+    /// Evaluations in all, counted as if the islands took turns, at which the best feasible point
+    /// became better, and its value.
     pub history: Vec<(u64, f64)>,
     /// Whether the search was stopped before its end.
     pub interrupted: bool,

@@ -25,7 +25,9 @@ mod solvers;
 pub use blocks::evaluate_all;
 pub use evaluated::Evaluated;
 pub use front::{Front, FrontOptions, FrontRound, front_search};
-pub use gain_objective::{Limit, Metric, MetricConstraint, Objective, Over, Robustness};
+pub use gain_objective::{
+    Limit, Metric, MetricConstraint, Objective, Over, Robustness, arrival_margin,
+};
 pub use gain_options::GainOptions;
 pub use gain_problem::GainProblem;
 pub use global::{GlobalMethod, GlobalOptions, GlobalSearch, global_search};

@@ -47,7 +47,7 @@ pub(crate) struct Found {
     pub best: Option<Candidate>,
     pub evaluations: u64,
     pub failures: u64,
-    /// Evaluations at which the best became better, and its value.
+    /// Evaluations at which the best feasible point became better, and its value.
     pub history: Vec<(u64, f64)>,
     pub halted: Option<Halt>,
 }
@@ -105,7 +105,9 @@ impl<'a> Oracle<'a> {
         let known = found.best.as_ref();
         if known.is_none_or(|best| score.better(&best.score)) {
             found.best = Some(Candidate { point, score });
-            found.history.push((found.evaluations, score.value));
+            if score.feasible() {
+                found.history.push((found.evaluations, score.value));
+            }
         }
         inner.last = Some((share.to_vec(), values.clone()));
         inner.floor.get_or_insert_with(|| values.clone());

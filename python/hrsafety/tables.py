@@ -1,0 +1,254 @@
+"""Results as tables: columns by name, Polars, pandas, CSV.
+
+A result that is a table derives from `Table` and says what its columns are; the formats are written
+here, once. Names of columns carry their unit (``x_m``, ``vx_m_per_s``), as in the files of the command
+line; a quantity without a unit has none. Summaries that are also the columns of a sweep
+(`hrsafety.sweep`) keep the names of the sweep, whose units are beside them.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import io
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy.typing as npt
+
+from hrsafety._atomic import replacing
+from hrsafety.errors import InvalidParameterError, MissingExtraError
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+
+__all__ = ["Column", "Columns", "Table", "each", "plane", "unit_suffix", "with_units", "write_csv"]
+
+Column = npt.NDArray[Any]
+Columns = dict[str, Column]
+"""One-dimensional arrays of one length by name, in the order of the table."""
+
+
+class Table:
+    """Base of the results that are tables: `columns` is theirs, the formats are shared."""
+
+    __slots__ = ()
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name.
+
+        Returns
+        -------
+        dict of str to ndarray
+            All of one length.
+        """
+        raise NotImplementedError
+
+    def to_polars(self) -> polars.DataFrame:
+        """Return a Polars data frame.
+
+        Returns
+        -------
+        polars.DataFrame
+            The columns of ``columns()``.
+
+        Raises
+        ------
+        MissingExtraError
+            If Polars is not installed.
+        """
+        frame: polars.DataFrame = _library("polars", "Polars").DataFrame(
+            {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.columns().items()}
+        )
+        return frame
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return a pandas data frame.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The columns of ``columns()``.
+
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+        """
+        frame: pandas.DataFrame = _library("pandas", "pandas").DataFrame(self.columns())
+        return frame
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write a CSV file, whole or not at all.
+
+        Numbers are written with all their digits. A cell is empty where there is no number, and
+        ``inf`` where it is infinite; flags are ``true`` or ``false``.
+
+        Parameters
+        ----------
+        path : path-like
+            The file; its folder must exist.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the path is none, or its folder does not exist.
+        """
+        return write_csv(path, self.columns())
+
+
+def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
+    """Write columns as a CSV file, see `Table.to_csv`."""
+    place = _place(path)
+    cells = [_cells(values) for values in columns.values()]
+    with replacing(place) as file:
+        text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*cells, strict=True))
+        text.flush()
+        text.detach()
+    return place
+
+
+def _place(path: object) -> Path:
+    if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
+        raise InvalidParameterError("path", "be the path of a file", path)
+    place = Path(os.fspath(path))  # type: ignore[arg-type]  # bytes were refused above
+    if not place.parent.is_dir():
+        raise InvalidParameterError("path", "lie in a folder that exists", str(place), f"make {place.parent} first")
+    return place
+
+
+def _cells(values: Column) -> list[object]:
+    """Return the cells of a column as the CSV file shows them."""
+    if values.dtype.kind == "b":
+        return ["true" if value else "false" for value in values.tolist()]
+    if values.dtype.kind == "f":
+        return ["" if math.isnan(value) else value for value in values.tolist()]
+    return list(values.tolist())
+
+
+def _library(module: str, name: str) -> Any:
+    """Return an optional library."""
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError:
+        raise MissingExtraError(f"this format needs {name}: pip install hrsafety[sweep]") from None
+
+
+# ---- columns from arrays ----------------------------------------------------------------------------
+
+
+def unit_suffix(unit: str) -> str:
+    """Return a unit as the end of a column's name.
+
+    Parameters
+    ----------
+    unit : str
+        For example ``"N/m^2"``; empty without one.
+
+    Returns
+    -------
+    str
+        For example ``"_N_per_m2"``; empty without a unit.
+
+    Examples
+    --------
+    >>> from hrsafety.tables import unit_suffix
+    >>> unit_suffix("m/s"), unit_suffix("N/m^2"), unit_suffix("")
+    ('_m_per_s', '_N_per_m2', '')
+    """
+    words = unit.replace("^", "").replace("/", "_per_").replace("*", "_").replace(" ", "_")
+    return f"_{words}" if words else ""
+
+
+def plane(name: str, values: Column, unit: str) -> Columns:
+    """Return the x and y columns of vectors in the plane.
+
+    Parameters
+    ----------
+    name : str
+        With a brace pair for the coordinate: ``"force_{}"``, ``"v{}"``.
+    values : ndarray, shape (n, 2)
+        The vectors.
+    unit : str
+        Their unit.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Two columns.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety.tables import plane
+    >>> list(plane("v{}", np.zeros((3, 2)), "m/s"))
+    ['vx_m_per_s', 'vy_m_per_s']
+    """
+    return {f"{name.format(axis)}{unit_suffix(unit)}": values[:, index] for index, axis in enumerate("xy")}
+
+
+def each(name: str, values: Column, unit: str = "") -> Columns:
+    """Return a column for each column of a matrix, numbered.
+
+    Parameters
+    ----------
+    name : str
+        With a brace pair for the number: ``"current_{}"``.
+    values : ndarray, shape (n, k)
+        The matrix.
+    unit : str
+        Unit of its numbers.
+
+    Returns
+    -------
+    dict of str to ndarray
+        k columns.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety.tables import each
+    >>> list(each("current_{}", np.zeros((3, 2)), "A"))
+    ['current_0_A', 'current_1_A']
+    """
+    return {f"{name.format(index)}{unit_suffix(unit)}": values[:, index] for index in range(values.shape[1])}
+
+
+def with_units(result: object, units: Mapping[str, str]) -> Columns:
+    """Return one-dimensional attributes of a result under their names with units.
+
+    Parameters
+    ----------
+    result : object
+        What has the attributes.
+    units : mapping of str to str
+        Unit of each attribute that is wanted; empty without one. The time is called ``t``.
+
+    Returns
+    -------
+    dict of str to ndarray
+        A column for each attribute.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> from hrsafety.tables import with_units
+    >>> reference = nav.WheelReference.sine(duration=1.0)
+    >>> list(with_units(reference, {"angle": "rad", "speed": "rad/s"}))
+    ['angle_rad', 'speed_rad_per_s']
+    """
+    return {
+        f"{'t' if name == 'time' else name}{unit_suffix(unit)}": getattr(result, name) for name, unit in units.items()
+    }
