@@ -121,7 +121,7 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
 
 
 def _place(path: object) -> Path:
-    if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str):
+    if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str) or not os.fspath(path):
         raise InvalidParameterError("path", "be the path of a file", path)
     place = Path(os.fspath(path))  # type: ignore[arg-type]  # bytes were refused above
     if not place.parent.is_dir():

@@ -172,6 +172,19 @@ def test_ctrl_c_says_what_is_finished_and_the_same_call_goes_on(tmp_path: Path) 
     assert 0 < len(sweep.open(out).finished) < 80
 
 
+def test_unbalanced_sobol_design_is_told_on_terminal_and_page(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sampled = FAST.replace(", points = 4", "").replace("values = [0.0, 50.0, 100.0]", "from = 0.0, to = 100.0")
+    told = "size of the Sobol design is {}, not a power of two"
+    for size, wrong in ((8, False), (9, True)):
+        file = written(tmp_path / f"{size}.toml", f"{sampled}[design]\nkind = 'sobol'\nsize = {size}\n")
+        assert main(["sweep", file, "--out", str(tmp_path / str(size))]) == 0
+        page = (tmp_path / str(size) / "summary.html").read_text(encoding="utf-8")
+        assert (f"warning: {told.format(size)}" in capsys.readouterr().out) == wrong
+        assert (f'<p class="banner no"><strong>Warning.</strong> {told.format(size)}' in page) == wrong
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

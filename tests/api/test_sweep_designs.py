@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import time
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import qmc
 
-from hrsafety import InvalidParameterError, ShapeError, sweep
+from hrsafety import InvalidParameterError, ShapeError, impact, sweep
 from hrsafety.sweep.strata import latin_shares, permuted
 
 UNIT_AXES = [sweep.Axis(name=name, low=0.0, high=1.0) for name in "abc"]
@@ -191,3 +192,29 @@ def test_bad_design_is_refused(kind: type, arguments: tuple[Any, ...], words: st
 def test_bad_range_of_rows_is_refused(start: Any, stop: Any) -> None:
     with pytest.raises(InvalidParameterError, match="must be"):
         sweep.Sobol(UNIT_AXES, 8).rows(start, stop)
+
+
+# ---- doubts ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("size", "better"), [(3, "2 or 4"), (100, "64 or 128"), (1023, "512 or 1024")])
+def test_sobol_design_of_another_length_warns_and_names_the_right_ones(size: int, better: str) -> None:
+    (warning,) = sweep.Sobol(UNIT_AXES, size).warnings
+    assert (warning.code, warning.subject) == ("unbalanced", "size")
+    assert f"is {size}, not a power of two" in warning.message
+    assert f"take {better} rows" in warning.message
+
+
+@pytest.mark.parametrize("size", [1, 2, 64, 2**30])
+def test_sobol_design_of_a_power_of_two_does_not_warn(size: int) -> None:
+    assert sweep.Sobol(UNIT_AXES, size).warnings == ()
+    assert sweep.LatinHypercube(UNIT_AXES, min(size, 100) + 1).warnings == ()
+
+
+def test_result_carries_the_warning_of_its_design(tmp_path: Path) -> None:
+    study = sweep.ImpactStudy(manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum())
+    speeds = [sweep.Axis(name="closing_speed", low=0.2, high=2.0)]
+    made = sweep.run(sweep.Sobol(speeds, 6), study, out=tmp_path / "out")
+    (warning,) = made.warnings
+    assert sweep.open(tmp_path / "out").warnings == (warning,)
+    assert str(warning) in repr(made)

@@ -164,3 +164,50 @@ fn avoidance(scenario: &Scenario, distances: impl Iterator<Item = f64>) -> f64 {
     let sum: f64 = distances.zip(&scenario.obstacles).map(share).sum();
     sum / scenario.obstacles.len() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Performance, Weights};
+
+    const WEIGHTS: Weights = Weights {
+        arrival_time: 0.5,
+        avoidance: 0.25,
+        energy_saving: 0.25,
+    };
+
+    fn scored(arrival_time: f64, energy_saving: f64, contact: bool) -> Performance {
+        let (avoidance, parts) = if contact {
+            (0.0, 0.0)
+        } else {
+            (0.4, 0.5 * arrival_time + 0.25 * 0.4 + 0.25 * energy_saving)
+        };
+        Performance {
+            total: parts,
+            arrival_time,
+            avoidance,
+            energy_saving,
+        }
+    }
+
+    #[test]
+    fn ratios_up_to_one_keep_their_bits() {
+        for ratios in [[0.3, 0.7], [1.0, 1.0], [0.0, 0.0]] {
+            let own = scored(ratios[0], ratios[1], false);
+            assert_eq!(own.with_capped_ratios(WEIGHTS), own);
+        }
+    }
+
+    #[test]
+    fn ratios_above_one_count_one() {
+        let capped = scored(3.0, 1.7, false).with_capped_ratios(WEIGHTS);
+        assert_eq!(capped, scored(1.0, 1.0, false));
+        let capped = scored(0.25, 8.0, false).with_capped_ratios(WEIGHTS);
+        assert_eq!(capped, scored(0.25, 1.0, false));
+    }
+
+    #[test]
+    fn a_contact_stays_at_zero() {
+        let capped = scored(2.0, 2.0, true).with_capped_ratios(WEIGHTS);
+        assert_eq!((capped.total, capped.arrival_time), (0.0, 1.0));
+    }
+}

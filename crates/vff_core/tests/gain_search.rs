@@ -12,7 +12,8 @@ use vff_core::measurement::{Distribution, Measurement, Noisy};
 use vff_core::metrics::Weights;
 use vff_core::optimize::{
     Bounds, FEASIBILITY, GainOptions, GainProblem, Limit, LocalOptions, Metric, MetricConstraint,
-    Objective, Over, Problem, Robustness, Search, SearchOptions, evaluate_all, search,
+    Objective, Over, Problem, Robustness, Search, SearchOptions, arrival_margin, evaluate_all,
+    search,
 };
 use vff_core::scenario::{Rules, Scenario};
 use vff_core::simulate::{BatchOptions, Instructions, Options, Outcome, Width, run_batch};
@@ -323,6 +324,29 @@ fn objectives_are_put_together_as_they_say() {
     );
     assert!(found.margins[1].is_nan());
     assert_eq!(found.failed, [false, true]);
+}
+
+#[test]
+fn arrival_is_one_more_constraint_that_counts_runs() {
+    let problem = gain_problem(
+        &[1, 2, 3],
+        GainOptions {
+            constraints: vec![MetricConstraint {
+                metric: Metric::ArrivalTime,
+                limit: Limit::AtMost(9.0),
+                scenario: Some(0),
+            }],
+            require_arrival: true,
+            ..mean_performance()
+        },
+    );
+    assert_eq!(problem.constraints(), 2);
+    let points = [PUBLISHED, [0.0, 20.0, 20.0, 0.5]].concat();
+    let found = evaluate_all(&problem, &points, None, &|| false).unwrap();
+    assert_eq!(found.failed, [false, true]);
+    // The last margin of each: all arrive, and none of three.
+    assert_eq!([found.margins[1], found.margins[3]], [1.0, -3.0]);
+    assert_eq!(arrival_margin(0), 1.0);
 }
 
 #[test]

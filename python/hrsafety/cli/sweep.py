@@ -119,6 +119,7 @@ def _words(options: argparse.Namespace, described: SweepFile, summary: Summary, 
         yield f"axis     {axis.label}: {sweep_page.axis_words(axis)}"
     chunks = "1 chunk" if result.chunk_count == 1 else f"{result.chunk_count:,} chunks"
     yield f"rows     {len(result):,} in {chunks}, {seconds:.1f} s"
+    yield from (str(warning) for warning in result.warnings)
     yield ""
     rows = [(each.label, *each.numbers()) for each in summary.numbers if each.column.name in described.show]
     yield output.aligned((("column", "least", "mean", "largest", "without value"),), rows, left=(0,))

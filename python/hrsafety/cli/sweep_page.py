@@ -80,6 +80,8 @@ def _design(result: SweepResult) -> Iterator[str]:
         f'<p class="banner"><strong>{len(result):,} rows.</strong> {escape(design_words(result)).capitalize()}'
         f"{escape(f' ({chr(44).join(result.cases)})'.replace(',', ', ')) if result.cases else ''}.</p>"
     )
+    for warning in result.warnings:
+        yield f'<p class="banner no"><strong>Warning.</strong> {escape(warning.message)}.</p>'
     lines = "".join(
         f'<tr><th scope="row">{escape(axis.label)}</th><td class="text">{escape(axis_words(axis))}</td></tr>'
         for axis in result.axes

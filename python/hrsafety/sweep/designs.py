@@ -12,6 +12,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, count, sequence
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis
 
 __all__ = ["Design", "Grid", "checked_design"]
@@ -58,6 +59,11 @@ class Design(ABC):
     def names(self) -> tuple[str, ...]:
         """Names of the axes."""
         return tuple(axis.name for axis in self.axes)
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """What a reader of the results should know of the design; empty when there is nothing."""
+        return ()
 
     def rows(self, start: int = 0, stop: int | None = None) -> Array:
         """Return a range of rows; nothing else is computed or kept.

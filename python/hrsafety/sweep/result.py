@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import sequence, word
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep import exports
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
@@ -74,6 +75,11 @@ class SweepResult:
         return self._design
 
     @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the result may not mean what it seems to; empty when there is no doubt."""
+        return self._design.warnings
+
+    @property
     def units(self) -> dict[str, str]:
         """Unit of each column by name; empty without one."""
         return {column.name: column.unit for column in self._columns}
@@ -126,9 +132,10 @@ class SweepResult:
 
     def __repr__(self) -> str:
         """Return design, size and names."""
+        doubts = "".join(f"; {warning}" for warning in self.warnings)
         state = "" if self.complete else f", {len(self.finished)} of {self.chunk_count} chunks"
         names = ", ".join(column.name for column in self._columns)
-        return f"SweepResult({self._design.kind}, {len(self)} rows{state}: {names})"
+        return f"SweepResult({self._design.kind}, {len(self)} rows{state}: {names}{doubts})"
 
     # ---- numbers ------------------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, count, flag
 from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.designs import MOST_ROWS, Design
 from hrsafety.sweep.strata import latin_shares
 
@@ -125,7 +126,8 @@ class LatinHypercube(_Sampled):
 class Sobol(_Sampled):
     """Rows of a scrambled Sobol sequence, those of ``scipy.stats.qmc.Sobol`` with the same seed.
 
-    The sequence is balanced when the number of rows is a power of two.
+    The sequence is balanced when the number of rows is a power of two; another number is accepted
+    with a warning in ``warnings`` of design and result.
 
     Parameters
     ----------
@@ -164,6 +166,19 @@ class Sobol(_Sampled):
             raise InvalidParameterError("size", "be at most 2**30 for a Sobol sequence", self.size)
         if len(self.axes) > MOST_SOBOL_AXES:
             raise InvalidParameterError("axes", f"be at most {MOST_SOBOL_AXES}", len(self.axes))
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """That the sequence is not balanced, if its length is not a power of two."""
+        below = 1 << (self.size.bit_length() - 1)
+        if below == self.size:
+            return ()
+        above = f" or {2 * below}" if 2 * below <= MOST_SOBOL_ROWS else ""
+        message = (
+            f"size of the Sobol design is {self.size}, not a power of two: the rows do not fill the space evenly, so "
+            f"means and shares over them are biased; take {below}{above} rows"
+        )
+        return (ResultWarning("unbalanced", "size", message),)
 
     def _shares(self, start: int, stop: int) -> Array:
         return _SEQUENCES.block((len(self.axes), self.seed, self.scramble), start, stop)

@@ -220,7 +220,10 @@ impl Problem for GainProblem {
 
     fn constraints(&self) -> usize {
         let own = self.native.as_ref().map_or(0, Problem::constraints);
-        let arrival = self.scorer.as_ref().is_some_and(|scorer| scorer.requires_arrival);
+        let arrival = self
+            .scorer
+            .as_ref()
+            .is_some_and(|scorer| scorer.requires_arrival);
         own + self.scorer_constraints + usize::from(arrival)
     }
 
