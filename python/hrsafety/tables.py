@@ -123,7 +123,7 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
 def _place(path: object) -> Path:
     if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str) or not os.fspath(path):
         raise InvalidParameterError("path", "be the path of a file", path)
-    place = Path(os.fspath(path))  # type: ignore[arg-type]  # bytes were refused above
+    place = Path(os.fspath(path))
     if not place.parent.is_dir():
         raise InvalidParameterError("path", "lie in a folder that exists", str(place), f"make {place.parent} first")
     return place

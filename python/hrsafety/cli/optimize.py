@@ -196,7 +196,16 @@ def _front(
 
 def _front_arguments(study: GainStudy) -> dict[str, Any]:
     """Return the arguments of the front: its own and those that it shares with the search."""
-    names = ("bounds", "weights", "constraints", "require_arrival", "cap_ratios", "seeds", "seed", "robustness")
+    names: tuple[str, ...] = (
+        "bounds",
+        "weights",
+        "constraints",
+        "require_arrival",
+        "cap_ratios",
+        "seeds",
+        "seed",
+        "robustness",
+    )
     names += (*_STEPPING, "time_limit")
     return {name: study.search[name] for name in names if name in study.search} | (study.front or {})
 
