@@ -34,7 +34,17 @@ Columns = dict[str, Column]
 
 
 class Table:
-    """Base of the results that are tables: `columns` is theirs, the formats are shared."""
+    """Base of the results that are tables: `columns` is theirs, the formats are shared.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
+    >>> run.to_polars().columns[:3]
+    ['t_s', 'x_m', 'y_m']
+    >>> run.to_csv("run.csv").read_text().split(",")[:3]
+    ['t_s', 'x_m', 'y_m']
+    """
 
     __slots__ = ()
 
@@ -107,7 +117,33 @@ class Table:
 
 
 def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
-    """Write columns as a CSV file, see `Table.to_csv`."""
+    """Write columns as a CSV file, whole or not at all, see `Table.to_csv`.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; its folder must exist.
+    columns : dict of str to ndarray
+        One-dimensional, all of one length.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the path is none, or its folder does not exist.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety.tables import write_csv
+    >>> path = write_csv("run.csv", {"t_s": np.array([0.0, 0.1]), "distance_m": np.array([np.nan, 0.3])})
+    >>> path.read_text().splitlines()
+    ['t_s,distance_m', '0.0,', '0.1,0.3']
+    """
     place = _place(path)
     cells = [_cells(values) for values in columns.values()]
     with replacing(place) as file:

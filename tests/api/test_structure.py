@@ -261,7 +261,18 @@ def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
 # ---- docstrings -----------------------------------------------------------------------------
 
 # Modules whose public names users call. Examples stand where a call makes sense on its own.
-DOCUMENTED = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "reproduce", "sweep", "errors")
+DOCUMENTED = (
+    "navigation",
+    "impact",
+    "reactive",
+    "scenarios",
+    "datasets",
+    "plotting",
+    "reproduce",
+    "sweep",
+    "tables",
+    "errors",
+)
 NEEDS_NO_EXAMPLE = {
     "reproduce",  # runs for minutes
 }

@@ -33,6 +33,8 @@ LEADER = reactive.SoundLeader(start=(1.2, 0.0), end=(3.0, 0.0))
 FOLLOWED = reactive.FollowerScene(
     leader=LEADER, obstacles=[reactive.Box(center=(1.5, 1.2), size=(0.5, 0.5))], duration=3.0
 )
+ROW = reactive.MicrophoneArray()
+DELAYS = dict(zip(("delay_12", "delay_13"), ROW.delays(range=[1.0, 2.0, 3.0], bearing=0.5), strict=True))
 DRIVE = impact.DirectDrive(proportional=448.7, derivative=5.579)
 PARTS = (impact.MANIPULATOR_1, impact.FOAM_1)
 
@@ -51,6 +53,8 @@ RESULTS: dict[str, Callable[[], Table]] = {
     "global GainSearch": lambda: nav.optimize_gains([CROSSING], method="cma_es", evaluations=200),
     "ParetoFront": lambda: nav.pareto_front([CROSSING], grid=(4, 4, 4, 4), refinements=0),
     "GainSensitivity": lambda: nav.gain_sensitivity([CROSSING], changes=(-50, 50)),
+    "FollowerExperiment": lambda: reactive.experiment("static", "active", layouts=2),
+    "Fixes": lambda: reactive.locate_batch(ROW, **DELAYS),
     "FollowerRun": lambda: reactive.follow(FOLLOWED),
     "SkirtRun": reactive.skirt_run,
     "SkirtTest": lambda: reactive.skirt_test(layouts=1),
@@ -65,6 +69,7 @@ RESULTS: dict[str, Callable[[], Table]] = {
 }
 # A number without a unit, a word, a flag or an index.
 PLAIN = {"seed", "outcome", "law", "scenario", "stage", "evaluations", "best_value", "value", "violation", "action"}
+PLAIN |= {"status", "collided", "follows", "contact_obstacle"}
 PLAIN |= {"goal_phase", "moving_contacts", "performance_total"}
 UNIT = re.compile(r"_(s|m|rad|N|A|V|J|N2|m_per_s|m_per_s2|rad_per_s|N_per_m|N_per_m2)$")
 # Their columns are those of a sweep, whose units stand beside the names.

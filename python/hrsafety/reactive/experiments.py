@@ -16,6 +16,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.follower import Follower
 from hrsafety.reactive.impedance import VirtualImpedance
 from hrsafety.reactive.layouts import FollowerLayouts, Kind
+from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["FollowerExperiment", "LawComparison", "compare_experiments", "experiment"]
 
@@ -31,7 +32,7 @@ Direction = Literal["front", "left", "right", "rear"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FollowerExperiment:
+class FollowerExperiment(Table):
     """Ends of many runs, one a layout.
 
     Attributes
@@ -64,6 +65,24 @@ class FollowerExperiment:
     min_clearance: Array = field(repr=False)
     path_length: Array = field(repr=False)
     turning: Array = field(repr=False)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each run.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import reactive
+        >>> list(reactive.experiment("static", "active", layouts=2).columns())[:3]
+        ['seed', 'collided', 'follows']
+        """
+        units = dict.fromkeys(("seed", "collided", "follows", "contact_obstacle"), "")
+        units |= {"contact_bearing": "rad", "end_time": "s", "source_distance": "m"}
+        return with_units(self, units | {"min_clearance": "m", "path_length": "m", "turning": "rad"})
 
     @property
     def collision_rate(self) -> Share:

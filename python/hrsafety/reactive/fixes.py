@@ -14,6 +14,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, callback, count, instance, not_negative, square
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.microphones import MicrophoneArray, same_shape
+from hrsafety.tables import Columns, Table, plane
 
 __all__ = ["Fix", "Fixes", "locate", "locate_batch"]
 
@@ -70,7 +71,7 @@ class Fix:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Fixes:
+class Fixes(Table):
     """Ranges and bearings of many sounds: the fields of `Fix` as arrays of the broadcast shape.
 
     Attributes
@@ -105,6 +106,28 @@ class Fixes:
     def position(self) -> Array:
         """Places (x ahead, y to the left) in m, from M2; the last axis has two values."""
         return np.stack([self.range * np.cos(self.bearing), self.range * np.sin(self.bearing)], axis=-1)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each sound.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import reactive
+        >>> row = reactive.MicrophoneArray()
+        >>> delay_12, delay_13 = row.delays(range=[1.0, 2.0, 3.0], bearing=0.5)
+        >>> list(reactive.locate_batch(row, delay_12=delay_12, delay_13=delay_13).columns())[:3]
+        ['status', 'range_m', 'bearing_rad']
+        """
+        found: Columns = {"status": self.status.ravel(), "range_m": self.range.ravel()}
+        found |= {"bearing_rad": self.bearing.ravel(), "curvature_m": self.curvature.ravel()}
+        found |= plane("{}", self.position.reshape(-1, 2), "m")
+        found |= {"range_deviation_m": self.range_deviation.ravel()}
+        return found | {"bearing_deviation_rad": self.bearing_deviation.ravel()}
 
     @property
     def range_deviation(self) -> Array:
