@@ -72,18 +72,21 @@ def draw_layout(kind, boxes, motion):
 def repulsion(law, readings, px, py, heading, memory, weight, limit, force):
     """Add the repulsive force of all collision vectors to ``force``."""
     vx, vy, case = np.zeros(3), np.zeros(3), np.zeros(3, np.int64)
-    used, found = np.zeros(3, np.bool_), 0
+    used = np.zeros(3, np.bool_)
     for i in range(2):
         if readings[i] < 9.0 and readings[i + 1] < 9.0 and not used[i]:
             ux, uy = px[i + 1] - px[i], py[i + 1] - py[i]
             if math.hypot(ux, uy) < 0.5 + 0.6 * min(readings[i], readings[i + 1]):
                 share = min(max(-(px[i] * ux + py[i] * uy) / (ux * ux + uy * uy), 0.0), 1.0)
-                vx[found], vy[found], case[found] = px[i] + share * ux, py[i] + share * uy, 4 + i
-                used[i], used[i + 1], found = True, True, found + 1
+                vx[i], vy[i], case[i] = px[i] + share * ux, py[i] + share * uy, 4 + i
+                used[i], used[i + 1] = True, True
     for i in range(3):
         if readings[i] < 9.0 and not used[i]:
-            vx[found], vy[found], case[found], found = px[i], py[i], 1 + i, found + 1
-    for j in range(found):
+            vx[i], vy[i], case[i] = px[i], py[i], 1 + i
+    for j in range(3):
+        if case[j] == 0:
+            memory[j, 0] = 0.0
+            continue
         distance = math.hypot(vx[j], vy[j])
         if memory[j, 0] != case[j]:
             memory[j, 0], memory[j, 1], memory[j, 2] = case[j], distance, 0.0

@@ -9,19 +9,21 @@ pytest.importorskip("matplotlib")
 from hrsafety.reproduce import reactive_follower_figures, reactive_follower_study, reactive_follower_tables
 from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, FollowerStudy
 
-LAYOUTS = 25
+LAYOUTS, BASE_LAYOUTS = 25, 60
 
 
 @pytest.fixture(scope="module")
 def study() -> FollowerStudy:
-    return reactive_follower_study.run_study(layouts=LAYOUTS)
+    return reactive_follower_study.run_study(layouts=LAYOUTS, base_layouts=BASE_LAYOUTS)
 
 
 def test_every_variant_is_run_where_it_is_to_be(study: FollowerStudy) -> None:
     for name, variant in reactive_follower_study.variants().items():
         assert set(study.found[name]) == {(kind, law) for kind in variant.kinds for law in variant.laws}
     assert set(study.base) == {(kind, law) for kind in KINDS for law in LAWS}
-    assert all(len(found) == LAYOUTS for runs in study.found.values() for found in runs.values())
+    for name, runs in study.found.items():
+        number = BASE_LAYOUTS if name == "as specified" else LAYOUTS
+        assert all(len(found) == number for found in runs.values())
 
 
 def test_variants_differ_from_each_other() -> None:
@@ -31,14 +33,12 @@ def test_variants_differ_from_each_other() -> None:
 
 def test_every_known_rate_has_a_cell(study: FollowerStudy) -> None:
     cells = reactive_follower_tables.cells(study)
-    for (name, kind, law), value in reactive_follower_tables.SECOND.items():
+    for value, runs in reactive_follower_tables.SECOND.values():
+        assert [cell for cell in cells if f"has {value:.3f} (" in cell.reason and f"{runs:,} layouts" in cell.reason]
+    for (name, kind, law), value in reactive_follower_tables.SECOND_CHANGED.items():
         place = (name, f"{reactive_follower_study.SETTINGS[kind]}, {law}")
-        if name == "as specified":
-            found = [cell for cell in cells if f"{value:.3f}" in cell.reason]
-        else:
-            found = [cell for cell in cells if (cell.row, cell.column) == place]
-            assert f"{value:.3f}" in str(found[0].printed)
-        assert found
+        found = [cell for cell in cells if (cell.row, cell.column) == place]
+        assert f"{value:.2f}" in str(found[0].printed)
     assert all(cell.reason for cell in cells if cell.within is False)
 
 

@@ -189,6 +189,34 @@ fn force(options: &BankOptions, heading: f64, place: [f64; 2]) -> [f64; 2] {
 }
 
 #[test]
+fn speed_is_forgotten_when_the_vector_is_lost_for_a_sample() {
+    let mount = |side: f64| Pose::at([0.0, 0.15 * side], 0.5 * side);
+    let layout = BankLayout {
+        mounts: [-1.0, 0.0, 1.0].map(mount),
+    };
+    let prepared = law(Form::Conventional).prepared();
+    let pose = Pose::at([0.0, 0.0], 0.0);
+    let none = f64::INFINITY;
+    let last = |outlives_gaps: bool| {
+        let mut options = BankOptions::default();
+        options.rate.outlives_gaps = outlives_gaps;
+        let timing = (0.025, options.rate.weight(0.025));
+        let mut bank = Bank::default();
+        let mut force = [0.0; 2];
+        for reading in [0.6, 0.55, 0.5, none, 0.5] {
+            let readings = [none, reading, none];
+            force = bank.force(&layout, &readings, &pose, &prepared, &options, timing);
+        }
+        force[0]
+    };
+    // K_0 (rho_0 - C) alone after the gap; with a stale speed the damper adds.
+    let spring = -prepared.spring(0.5);
+    assert!((last(false) - spring).abs() < EXACT);
+    assert!(last(true) < spring - 0.1);
+    assert!(!BankOptions::default().rate.outlives_gaps);
+}
+
+#[test]
 fn force_does_not_depend_on_the_origin_and_turns_with_the_heading() {
     let options = BankOptions::default();
     let here = force(&options, 0.3, [0.0, 0.0]);

@@ -51,8 +51,9 @@ class VirtualImpedance(Parameters):
     largest_rate : float
         Faster changes between two samples are left out, in m/s.
     outlives_gaps : bool
-        The estimate of the speed starts anew when the case of a collision vector changes;
-        ``False``: also when there was no echo for a sample.
+        The estimate of the speed starts anew when the case of a collision vector changes or
+        there was no echo for a sample; ``True``: only when the case changes. A speed from before
+        a gap has no physical ground, and with it the conventional law touches more standing boxes.
     pairing_gap, pairing_share : float
         Echoes of neighboring sensors make one vector if their points are less than
         gap (m) + share * (smaller reading) apart.
@@ -86,7 +87,7 @@ class VirtualImpedance(Parameters):
     speed: Literal["closing", "norm"] = "closing"
     filter_time: float = 0.15
     largest_rate: float = 4.0
-    outlives_gaps: bool = True
+    outlives_gaps: bool = False
     pairing_gap: float = 0.5
     pairing_share: float = 0.6
     rotation: Literal["heading", "printed"] = "heading"

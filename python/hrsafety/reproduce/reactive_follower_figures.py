@@ -53,27 +53,28 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
         seed = _telling(study, kind)
         scene = reactive.FollowerLayouts(kind=kind).scene(seed)
         laws = {law: study.base[kind, law].law for law in LAWS}
+        layouts = len(study.base[kind, "active"])
         runs = {f"{law} law": reactive.follow(scene, law=laws[law], seed=seed) for law in LAWS}
         yield (
             f"follower_{kind}",
             f"{SETTINGS[kind].capitalize()} (figure {PUBLISHED[kind]}): layout {seed}, the first one in which the "
-            "conventional law touches and the active law follows, as in the source. It is one of 1,000.",
+            f"conventional law touches and the active law follows, as in the source. It is one of {layouts:,}.",
             plotting.follower_runs(runs),
         )
     yield (
         "follower_rates",
-        "Share of 1,000 layouts with a contact, with 95 % intervals; diamonds: a second implementation of the same "
-        "description in other layouts.",
+        f"Share of {len(study.base['static', 'active']):,} layouts with a contact, with 95 % intervals; diamonds: a second "
+        "implementation of the same description in other layouts.",
         plotting.follower_rates(
             {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
-            marks={SETTINGS[kind]: {law: SECOND["as specified", kind, law] for law in LAWS} for kind in KINDS},
+            marks={SETTINGS[kind]: {law: SECOND[kind, law][0] for law in LAWS} for kind in KINDS},
             marks_label="second implementation",
         ),
     )
     names = {"as specified": "front", "mirrored rear sensors": "front and rear"}
     yield (
         "follower_rear",
-        "Three more sensors, turned by half a turn: share of 1,000 layouts with a contact, active law.",
+        "Three more sensors, turned by half a turn: share of layouts with a contact, active law.",
         plotting.follower_rates(
             {
                 SETTINGS[kind]: {

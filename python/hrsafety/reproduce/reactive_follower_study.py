@@ -15,6 +15,7 @@ KINDS: tuple[Kind, ...] = ("static", "one_dynamic", "two_dynamic")
 SETTINGS = {"static": "two standing boxes", "one_dynamic": "one moving box", "two_dynamic": "two moving boxes"}
 LAWS = ("conventional", "active")
 LAYOUTS = 1000
+BASE_LAYOUTS = 6000  # without any change: the rates that are compared with other evaluations
 STATIC_LIMIT = 0.6  # mu_0 of experiment 2, in m/s
 
 Found = Mapping[tuple[str, str], FollowerExperiment]
@@ -78,7 +79,7 @@ def variants() -> dict[str, Variant]:
         "crossing at 0.25 to 0.35 m/s": _variant(layouts={"obstacle_speed": (0.25, 0.35)}, kinds=dynamic),
         "crossing at 0.35 to 0.5 m/s": _variant(layouts={"obstacle_speed": (0.35, 0.5)}, kinds=dynamic),
         "crossing at 0.5 to 0.8 m/s": _variant(layouts={"obstacle_speed": (0.5, 0.8)}, kinds=dynamic),
-        "speed forgotten without echo": _variant(law={"outlives_gaps": False}),
+        "speed kept without echo": _variant(law={"outlives_gaps": True}),
         "norm of the rate instead of closing speed": _variant(law={"speed": "norm"}),
         "sources behind taken for ones in front": _variant(robot={"mirrored_fixes": True}),
         "sensors fired in turn": _variant(sonar={"firing": "in_turn"}),
@@ -113,7 +114,9 @@ class FollowerStudy:
         return self.found["as specified"]
 
 
-def run_study(say: Callable[[str], object] | None = None, *, layouts: int = LAYOUTS) -> FollowerStudy:
+def run_study(
+    say: Callable[[str], object] | None = None, *, layouts: int = LAYOUTS, base_layouts: int = BASE_LAYOUTS
+) -> FollowerStudy:
     """Run every variant.
 
     Parameters
@@ -121,7 +124,9 @@ def run_study(say: Callable[[str], object] | None = None, *, layouts: int = LAYO
     say : callable or None
         Called with a line of text before each variant.
     layouts : int
-        Number of layouts of each.
+        Number of layouts of each change.
+    base_layouts : int
+        Number of layouts without any change.
 
     Returns
     -------
@@ -132,7 +137,8 @@ def run_study(say: Callable[[str], object] | None = None, *, layouts: int = LAYO
     for name, variant in variants().items():
         if say is not None:
             say(f"follower: {name}")
-        found[name] = {(kind, law): _run(variant, kind, law, layouts) for kind in variant.kinds for law in variant.laws}
+        number = layouts if found else base_layouts
+        found[name] = {(kind, law): _run(variant, kind, law, number) for kind in variant.kinds for law in variant.laws}
     return FollowerStudy(found=found)
 
 

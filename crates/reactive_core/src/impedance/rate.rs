@@ -21,8 +21,9 @@ pub struct RateFilter {
     pub time_constant: f64,
     /// Faster changes between two samples are left out, in m/s.
     pub largest: f64,
-    /// Whether the estimate outlives samples without an echo; it starts anew only when the case of
-    /// the collision vector changes then.
+    /// Whether the estimate outlives samples without an echo. It starts anew when the case of the
+    /// collision vector changes and, by default, when the vector is lost for a sample: what was
+    /// measured before the gap may be the speed of another part of the scene.
     pub outlives_gaps: bool,
 }
 
@@ -32,7 +33,7 @@ impl Default for RateFilter {
             speed: Speed::default(),
             time_constant: 0.15,
             largest: 4.0,
-            outlives_gaps: true,
+            outlives_gaps: false,
         }
     }
 }
