@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import hrsafety
+
+sys.path.insert(0, str(Path(__file__).parent))  # for mathml_equations
 
 project = "hrsafety"
 author = copyright = "hrsafety developers"
 version = release = hrsafety.__version__
 
 extensions = [
+    "mathml_equations",
     "myst_parser",
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
 ]
 
@@ -34,6 +39,9 @@ autodoc_typehints = "none"  # the docstrings say it, with units
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
 
+html_math_renderer = "mathml"  # drawn by the browser, without a network
+html_static_path = ["_static"]
+html_css_files = ["equations.css"]
 html_theme = "furo"
 html_title = "hrsafety"
 html_show_sphinx = False

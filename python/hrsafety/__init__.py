@@ -2,7 +2,8 @@
 
 `navigation` simulates mobile robots under virtual force fields among people and things and
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
-manipulator that hits a head, and designs the foam. Sub-modules load on first use, so importing
+manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
+ultrasonic sensors see. Sub-modules load on first use, so importing
 the package costs little more than importing numpy.
 """
 
@@ -21,7 +22,18 @@ from hrsafety.errors import (
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from hrsafety import datasets, impact, navigation, plotting, reproduce, scenarios, sweep
+    from hrsafety import (
+        cli,
+        datasets,
+        impact,
+        navigation,
+        plausibility,
+        plotting,
+        reactive,
+        reproduce,
+        scenarios,
+        sweep,
+    )
 
 __all__ = [
     "HrsafetyError",
@@ -29,10 +41,13 @@ __all__ = [
     "ShapeError",
     "SimulationError",
     "__version__",
+    "cli",
     "datasets",
     "impact",
     "navigation",
+    "plausibility",
     "plotting",
+    "reactive",
     "reproduce",
     "scenarios",
     "sweep",
@@ -40,7 +55,20 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_LAZY = frozenset({"datasets", "impact", "navigation", "plotting", "reproduce", "scenarios", "sweep"})
+_LAZY = frozenset(
+    {
+        "cli",
+        "datasets",
+        "impact",
+        "navigation",
+        "plausibility",
+        "plotting",
+        "reactive",
+        "reproduce",
+        "scenarios",
+        "sweep",
+    }
+)
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -53,13 +53,16 @@ __all__ = [
     "VirtualTorque",
     "Vision",
     "WheelDrive",
+    "attraction_forces",
     "built_evaluate",
     "built_repeat",
     "built_simulate",
     "burst_trial_delays",
     "cast_rays",
     "collision_feet",
+    "collision_points",
     "contiguous_level",
+    "dashpots_in_series",
     "differential_wheels",
     "doppler_frequency",
     "drop_trajectory",
@@ -102,6 +105,7 @@ __all__ = [
     "locate_sounds",
     "lyapunov",
     "microphone_delays",
+    "microphone_elevations",
     "moving_average",
     "parallel_ray_bearings",
     "pd_gains",
@@ -115,6 +119,7 @@ __all__ = [
     "simulate_batch",
     "simulate_direct_drive",
     "skirt_closing_gap",
+    "skirt_closing_radius",
     "skirt_directions",
     "skirt_least_sensors",
     "skirt_printed_gaps",
@@ -132,6 +137,7 @@ __all__ = [
     "track_batch",
     "tube_inertia",
     "uniform_links",
+    "vectors_to_world",
     "wheel_reference",
     "wheel_response",
 ]
@@ -854,6 +860,9 @@ def effective_two_joints(
 def impact_point_speed(rates: _Pair, *, second_link: float, lever_arm: float, elbow: float) -> float:
     """Return the speed of the impact point of two joints."""
 
+def dashpots_in_series(damping: _Pair, *, second_link: float, lever_arm: float, elbow: float) -> float:
+    """Return the damping of two joints with their dashpots in series."""
+
 def uniform_links(*, mass: _Pair, length: _Pair, elbow: float) -> list[list[float]]:
     """Return the mass matrix of two uniform links."""
 
@@ -1085,6 +1094,9 @@ class UltrasonicSkirt:
     def gaps(self) -> list[float]:
         """Return the gaps between sensors counterclockwise, in rad."""
 
+    def normal_distances(self, readings: _Array, safe_distance: float, triggering: str) -> _Array:
+        """Return normal distances d1 to d8 and their limits, in m."""
+
     def trigger_distances(self) -> list[float]:
         """Return the triggering distances, in m."""
 
@@ -1148,6 +1160,18 @@ def skirt_states() -> list[tuple[list[int], str]]:
 
 def skirt_closing_gap(*, sensors: int, wheel_gap: float) -> float:
     """Return the gap between sensors of a ring that closes, in rad."""
+
+def skirt_closing_radius(
+    *,
+    sensors: int,
+    wheel_gap: float,
+    gap: float,
+    sensor_radius: float,
+    wheel_sensor_radius: float,
+    sensor_length: float,
+    correction: float,
+) -> float:
+    """Return the radius of the chassis that the printed (1) closes, in m."""
 
 def skirt_printed_gaps(
     *,
@@ -1257,6 +1281,9 @@ def microphone_delays(array: MicrophoneArray, range: _Array, bearing: _Array) ->
 
 def parallel_ray_bearings(array: MicrophoneArray, pair: str, delay_12: _Array, delay_13: _Array) -> _SoundBearingFields:
     """Return bearings by parallel rays from the delays of one pair."""
+
+def microphone_elevations(array: MicrophoneArray, range: _Array, bearing: _Array) -> dict[str, _Array]:
+    """Return the angles at the three microphones between the row and sources."""
 
 def printed_ranges(array: MicrophoneArray, delay_12: _Array, delay_13: _Array) -> _SoundRangeFields:
     """Return ranges by the printed formula."""
@@ -1421,8 +1448,17 @@ def speed_of_sound(temperature: float) -> float:
 def impedance_forces(law: VirtualImpedance, distance: _Array, speed: _Array) -> dict[str, Any]:
     """Return spring and damper parts (N) at distances (m) and speeds (m/s), and the two scales."""
 
-def collision_feet(one: _Array, other: _Array, *, clamp: bool) -> dict[str, _Array]:
+def attraction_forces(offset: _Array, velocity: _Array, *, stiffness: float, damping: float) -> dict[str, _Array]:
+    """Return the attraction in N towards offsets in m, for velocities in m/s."""
+
+def collision_feet(one: _Array, other: _Array, *, form: str) -> dict[str, _Array]:
     """Return feet of perpendiculars from the origin on the lines, or segments, between points."""
+
+def collision_points(sensor: _Array, angle: _Array, reading: _Array) -> dict[str, _Array]:
+    """Return points of echoes: sensors (m), angles of their axes (rad) and readings (m)."""
+
+def vectors_to_world(vector: _Array, heading: _Array, rotation: str) -> dict[str, _Array]:
+    """Return vectors of the robot in the directions of the world, by headings in rad."""
 
 def fix_deviations(range: _Array, bearing: _Array) -> dict[str, _Array]:
     """Return standard deviations of range (m) and bearing (rad) of a fix, by Table 2."""

@@ -61,7 +61,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::impact::joints::{
-        Joint, effective_one_joint, effective_two_joints, impact_point_speed, uniform_links,
+        Joint, dashpots_in_series, effective_one_joint, effective_two_joints, impact_point_speed,
+        uniform_links,
     };
     #[pymodule_export]
     use crate::impact::many::{impact_metrics_batch, impact_status_words};
@@ -90,7 +91,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::reactive::follower::{
-        Follower, Mover, VirtualImpedance, collision_feet, fix_deviations, impedance_forces,
+        Follower, Mover, VirtualImpedance, attraction_forces, collision_feet, collision_points,
+        fix_deviations, impedance_forces, vectors_to_world,
     };
     #[pymodule_export]
     use crate::reactive::localization::bursts::{
@@ -99,14 +101,14 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::reactive::localization::{
-        MicrophoneArray, fix_status_words, locate_sounds, microphone_delays, parallel_ray_bearings,
-        printed_ranges,
+        MicrophoneArray, fix_status_words, locate_sounds, microphone_delays, microphone_elevations,
+        parallel_ray_bearings, printed_ranges,
     };
     #[pymodule_export]
     use crate::reactive::skirt::{
         SkirtMotion, SkirtScene, TriOmniKinematics, UltrasonicSkirt, skirt_closing_gap,
-        skirt_directions, skirt_least_sensors, skirt_printed_gaps, skirt_run, skirt_safe_distance,
-        skirt_states, skirt_test,
+        skirt_closing_radius, skirt_directions, skirt_least_sensors, skirt_printed_gaps, skirt_run,
+        skirt_safe_distance, skirt_states, skirt_test,
     };
     #[pymodule_export]
     use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, simulate};

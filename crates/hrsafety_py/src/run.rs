@@ -202,7 +202,8 @@ pub fn force_terms<'py>(
     velocity: [f64; 2],
     time: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let terms = terms(scenario, law, position, velocity, time)?;
+    let terms = terms_at(&scenario.0, &law.any, position, velocity, time);
+    let terms = terms.map_err(CoreError::from)?;
     let fields = Fields::new(py);
     let count = terms.obstacles.len();
     let repulsive = terms

@@ -108,6 +108,30 @@ impl Reach {
         ]
     }
 
+    /// Springs or dashpots of the two joints in series at the impact point, (3.4.28) and (3.4.29):
+    /// `1 / sum(J_i^2 / c_i)`.
+    #[must_use]
+    pub fn in_series(&self, coefficients: [f64; 2]) -> f64 {
+        let [j1, j2] = self.jacobian();
+        1.0 / (j1 * (j1 / coefficients[0]) + j2 * (j2 / coefficients[1]))
+    }
+
+    /// Damping of the impact point with the dashpots alone in series, the printed (3.4.29), in
+    /// N s/m. [`TwoJoints::manipulator`] has the one that is consistent with the springs; both agree
+    /// for equal ratios of damping and stiffness.
+    ///
+    /// # Errors
+    /// Names the number that is out of range.
+    pub fn dashpots_in_series(&self, damping: [f64; 2]) -> Result<f64> {
+        not_negative("second_link", self.second_link)?;
+        positive("lever_arm", self.lever_arm)?;
+        finite("elbow", self.elbow)?;
+        for each in damping {
+            positive("damping", each)?;
+        }
+        Ok(self.in_series(damping))
+    }
+
     /// Speed `v_r = J theta'` of the impact point for rates of the joints, in rad/s.
     ///
     /// # Errors
@@ -122,15 +146,20 @@ impl Reach {
 }
 
 impl TwoJoints {
-    /// Lever arms of the joints, in m.
+    /// Where the joints hit.
     #[must_use]
-    pub fn jacobian(&self) -> [f64; 2] {
-        let reach = Reach {
+    pub fn reach(&self) -> Reach {
+        Reach {
             second_link: self.second_link,
             lever_arm: self.lever_arm,
             elbow: self.elbow,
-        };
-        reach.jacobian()
+        }
+    }
+
+    /// Lever arms of the joints, in m.
+    #[must_use]
+    pub fn jacobian(&self) -> [f64; 2] {
+        self.reach().jacobian()
     }
 
     /// `M_r = 1 / (J M^-1 J^T)`, `K_r = 1 / (J K^-1 J^T)` and
@@ -159,7 +188,7 @@ impl TwoJoints {
         let [j1, j2] = self.jacobian();
         let mobility = (m22 * j1 * j1 - 2.0 * m12 * j1 * j2 + m11 * j2 * j2) / determinant;
         let [c1, c2] = [j1 / self.stiffness[0], j2 / self.stiffness[1]];
-        let stiffness = 1.0 / (j1 * c1 + j2 * c2);
+        let stiffness = self.reach().in_series(self.stiffness);
         let damping = c1 * c1 * self.damping[0] + c2 * c2 * self.damping[1];
         Manipulator {
             mass: 1.0 / mobility,

@@ -30,7 +30,7 @@ from hrsafety.impact.joint_tests import (
     pd_gains,
     tube_inertia,
 )
-from hrsafety.impact.joints import Joint, impact_point_speed, uniform_links
+from hrsafety.impact.joints import Joint, dashpots_in_series, impact_point_speed, uniform_links
 from hrsafety.impact.limits import FoamFeasibility, FoamLimits, FoamMargin
 from hrsafety.impact.parameters import (
     FOAM_1,

@@ -12,7 +12,7 @@ from hrsafety._arguments import Array, Parameters, number, numbers, pair
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.parameters import Manipulator
 
-__all__ = ["Joint", "impact_point_speed", "uniform_links"]
+__all__ = ["Joint", "dashpots_in_series", "impact_point_speed", "uniform_links"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -168,6 +168,50 @@ def uniform_links(*, mass: npt.ArrayLike, length: npt.ArrayLike, elbow: float = 
     """
     masses, lengths = pair("mass", mass), pair("length", length)
     return np.array(_hrsafety.uniform_links(mass=masses, length=lengths, elbow=number("elbow", elbow)))
+
+
+def dashpots_in_series(damping: npt.ArrayLike, *, second_link: float, lever_arm: float, elbow: float = 0.0) -> float:
+    """Return the effective damping of two joints with their dashpots alone in series, (3.4.29).
+
+    C_r = 1/(J_2^2/C_2 + J_3^2/C_3) with the lever arms J = [a_2 cos(theta_3) + l_3, l_3]. It is the
+    printed form; `Manipulator.from_two_joints` has the damping that is consistent with the springs,
+    C_r = K_r^2 J K^-1 C K^-1 J^T, and both agree only for equal ratios C/K.
+
+    Parameters
+    ----------
+    damping : array_like, shape (2,)
+        Damping C_J2, C_J3 of the joints, in N m s/rad, above zero.
+    second_link : float
+        Length a_2 of link 2, in m.
+    lever_arm : float
+        Distance l_3 from joint 3 to the impact point, in m.
+    elbow : float
+        theta_3 in rad; 0 is stretched.
+
+    Returns
+    -------
+    float
+        In N s/m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of range.
+    ShapeError
+        If there are not two dampings.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.dashpots_in_series((40.0, 10.0), second_link=0.432, lever_arm=0.4), 3)
+    30.066
+    """
+    return _hrsafety.dashpots_in_series(
+        pair("damping", damping),
+        second_link=number("second_link", second_link),
+        lever_arm=number("lever_arm", lever_arm),
+        elbow=number("elbow", elbow),
+    )
 
 
 def impact_point_speed(rates: npt.ArrayLike, *, second_link: float, lever_arm: float, elbow: float = 0.0) -> float:

@@ -32,11 +32,12 @@ class ForceTerms(NamedTuple):
         Commanded force in N: the sum, or the braking force inside a critical region, where
         every term is zero.
     region : ndarray of str, shape (n,)
-        ``"free"``, ``"active"``, ``"critical"`` or ``"absent"`` for each obstacle.
+        ``"free"``, ``"active"``, ``"critical"`` or ``"absent"`` for each obstacle; the laws of other
+        authors know no critical region.
     side : ndarray of int, shape (n,)
         Side of the detour: +1 counter-clockwise, -1 clockwise, 0 when not active.
     omega : float
-        Omega of (5.5.8), corrected, in N^2/s.
+        Omega of (5.5.8), corrected, in N^2/s; NaN for the laws of other authors.
     """
 
     attractive: Array
@@ -141,7 +142,7 @@ def command(
 
 
 def force_terms(
-    law: VirtualForceField,
+    law: Law,
     scenario: Scenario,
     *,
     position: Sequence[float] | Array,
@@ -150,10 +151,14 @@ def force_terms(
 ) -> ForceTerms:
     """Return every virtual force at one state.
 
+    The components of Masoud's force are (2.2.8) to (2.2.10), those of Ge and Cui's (2.2.11) to
+    (2.2.15).
+
     Parameters
     ----------
-    law : VirtualForceField
-        The law.
+    law : Law
+        A law that is a sum of attraction and repulsion: `VirtualForceField`, `Masoud`, `GeCui`,
+        `Khatib` or `BorensteinKoren`.
     scenario : Scenario
         Goal and obstacles.
     position, velocity : array_like, shape (2,)
@@ -169,7 +174,7 @@ def force_terms(
     Raises
     ------
     InvalidParameterError
-        If a value is not finite or the time is negative.
+        If a value is not finite, the time is negative, or the law is a planner.
 
     Examples
     --------
@@ -180,8 +185,16 @@ def force_terms(
     ... )
     >>> terms.repulsive.round(3).tolist()
     [[28.788, 6.621]]
+
+    Masoud's law pushes away and, always counterclockwise, around:
+
+    >>> terms = nav.force_terms(
+    ...     nav.Masoud(), scenarios.configuration("c1"), position=(2.95, 0.6), velocity=(0.0, 0.0)
+    ... )
+    >>> terms.repulsive.round(3).tolist(), terms.detour.round(3).tolist()
+    ([[12.0, 0.12]], [[-0.18, 18.0]])
     """
-    check_law(scenario, law)
+    check_law(scenario, law, Law)
     fields = _hrsafety.force_terms(
         law._native, scenario._native, pair("position", position), pair("velocity", velocity), number("time", time)
     )

@@ -2,6 +2,13 @@
 
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError, SimulationError
 from hrsafety.reactive.bursts import Burst, Converter, doppler_frequency, record_burst
+from hrsafety.reactive.collisions import (
+    attraction_force,
+    collision_point,
+    collision_vector,
+    printed_foot,
+    rotate_to_world,
+)
 from hrsafety.reactive.delays import Delays, Likeness, estimate_delays, likeness
 from hrsafety.reactive.experiments import FollowerExperiment, LawComparison, compare_experiments, experiment
 from hrsafety.reactive.fixes import Fix, Fixes, locate, locate_batch
@@ -12,9 +19,15 @@ from hrsafety.reactive.follower import (
     fix_deviations,
     follow,
 )
-from hrsafety.reactive.impedance import VirtualImpedance, collision_vector
+from hrsafety.reactive.impedance import VirtualImpedance
 from hrsafety.reactive.layouts import FollowerLayouts
-from hrsafety.reactive.microphones import MicrophoneArray, parallel_ray_bearing, parallel_ray_bias, printed_range
+from hrsafety.reactive.microphones import (
+    MicrophoneArray,
+    microphone_elevations,
+    parallel_ray_bearing,
+    parallel_ray_bias,
+    printed_range,
+)
 from hrsafety.reactive.recording import SoundRecording, read_recording
 from hrsafety.reactive.scenes import FollowerScene, MovingObstacle, SoundLeader
 from hrsafety.reactive.skirt import MOTION_DIRECTIONS, SkirtState, UltrasonicSkirt, skirt_states
@@ -22,6 +35,7 @@ from hrsafety.reactive.skirt_geometry import (
     SensorCount,
     SkirtSpacing,
     least_skirt_sensors,
+    skirt_closing_radius,
     skirt_safe_distance,
     skirt_spacing,
 )
@@ -79,7 +93,9 @@ __all__ = [
     "UltrasonicSkirt",
     "VirtualImpedance",
     "Wall",
+    "attraction_force",
     "cast_rays",
+    "collision_point",
     "collision_vector",
     "compare_experiments",
     "doppler_frequency",
@@ -93,11 +109,15 @@ __all__ = [
     "localize_bursts",
     "locate",
     "locate_batch",
+    "microphone_elevations",
     "parallel_ray_bearing",
     "parallel_ray_bias",
+    "printed_foot",
     "printed_range",
     "read_recording",
     "record_burst",
+    "rotate_to_world",
+    "skirt_closing_radius",
     "skirt_run",
     "skirt_safe_distance",
     "skirt_spacing",

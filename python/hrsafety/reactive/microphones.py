@@ -12,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, instance, numbers, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 
-__all__ = ["MicrophoneArray", "parallel_ray_bearing", "parallel_ray_bias", "printed_range"]
+__all__ = ["MicrophoneArray", "microphone_elevations", "parallel_ray_bearing", "parallel_ray_bias", "printed_range"]
 
 MicrophonePair = Literal["12", "23", "13"]
 
@@ -179,6 +179,54 @@ def parallel_ray_bias(
     delay_12, delay_13 = own.delays(range=range, bearing=bearing)
     seen = parallel_ray_bearing(own, delay_12=delay_12, delay_13=delay_13, pair=pair)
     return np.asarray(seen - numbers("bearing", bearing))
+
+
+def microphone_elevations(array: MicrophoneArray, *, range: npt.ArrayLike, bearing: npt.ArrayLike) -> Array:
+    """Return the angles between the row and a source, seen from each microphone.
+
+    Corrected (9) to (11) of Kim and Lee (2017): th_i = asin(h/R_i), or pi - asin(h/R_i) for a
+    microphone that lies farther to the left than the source, with the normal distance h of the source from the
+    row and the range R_i = D + c t_i of the microphone. The printed asin(D/(D + c t_i)) takes the
+    common offset D of all ranges for h, and its third line the wrong delay.
+
+    Parameters
+    ----------
+    array : MicrophoneArray
+        The microphones.
+    range, bearing : array_like
+        Where the source is, in m from M2 and rad from straight ahead, in front of the row.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Angles at M1, M2, M3 from the row's direction towards M3, in rad, from 0 to pi.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a range is not positive, or a bearing not below a quarter turn.
+    ShapeError
+        If the arrays do not broadcast.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import reactive
+    >>> angles = reactive.microphone_elevations(reactive.MicrophoneArray(), range=0.4, bearing=0.0)
+    >>> np.degrees(angles).round(6).tolist()
+    [45.0, 90.0, 135.0]
+    """
+    own = instance("array", array, MicrophoneArray)
+    distance, angle = same_shape(range=range, bearing=bearing)
+    check_finite("range", distance)
+    check_finite("bearing", angle)
+    if (distance <= 0.0).any():
+        raise InvalidParameterError("range", "be finite and positive", float(distance[distance <= 0.0][0]))
+    behind = np.abs(angle) >= np.pi / 2.0
+    if behind.any():
+        raise InvalidParameterError("bearing", "be below a quarter turn: in front of the row", float(angle[behind][0]))
+    found = _hrsafety.microphone_elevations(own._native, distance.ravel(), angle.ravel())
+    return found["elevation"].reshape((*distance.shape, 3))
 
 
 def printed_range(array: MicrophoneArray, *, delay_12: npt.ArrayLike, delay_13: npt.ArrayLike) -> Array:

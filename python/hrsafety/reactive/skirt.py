@@ -88,7 +88,8 @@ class UltrasonicSkirt(Parameters):
     chassis_radius : float
         Radius R of the chassis, in m.
     sensor_inset : float
-        Distance w of the sensor faces inside the edge of the chassis, in m.
+        Distance w of the sensor faces inside the edge of the chassis, in m; negative for sensors
+        that stand outside it, by up to a radius. A contact is that of the chassis.
     sensors : int
         Number N of sensors, up to 64; with the layout ``"wheels"`` a multiple of three from 6 on.
     layout : str
@@ -205,6 +206,47 @@ class UltrasonicSkirt(Parameters):
     def scan_time(self) -> float:
         """Time in which every sensor fires once, in s."""
         return self.sensors * self.firing_period
+
+    def normal_distances(self, readings: npt.ArrayLike) -> tuple[Array, Array]:
+        """Return d1 to d8 and their limits d1' to d8', (7) to (9) of Gussu and Lin (2017).
+
+        A motion is triggered where d <= d'. With ``triggering="printed"`` they are those of the
+        source: R_S is subtracted in d1 to d4 only, d8 has the reading of sensor 8, and d5 another
+        sine than d5'. With ``"consistent"`` d = (R - w + cm) sin and d' = R_S sin for every sensor,
+        which is what `trigger_distances` says.
+
+        Parameters
+        ----------
+        readings : array_like, shape (9,)
+            Readings cm of the sensors, in m.
+
+        Returns
+        -------
+        distances, limits : ndarray, shape (8,)
+            In m.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the ring is not one of nine sensors, or readings are not numbers.
+        ShapeError
+            If there is not one reading for each sensor.
+
+        Examples
+        --------
+        An echo at 0.3 m in front of sensor 1 only:
+
+        >>> from hrsafety import reactive
+        >>> distances, limits = reactive.UltrasonicSkirt().normal_distances([0.3] + [3.0] * 8)
+        >>> (distances <= limits).tolist()
+        [True, False, False, False, False, False, False, False]
+        """
+        values = vector("readings", readings)
+        if values.shape != (self.sensors,):
+            raise ShapeError("readings", f"({self.sensors},)", values.shape)
+        safe = self.meeting_distance if self.safe_distance is None else self.safe_distance
+        rows = self._native.normal_distances(values, safe, self.triggering)
+        return rows[:, 0].copy(), rows[:, 1].copy()
 
     def pattern(self, readings: npt.ArrayLike) -> str:
         """Return which sensors are triggered, as the source writes it.

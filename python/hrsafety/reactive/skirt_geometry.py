@@ -10,7 +10,14 @@ from hrsafety._arguments import count, number, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt import MOST_SENSORS
 
-__all__ = ["SensorCount", "SkirtSpacing", "least_skirt_sensors", "skirt_safe_distance", "skirt_spacing"]
+__all__ = [
+    "SensorCount",
+    "SkirtSpacing",
+    "least_skirt_sensors",
+    "skirt_closing_radius",
+    "skirt_safe_distance",
+    "skirt_spacing",
+]
 
 
 class SensorCount(NamedTuple):
@@ -80,6 +87,66 @@ def least_skirt_sensors(*, wheel_sensor_radius: float, sensor_radius: float) -> 
         sensor_radius=positive("sensor_radius", sensor_radius),
     )
     return SensorCount(int(least), int(multiple))
+
+
+def skirt_closing_radius(
+    sensors: int = 9,
+    *,
+    gap: float,
+    wheel_gap: float = math.pi / 8.0,
+    sensor_radius: float = 0.33,
+    wheel_sensor_radius: float = 0.33,
+    sensor_length: float = 0.046,
+    correction: float = 0.68,
+) -> float:
+    """Return the radius of the chassis that (1) of Gussu and Lin (2017) closes.
+
+    2 pi R = a N L + 3 S_1 + (N - 3) S_2 with the arcs S_1 = r_1 theta_1 and S_2 = r theta of (2).
+    `skirt_spacing` solves the same equation for theta, (3).
+
+    Parameters
+    ----------
+    sensors : int
+        Number N of sensors, 4 to 64.
+    gap, wheel_gap : float
+        Angles theta between sensors and theta_1 beside a wheel, in rad.
+    sensor_radius, wheel_sensor_radius : float
+        Distances r and r_1 of the sensors from the center, in m.
+    sensor_length : float
+        Length L of a sensor along the edge, in m.
+    correction : float
+        Factor a.
+
+    Returns
+    -------
+    float
+        R in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of range.
+
+    Examples
+    --------
+    With the printed theta the published numbers close at 0.313 m, not at 0.33 m:
+
+    >>> import math
+    >>> from hrsafety import reactive
+    >>> round(reactive.skirt_closing_radius(gap=math.radians(37.5)), 3)
+    0.313
+    """
+    if count("sensors", sensors) > MOST_SENSORS:
+        raise InvalidParameterError("sensors", f"be at most {MOST_SENSORS}", sensors)
+    return _hrsafety.skirt_closing_radius(
+        sensors=sensors,
+        gap=number("gap", gap),
+        wheel_gap=number("wheel_gap", wheel_gap),
+        sensor_radius=number("sensor_radius", sensor_radius),
+        wheel_sensor_radius=number("wheel_sensor_radius", wheel_sensor_radius),
+        sensor_length=number("sensor_length", sensor_length),
+        correction=number("correction", correction),
+    )
 
 
 def skirt_spacing(

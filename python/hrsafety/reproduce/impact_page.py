@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from html import escape
 
-from hrsafety.reproduce import markup
+from hrsafety.reproduce import markup, placement
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.impact_cases import parameter_sets
@@ -48,16 +48,16 @@ def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]
     yield markup.count_table(cells)
     groups = markup.by_table(cells)
     for table, own in groups.items():
-        if table.startswith("Section 3"):
-            yield markup.table_of_cells(table, own)
+        if table.startswith(("3.", "Section 3")):
+            yield from markup.table_with_pictures(table, own, pictures)
     yield _TABLES.format(*(escape(choice.words) for choice in parameter_sets()))
     for table in _TITLES:
         yield from _experiments(table, groups[table])
+        yield from markup.figures(placement.of_table(table, pictures))
     for table, own in groups.items():
-        if table not in _TITLES and not table.startswith("Section 3"):
-            yield markup.table_of_cells(table, own)
-    yield "<h3>Pictures of impacts</h3>"
-    yield from markup.figures(pictures)
+        if table not in _TITLES and not table.startswith(("3.", "Section 3")):
+            yield from markup.table_with_pictures(table, own, pictures)
+    yield from markup.figures(placement.unplaced(pictures, list(groups)))
 
 
 _HEAD = ("Row", "Quantity", "Runs", "Printed", "Set A", "Set B", "A from printed", "A from runs", "Reason")

@@ -8,6 +8,7 @@ from hrsafety.reproduce import (
     impact_experiments,
     impact_figures,
     impact_influences,
+    impact_inputs,
     impact_maneuvers,
     impact_tables,
 )
@@ -23,12 +24,13 @@ def cells() -> list[Cell]:
     Returns
     -------
     list of Cell
-        Sections 3.6 to 3.9, Tables 4.1 and 4.2, sections 4.3 to 4.5, appendix A.
+        Tables 3.1 to 3.3, sections 3.6 to 3.9, Tables 4.1 and 4.2, sections 4.3 to 4.5, appendix A.
     """
     chapter_3 = sorted(
         [*impact_claims.cells(), *impact_influences.cells(), *impact_maneuvers.cells()], key=lambda cell: cell.table
     )
     return [
+        *impact_inputs.cells(),
         *chapter_3,
         *impact_tables.cells(),
         *impact_experiments.cells(),

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import groupby
 
+from hrsafety.reproduce import placement
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.names import TABLE_TITLES, column_label, row_label
@@ -22,6 +23,7 @@ __all__ = [
     "head",
     "scroll",
     "table_of_cells",
+    "table_with_pictures",
 ]
 
 # Columns of words, aligned left.
@@ -82,12 +84,20 @@ def counts(cells: Sequence[Cell]) -> str:
         HTML.
     """
     return (
-        f"<p><strong>{_agreement(cells)}</strong> Tolerances: arrival time "
+        f"<p><strong>{_agreement(cells)}</strong> {_WHY}</p><p>Tolerances: arrival time "
         "5 %, distance 6 %, energy 25 %, score H 0.03; a sensitivity must agree within the rounding of the printed "
         "scores that it comes from; outcomes in words must agree. Gains, experiments, what is not simulated, "
         "and the times, energies and scores of Ge &amp; Cui, on which no claim is made, are listed without a "
         "verdict.</p>" + _count_lines(cells)
     )
+
+
+_WHY = (
+    "A right evaluation differs from its source where the source prints an equation with an error, simulates with "
+    "positions measured in an experiment, rounds, exchanges columns, or leaves out what a value depends on: motor "
+    "resistance, time step, start of a person. Then the corrected equations are kept and the reason stands beside the "
+    "value; <code>tests</code> compare the package itself with independent implementations, not with these tables."
+)
 
 
 def count_table(cells: Sequence[Cell]) -> str:
@@ -169,6 +179,27 @@ def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
         return heading + _list(cells)
     folded = f"<details><summary>All {len(cells)} values one by one</summary>{_list(cells)}</details>"
     return heading + _matrix(cells) + _reasons(cells) + folded
+
+
+def table_with_pictures(table: str, cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
+    """Yield one published table and, below it, the pictures that belong to it.
+
+    Parameters
+    ----------
+    table : str
+        Its number.
+    cells : sequence of Cell
+        Its cells.
+    pictures : sequence of Picture
+        Pictures of the part.
+
+    Yields
+    ------
+    str
+        HTML.
+    """
+    yield table_of_cells(table, cells)
+    yield from figures(placement.of_table(table, pictures))
 
 
 def _list(cells: Sequence[Cell]) -> str:

@@ -10,6 +10,9 @@ GAIN_LABELS = {"new_vff": "New VFF", "new_vff_optimised": "New VFF*"}
 """Gain sets; the star marks the optimized ones, as in the source."""
 
 TABLE_TITLES = {
+    "3.1": "manipulators",
+    "3.2": "heads and necks of the four simulations",
+    "3.3": "foams",
     "Section 3.6": "head and neck",
     "Section 3.7": "manipulator, foam, impact point",
     "Section 3.8": "acceleration and deceleration",

@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from hrsafety._atomic import write_file
-from hrsafety.reproduce import evidence, gain_page, impact_page, laws_page, markup, reactive_page, records
+from hrsafety.reproduce import evidence, gain_page, impact_page, laws_page, markup, placement, reactive_page, records
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 from hrsafety.reproduce.laws_study import LawsStudy
@@ -217,7 +217,7 @@ def _sections(report: Report) -> Iterator[str]:
             yield f'<section id="{part}"><h2>{escape(words)}</h2>'
             for table, cells in tables.items():
                 if table.startswith(prefix):
-                    yield markup.table_of_cells(table, cells)
+                    yield from markup.table_with_pictures(table, cells, report.pictures)
             yield "</section>"
     if report.laws is not None:
         yield '<section id="laws"><h2>Compared laws: nine laws in the same situations</h2>'
@@ -225,7 +225,7 @@ def _sections(report: Report) -> Iterator[str]:
         yield "</section>"
     if "tables-c" in report.parts:
         yield '<section id="tables-c"><h2>Appendix C: the best gains, and one gain at a time changed</h2>'
-        yield from gain_page.section(report.cells, report.gain_pictures)
+        yield from gain_page.section(report.cells, [*report.gain_pictures, *report.pictures])
         yield "</section>"
     if "reactive" in report.parts:
         yield '<section id="reactive"><h2>Avoidance from sensors: sound, virtual impedance, ultrasonic skirt</h2>'
@@ -248,9 +248,10 @@ def _sections(report: Report) -> Iterator[str]:
         yield markup.table_of_cells("Section D.4", tables["Section D.4"])
         yield from markup.figures(report.camera_pictures)
         yield "</section>"
-    if report.pictures:
+    others = placement.unplaced(report.pictures, list(tables))
+    if others:
         yield '<section id="figures-6"><h2>Pictures</h2>'
-        yield from markup.figures(report.pictures)
+        yield from markup.figures(others)
         yield "</section>"
 
 

@@ -22,6 +22,9 @@ TRACKING, RATES, DIRECTIONS, INFLUENCES, PRINTED = (
     "avi2019 printed forms",
 )
 LATERAL = 0.5  # m, how far off the leader's line the follower may be in experiment 1
+LEADER = (
+    "Input: the leader is a source of sound that moves as it is told; its size is seen by the sonar on request only."
+)
 UNEXPLAINED = "The 95 % intervals do not overlap; how the other layouts were selected is not said."
 SELECTED = "One printed run each; here random layouts that all touch without repulsion."
 
@@ -100,7 +103,12 @@ def cells(study: FollowerStudy) -> list[Cell]:
 
 def _robots() -> Iterator[Cell]:
     robot = reactive.Follower()
-    row = published_tables()["avi2019:5-6"]["rows"][1]
+    table = published_tables()["avi2019:5-6"]
+    leader, row = table["rows"]
+    for column, value in leader.items():
+        if column != "robot":
+            place = {"table": "avi2019 Table 5", "row": "Leader", "column": column.replace("_", " ")}
+            yield Cell.listed(**place, printed=value, unit=table["units"][column], reason=LEADER)
     for column, printed, own in (
         ("mass", row["mass"], robot.mass),
         ("distance of the wheels", row["wheel_base"], robot.wheel_base),
@@ -165,7 +173,9 @@ def _second(rate: Share, kind: str, law: str) -> str:
     verdict = "the 95 % intervals of both samples overlap"
     if not _overlap(rate, other):
         verdict = "the 95 % intervals of both samples do not overlap"
-    return f"A second implementation has {value:.3f} ({other.low:.3f} to {other.high:.3f}, {runs:,} layouts): {verdict}."
+    return (
+        f"A second implementation has {value:.3f} ({other.low:.3f} to {other.high:.3f}, {runs:,} layouts): {verdict}."
+    )
 
 
 def _directions(study: FollowerStudy) -> Iterator[Cell]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from hrsafety.reproduce import markup
+from hrsafety.reproduce import markup, placement
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture
 
@@ -35,7 +35,7 @@ def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]
     """
     yield _INTRO
     yield markup.count_table(cells)
-    for table, own in markup.by_table(cells).items():
-        yield markup.table_of_cells(table, own)
-    yield "<h3>Pictures of sensors and runs</h3>"
-    yield from markup.figures(pictures)
+    groups = markup.by_table(cells)
+    for table, own in groups.items():
+        yield from markup.table_with_pictures(table, own, pictures)
+    yield from markup.figures(placement.unplaced(pictures, list(groups)))

@@ -123,6 +123,23 @@ pub fn impact_point_speed(
     Ok(reach.speed(rates)?)
 }
 
+/// Damping of two joints with their dashpots in series.
+#[pyfunction]
+#[pyo3(signature = (damping, *, second_link, lever_arm, elbow))]
+pub fn dashpots_in_series(
+    damping: [f64; 2],
+    second_link: f64,
+    lever_arm: f64,
+    elbow: f64,
+) -> CoreResult<f64> {
+    let reach = Reach {
+        second_link,
+        lever_arm,
+        elbow,
+    };
+    Ok(reach.dashpots_in_series(damping)?)
+}
+
 /// Mass matrix of two uniform links.
 #[pyfunction]
 #[pyo3(signature = (*, mass, length, elbow))]

@@ -11,12 +11,14 @@ use pyo3::types::PyDict;
 use reactive_core::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
 use reactive_core::impedance::collision::Pairing;
 use reactive_core::impedance::{
-    Attraction, BankOptions, Form, Impedance, RateFilter, Rotation, Speed, clamped_foot, foot,
+    Attraction, BankOptions, Form, Impedance, RateFilter, Rotation, Speed, clamped_foot,
+    collision_point, foot, printed_foot,
 };
 
 use crate::arrays::Fields;
-use crate::errors::CoreResult;
+use crate::errors::{CoreError, CoreResult};
 use echoes::{EchoShape, Sonar};
+use reactive_core::sonar::Pose;
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -103,10 +105,6 @@ impl VirtualImpedance {
             clamp,
         };
         let speeds = [("closing", Speed::Closing), ("norm", Speed::Norm)];
-        let turns = [
-            ("heading", Rotation::ByHeading),
-            ("printed", Rotation::Printed),
-        ];
         let bank = BankOptions {
             pairing: Pairing {
                 gap: pairing_gap,
@@ -118,12 +116,7 @@ impl VirtualImpedance {
                 largest: largest_rate,
                 outlives_gaps,
             },
-            rotation: word(
-                "rotation",
-                "be \"heading\" or \"printed\"",
-                rotation,
-                &turns,
-            )?,
+            rotation: rotation_of(rotation)?,
             translated_by,
         };
         Ok(Self {
@@ -143,6 +136,83 @@ pub fn form_of(form: &str) -> CoreResult<Form> {
     ];
     let rule = "be one of \"off\", \"conventional\", \"active\", \"twice_scaled\"";
     word("form", rule, form, &kinds)
+}
+
+fn rotation_of(rotation: &str) -> CoreResult<Rotation> {
+    let turns = [
+        ("heading", Rotation::ByHeading),
+        ("printed", Rotation::Printed),
+    ];
+    let rule = "be \"heading\" or \"printed\"";
+    word("rotation", rule, rotation, &turns)
+}
+
+/// Points of echoes: sensors (m), angles of their axes (rad) and readings (m).
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn collision_points<'py>(
+    py: Python<'py>,
+    sensor: Rows<'py>,
+    angle: Column<'py>,
+    reading: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let axes = pairs(sensor.as_slice()?).zip(angle.as_slice()?);
+    let poses = axes.map(|(place, angle)| Pose::at(place, *angle));
+    let both = poses.zip(reading.as_slice()?);
+    let points: Vec<f64> = both
+        .flat_map(|(pose, reading)| collision_point(&pose, *reading))
+        .collect();
+    let fields = Fields::new(py);
+    let count = points.len() / 2;
+    fields.matrix("point", points, count, 2)?;
+    Ok(fields.finish())
+}
+
+/// Vectors of the robot in the directions of the world, by headings in rad.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn vectors_to_world<'py>(
+    py: Python<'py>,
+    vector: Rows<'py>,
+    heading: Column<'py>,
+    rotation: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let rotation = rotation_of(rotation)?;
+    let both = pairs(vector.as_slice()?).zip(heading.as_slice()?);
+    let turned: Vec<f64> = both
+        .flat_map(|(vector, heading)| rotation.to_world(&Pose::at([0.0; 2], *heading), vector))
+        .collect();
+    let fields = Fields::new(py);
+    let count = turned.len() / 2;
+    fields.matrix("vector", turned, count, 2)?;
+    Ok(fields.finish())
+}
+
+/// Attraction in N towards offsets in m, for velocities in m/s.
+#[pyfunction]
+#[pyo3(signature = (offset, velocity, *, stiffness, damping))]
+#[allow(clippy::needless_pass_by_value)] // references to Python objects
+pub fn attraction_forces<'py>(
+    py: Python<'py>,
+    offset: Rows<'py>,
+    velocity: Rows<'py>,
+    stiffness: f64,
+    damping: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let attraction = Attraction {
+        stiffness,
+        damping,
+        standoff: 0.0,
+    };
+    let attraction = attraction.checked().map_err(CoreError::from)?;
+    let both = pairs(offset.as_slice()?).zip(pairs(velocity.as_slice()?));
+    let forces: Vec<f64> = both
+        .flat_map(|(offset, velocity)| attraction.force(offset, velocity))
+        .collect();
+    let fields = Fields::new(py);
+    let count = forces.len() / 2;
+    fields.matrix("force", forces, count, 2)?;
+    Ok(fields.finish())
 }
 
 /// Spring and damper parts (N) at distances (m) and speeds (m/s), and the two scales.
@@ -168,16 +238,22 @@ pub fn impedance_forces<'py>(
 
 /// Feet of perpendiculars from the origin on the lines, or segments, between points.
 #[pyfunction]
-#[pyo3(signature = (one, other, *, clamp))]
+#[pyo3(signature = (one, other, *, form))]
 #[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn collision_feet<'py>(
     py: Python<'py>,
     one: Rows<'py>,
     other: Rows<'py>,
-    clamp: bool,
+    form: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let forms: [(&str, fn([f64; 2], [f64; 2]) -> [f64; 2]); 3] = [
+        ("segment", clamped_foot),
+        ("line", foot),
+        ("printed", printed_foot),
+    ];
+    let rule = "be one of \"segment\", \"line\", \"printed\"";
+    let of = word("form", rule, form, &forms)?;
     let ends = pairs(one.as_slice()?).zip(pairs(other.as_slice()?));
-    let of = if clamp { clamped_foot } else { foot };
     let feet: Vec<f64> = ends.flat_map(|(one, other)| of(one, other)).collect();
     let fields = Fields::new(py);
     let count = feet.len() / 2;

@@ -84,6 +84,25 @@ pub fn parallel_ray_bearings<'py>(
     Ok(fields.finish())
 }
 
+/// Angles at the three microphones between the row and sources.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn microphone_elevations<'py>(
+    py: Python<'py>,
+    array: &MicrophoneArray,
+    range: Column<'py>,
+    bearing: Column<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let both = range.as_slice()?.iter().zip(bearing.as_slice()?);
+    let angles: Vec<f64> = both
+        .flat_map(|(range, bearing)| array.0.elevations(*range, *bearing))
+        .collect();
+    let fields = Fields::new(py);
+    let count = angles.len() / 3;
+    fields.matrix("elevation", angles, count, 3)?;
+    Ok(fields.finish())
+}
+
 /// Ranges by the printed formula.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard

@@ -11,7 +11,7 @@ use reactive_core::skirt::ring::{
 use reactive_core::skirt::states::TABLE_1;
 use reactive_core::skirt::{
     Action, Direction, Motion, Policy, Ring, Rule, SceneOptions, Skirt, SkirtOptions, TestPlan,
-    TriOmni, test_batch,
+    TriOmni, normal_distances, test_batch,
 };
 
 use crate::arrays::Fields;
@@ -75,6 +75,32 @@ pub fn skirt_printed_gaps(
         lengths.printed_gap_closed(sensors)?,
         lengths.closing_correction(sensors, wheel_gap)?,
     ))
+}
+
+/// Radius of the chassis that the printed (1) closes, in m.
+#[pyfunction]
+#[pyo3(signature = (*, sensors, wheel_gap, gap, sensor_radius, wheel_sensor_radius,
+    sensor_length, correction))]
+#[allow(clippy::too_many_arguments)] // keyword-only in Python
+pub fn skirt_closing_radius(
+    sensors: usize,
+    wheel_gap: f64,
+    gap: f64,
+    sensor_radius: f64,
+    wheel_sensor_radius: f64,
+    sensor_length: f64,
+    correction: f64,
+) -> CoreResult<f64> {
+    let lengths = Circumference {
+        // The radius is what is asked for.
+        chassis_radius: sensor_radius,
+        sensor_radius,
+        wheel_sensor_radius,
+        sensor_length,
+        correction,
+    }
+    .checked()?;
+    Ok(lengths.closing_radius(sensors, wheel_gap, gap)?)
 }
 
 /// Least number of sensors by (6), and the next multiple of three.
@@ -212,6 +238,21 @@ impl UltrasonicSkirt {
     /// Distance from the center at which the beams beside the largest gap meet, in m.
     fn meeting_distance(&self) -> f64 {
         self.0.ring().safe_distance()
+    }
+
+    /// Normal distances d1 to d8 and their limits, in m.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn normal_distances<'py>(
+        &self,
+        py: Python<'py>,
+        readings: PyReadonlyArray1<'py, f64>,
+        safe_distance: f64,
+        triggering: &str,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rule = rule_of(triggering)?;
+        let rows = normal_distances(self.0.ring(), safe_distance, readings.as_slice()?, rule);
+        let rows = rows.map_err(CoreError::from)?;
+        rows.concat().to_pyarray(py).reshape([rows.len(), 2])
     }
 
     /// Bits of the sensors that are triggered.

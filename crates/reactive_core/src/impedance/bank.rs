@@ -1,7 +1,7 @@
 //! Three sensors side by side: from readings to the repulsive force.
 
 use crate::error::Result;
-use crate::impedance::collision::{Pairing, pair_echoes};
+use crate::impedance::collision::{Pairing, collision_point, pair_echoes};
 use crate::impedance::law::Prepared;
 use crate::impedance::rate::{Rate, RateFilter};
 use crate::sonar::Pose;
@@ -14,6 +14,18 @@ pub enum Rotation {
     ByHeading,
     /// By the printed matrix, which turns the other way.
     Printed,
+}
+
+impl Rotation {
+    /// A vector of the robot in the directions of the world.
+    #[inline]
+    #[must_use]
+    pub fn to_world(self, pose: &Pose, vector: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::ByHeading => pose.outward(vector),
+            Self::Printed => pose.inward(vector),
+        }
+    }
 }
 
 /// How readings become forces.
@@ -63,14 +75,7 @@ impl BankLayout {
     #[inline]
     #[must_use]
     pub fn points(&self, readings: &[f64; 3]) -> [[f64; 2]; 3] {
-        std::array::from_fn(|index| {
-            let mount = &self.mounts[index];
-            let reading = readings[index];
-            [
-                mount.position[0] + reading * mount.direction[0],
-                mount.position[1] + reading * mount.direction[1],
-            ]
-        })
+        std::array::from_fn(|index| collision_point(&self.mounts[index], readings[index]))
     }
 }
 
@@ -97,10 +102,7 @@ impl Bank {
                 }
                 continue;
             };
-            let mut vector = match options.rotation {
-                Rotation::ByHeading => pose.outward(collision.vector),
-                Rotation::Printed => pose.inward(collision.vector),
-            };
+            let mut vector = options.rotation.to_world(pose, collision.vector);
             if let Some(place) = options.translated_by {
                 vector[0] += pose.position[0] + place[0];
                 vector[1] += pose.position[1] + place[1];

@@ -1,6 +1,31 @@
 //! Collision vectors from the echoes of one or two sensors.
 
 use crate::error::{Result, not_negative};
+use crate::sonar::Pose;
+
+/// Point of an echo, `P_i = S_i + r_i (cos th_i, sin th_i)`, (11) and (13): where a sensor stands,
+/// and its reading in m along its axis.
+#[inline]
+#[must_use]
+pub fn collision_point(sensor: &Pose, reading: f64) -> [f64; 2] {
+    [
+        sensor.position[0] + reading * sensor.direction[0],
+        sensor.position[1] + reading * sensor.direction[1],
+    ]
+}
+
+/// Foot by the components of (14) as printed, `V` the slope of the line: the sign of `x_i` in the
+/// second one is wrong, so that the vector is not perpendicular; NaN for lines along an axis. Kept to
+/// be shown beside [`foot`].
+#[must_use]
+pub fn printed_foot(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let slope = (other[1] - one[1]) / (other[0] - one[0]);
+    let scale = slope + 1.0 / slope;
+    [
+        (slope * one[0] - one[1]) / scale,
+        (one[0] + one[1] / slope) / scale,
+    ]
+}
 
 /// Foot of the perpendicular from the origin on the line through two points, (14) as a vector:
 /// `P - (P.d) d` with the unit vector `d` of the line; the first point if both are one.

@@ -10,6 +10,6 @@ pub mod rate;
 
 pub use attraction::Attraction;
 pub use bank::{Bank, BankOptions, Rotation};
-pub use collision::{clamped_foot, foot, pair_echoes};
+pub use collision::{clamped_foot, collision_point, foot, pair_echoes, printed_foot};
 pub use law::{Form, Impedance};
 pub use rate::{Rate, RateFilter, Speed};

@@ -66,6 +66,25 @@ impl MicrophoneArray {
         [-1.0, 0.0, 1.0].map(|place| x.hypot(y - place * self.spacing))
     }
 
+    /// Angles at M1, M2, M3 between the row, towards M3, and a source at a range from M2 (m) and a
+    /// bearing (rad), in rad: corrected (9) to (11) of 2017, `asin(h / R_i)` or `pi - asin(h / R_i)`
+    /// with the normal distance `h` and the range `R_i` of the microphone. They hold for a source in
+    /// front, the bearing below a quarter turn.
+    #[must_use]
+    pub fn elevations(&self, range: f64, bearing: f64) -> [f64; 3] {
+        let normal = range * bearing.cos();
+        let side = range * bearing.sin();
+        let ranges = self.distances(range, bearing);
+        [(-1.0, 0), (0.0, 1), (1.0, 2)].map(|(place, index): (f64, usize)| {
+            let angle = (normal / ranges[index]).min(1.0).asin();
+            if side >= place * self.spacing {
+                angle
+            } else {
+                std::f64::consts::PI - angle
+            }
+        })
+    }
+
     /// Delays of M2 and M3 against M1 in s, `dt_1i = t_i - t_1` of (7).
     #[must_use]
     pub fn delays(&self, range: f64, bearing: f64) -> [f64; 2] {

@@ -15,4 +15,4 @@ pub use ring::Ring;
 pub use robot::{Course, Motion, Skirt, SkirtOptions};
 pub use scene::{Scene, SceneOptions};
 pub use states::{Action, Direction, Policy};
-pub use trigger::Rule;
+pub use trigger::{Rule, normal_distances};

@@ -13,6 +13,9 @@ pub const PUBLISHED_SENSORS: usize = 9;
 /// Angle `theta_1` between a wheel and the sensors beside it in the published ring, in rad.
 pub const PUBLISHED_WHEEL_GAP: f64 = PI / 8.0;
 
+/// Farthest that sensors stand outside the chassis, in radii: a sign or a unit is wrong beyond.
+const FARTHEST_OUTSIDE: f64 = 1.0;
+
 /// Sensors on a circle, clockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ring {
@@ -23,15 +26,15 @@ pub struct Ring {
 
 impl Ring {
     /// Sensors at given bearings in rad, on a chassis of a radius R in m; their faces lie an inset
-    /// w in m inside its edge.
+    /// w in m inside its edge, or outside if it is negative.
     ///
     /// # Errors
     /// There is no sensor or too many, or a number cannot be.
     pub fn new(chassis_radius: f64, inset: f64, bearings: Vec<f64>) -> Result<Self> {
         positive("chassis_radius", chassis_radius)?;
-        not_negative("sensor_inset", inset)?;
-        if inset >= chassis_radius {
-            let rule = "be smaller than chassis_radius";
+        finite("sensor_inset", inset)?;
+        if inset >= chassis_radius || inset < -FARTHEST_OUTSIDE * chassis_radius {
+            let rule = "be below chassis_radius, and not below its negative: sensors outside";
             return Err(Failure::invalid("sensor_inset", rule, Given::Number(inset)));
         }
         check_count(bearings.len())?;
@@ -214,6 +217,24 @@ impl Circumference {
         TAU * self.chassis_radius - self.correction * count as f64 * self.sensor_length
     }
 
+    /// Length of the arcs of (2) between the sensors, `3 S_1 + (N - 3) S_2` in m, for angles in rad.
+    fn arcs(&self, count: usize, wheel_gap: f64, gap: f64) -> Result<f64> {
+        Ok(3.0 * self.wheel_sensor_radius * wheel_gap
+            + sensors_between(count)? * self.sensor_radius * gap)
+    }
+
+    /// Radius of the chassis that (1) closes for angles in rad, in m:
+    /// `(a N L + 3 S_1 + (N - 3) S_2) / (2 pi)`.
+    ///
+    /// # Errors
+    /// There are fewer than four sensors, or an angle is out of range.
+    pub fn closing_radius(&self, count: usize, wheel_gap: f64, gap: f64) -> Result<f64> {
+        check_wheel_gap(wheel_gap)?;
+        positive("gap", gap)?;
+        let sensors = self.correction * count as f64 * self.sensor_length;
+        Ok((sensors + self.arcs(count, wheel_gap, gap)?) / TAU)
+    }
+
     /// Gap theta by (3), in rad.
     ///
     /// # Errors
@@ -245,8 +266,7 @@ impl Circumference {
     /// # Errors
     /// There are fewer than four sensors, or the angle is not between 0 and 60 deg.
     pub fn closing_correction(&self, count: usize, wheel_gap: f64) -> Result<f64> {
-        let covered = 3.0 * self.wheel_sensor_radius * wheel_gap
-            + sensors_between(count)? * self.sensor_radius * closing_gap(count, wheel_gap)?;
+        let covered = self.arcs(count, wheel_gap, closing_gap(count, wheel_gap)?)?;
         Ok((TAU * self.chassis_radius - covered) / (count as f64 * self.sensor_length))
     }
 }

@@ -13,6 +13,104 @@ pub enum Rule {
     Printed,
 }
 
+/// One normal distance of (7) to (9), `d = (R - w + cm [- R_S]) sin`, and its limit `d' = R_S sin`.
+struct Normal {
+    /// Sensor that it belongs to, from 0.
+    sensor: usize,
+    /// Reading that is printed, from 0.
+    printed: usize,
+    /// Multiples of theta and `theta_1` in the sine of `d`.
+    angle: [f64; 2],
+    /// Multiples in the sine of `d'`.
+    limit: [f64; 2],
+    /// Whether `R_S` is subtracted as printed.
+    from_safe: bool,
+}
+
+const fn normal(sensor: usize, angle: [f64; 2], from_safe: bool) -> Normal {
+    Normal {
+        sensor,
+        printed: sensor,
+        angle,
+        limit: angle,
+        from_safe,
+    }
+}
+
+/// d1 to d8 as printed.
+const NORMALS: [Normal; 8] = [
+    normal(0, [1.0, 1.0], true),
+    normal(1, [0.0, 1.0], true),
+    normal(2, [0.0, 1.0], true),
+    normal(3, [1.0, 1.0], true),
+    Normal {
+        limit: [2.0, 0.0],
+        ..normal(4, [1.0, 2.0], false)
+    },
+    normal(5, [1.0, 0.0], false),
+    normal(7, [1.0, 0.0], false),
+    Normal {
+        printed: 7,
+        ..normal(8, [2.0, 0.0], false)
+    },
+];
+
+/// Sine of multiples of the angles theta and `theta_1` of the published ring.
+fn sine([gaps, wheel_gaps]: [f64; 2]) -> f64 {
+    let gap = std::f64::consts::FRAC_PI_3 - PUBLISHED_WHEEL_GAP;
+    (gaps * gap + wheel_gaps * PUBLISHED_WHEEL_GAP).sin()
+}
+
+/// Normal distances d1 to d8 of the published ring and their limits d1' to d8', in m, for the nine
+/// readings cm in m, (7) to (9).
+///
+/// Printed: as they stand. Consistent: `R_S` is subtracted nowhere, d8 takes the reading of sensor 9,
+/// and d5 and d8, mirror images, have sin(theta + 2 `theta_1`) on both sides.
+///
+/// # Errors
+/// `R_S` is not positive, or the ring or the readings are not of nine sensors.
+pub fn normal_distances(
+    ring: &Ring,
+    safe_distance: f64,
+    readings: &[f64],
+    rule: Rule,
+) -> Result<[[f64; 2]; 8]> {
+    positive("safe_distance", safe_distance)?;
+    nine(ring.bearings().len(), "sensors")?;
+    nine(readings.len(), "readings")?;
+    let face = ring.face_radius();
+    Ok(std::array::from_fn(|index| {
+        let normal = &NORMALS[index];
+        match rule {
+            Rule::Printed => {
+                let subtracted = if normal.from_safe { safe_distance } else { 0.0 };
+                let along = face + readings[normal.printed] - subtracted;
+                [
+                    along * sine(normal.angle),
+                    safe_distance * sine(normal.limit),
+                ]
+            }
+            Rule::Consistent => {
+                let angle = if index == 7 {
+                    NORMALS[4].angle
+                } else {
+                    normal.angle
+                };
+                let along = face + readings[normal.sensor];
+                [along * sine(angle), safe_distance * sine(angle)]
+            }
+        }
+    }))
+}
+
+fn nine(count: usize, name: &str) -> Result<()> {
+    if count == PUBLISHED_SENSORS {
+        return Ok(());
+    }
+    let needed = "be 9 for the printed triggering distances";
+    Err(Failure::invalid(name, needed, Given::Count(count as u64)))
+}
+
 /// Largest readings cm at which the sensors are triggered, in m, for a safe distance `R_S` in m.
 ///
 /// Consistent: R - w + cm <= `R_S`. Printed: d1..d4 say (R - w + cm - `R_S`) sin <= `R_S` sin, that is
@@ -35,15 +133,13 @@ pub fn trigger_distances(ring: &Ring, safe_distance: f64, rule: Rule) -> Result<
     let count = ring.bearings().len();
     let mut distances = vec![safe_distance - face; count];
     if rule == Rule::Printed {
-        if count != PUBLISHED_SENSORS {
-            let given = Given::Count(count as u64);
-            let needed = "be 9 for the printed triggering distances";
-            return Err(Failure::invalid("sensors", needed, given));
+        nine(count, "sensors")?;
+        // Where d = d'.
+        for normal in &NORMALS {
+            let reach = safe_distance * (sine(normal.limit) / sine(normal.angle));
+            let subtracted = if normal.from_safe { safe_distance } else { 0.0 };
+            distances[normal.sensor] = reach + subtracted - face;
         }
-        distances[..4].fill(2.0 * safe_distance - face);
-        let gap = std::f64::consts::FRAC_PI_3 - PUBLISHED_WHEEL_GAP;
-        let sines = (2.0 * gap).sin() / (gap + 2.0 * PUBLISHED_WHEEL_GAP).sin();
-        distances[4] = safe_distance * sines - face;
     }
     Ok(distances)
 }

@@ -15,7 +15,7 @@ pub use masoud::Masoud;
 
 use crate::forces::geometry::{Body, Offset, RobotState};
 use crate::lanes::{Mask, Real, Vec2};
-use crate::laws::{Command, Law, Situation};
+use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, Situation};
 use crate::obstacle::Shape;
 use crate::scenario::Scenario;
 
@@ -106,6 +106,57 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
             reach: body.regions.active_radius - touching,
         }
     }
+
+    /// Lanes inside the active region of an obstacle, and its push there; `None` if no lane is.
+    #[inline(always)]
+    fn push_of(&self, body: &Body, robot: &RobotState<R>) -> Option<(R::Mask, Push<R>)> {
+        let offset = body.offset(robot.position);
+        let r2 = body.regions.active_radius;
+        let here = R::Mask::splat(body.state.present);
+        let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
+        if !active.any() {
+            return None;
+        }
+        Some((active, self.field.push(&self.neighbor(body, offset), robot)))
+    }
+}
+
+impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
+    /// Every term of one evaluation. These laws have neither a critical region nor Omega.
+    pub fn terms(&mut self, situation: &Situation<'_, f64>) -> FieldTerms {
+        let robot = &situation.robot;
+        let pushes: Vec<_> = situation
+            .bodies
+            .iter()
+            .map(|body| (body, self.push_of(body, robot)))
+            .collect();
+        let inside = pushes.iter().any(|(_, push)| push.is_some());
+        let to_goal = self.goal - robot.position;
+        let obstacle = |(body, push): &(&Body, Option<(_, Push<f64>)>)| {
+            let Some((_, push)) = push else {
+                return ObstacleTerms::idle(if body.state.present { "free" } else { "absent" });
+            };
+            let left = body.offset(robot.position).vector.perp();
+            let along = push.detour.dot(left);
+            ObstacleTerms {
+                repulsive: push.repulsive.lane(0),
+                detour: push.detour.lane(0),
+                region: "active",
+                side: i8::from(along > 0.0) - i8::from(along < 0.0),
+            }
+        };
+        FieldTerms {
+            attractive: self
+                .field
+                .attraction(to_goal, robot.velocity, inside)
+                .lane(0),
+            obstacles: pushes.iter().map(obstacle).collect(),
+            stabilizing: [0.0; 2],
+            total: self.command(situation).force.lane(0),
+            omega: f64::NAN,
+            lyapunov: None,
+        }
+    }
 }
 
 impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
@@ -115,15 +166,10 @@ impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
         let mut force = Vec2::zero();
         let mut inside = R::Mask::none();
         for body in situation.bodies {
-            let offset = body.offset(robot.position);
-            let r2 = body.regions.active_radius;
-            let here = R::Mask::splat(body.state.present);
-            let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
-            if !active.any() {
+            let Some((active, push)) = self.push_of(body, robot) else {
                 continue;
-            }
+            };
             inside = inside | active;
-            let push = self.field.push(&self.neighbor(body, offset), robot);
             let both = force + (push.repulsive + push.detour);
             force = Vec2::select(active, both, force);
         }

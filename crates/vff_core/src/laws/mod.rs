@@ -51,6 +51,10 @@ pub trait LawFamily: Sync {
     fn gains(&self) -> Vec<f64>;
     /// Gains that act on a robot without obstacles, ascending.
     fn free_gains(&self) -> &'static [usize];
+    /// Every force term at one state with its own gains; `None` for laws that are no sum of terms.
+    fn terms(&self, _scenario: &Scenario, _situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        None
+    }
     /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
     /// their critical regions; a search then need not follow runs whose end is known.
     fn keeps_to_regions(&self) -> bool {

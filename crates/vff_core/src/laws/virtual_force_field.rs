@@ -68,6 +68,11 @@ impl LawFamily for VirtualForceField {
         &[0, 3]
     }
 
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        let gains = GainLanes::<f64>::gather(self.gains, &[]);
+        Some(ForceFieldLaw::<f64, true>::new(self, gains, scenario).terms(situation))
+    }
+
     fn keeps_to_regions(&self) -> bool {
         // The stabilizing force acts on the sum of the obstacles, so on none outside.
         true
@@ -373,6 +378,19 @@ pub struct ObstacleTerms {
     pub side: i8,
 }
 
+impl ObstacleTerms {
+    /// An obstacle without force.
+    #[must_use]
+    pub fn idle(region: &'static str) -> Self {
+        Self {
+            repulsive: [0.0; 2],
+            detour: [0.0; 2],
+            region,
+            side: 0,
+        }
+    }
+}
+
 /// Every term at one state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldTerms {
@@ -384,7 +402,7 @@ pub struct FieldTerms {
     pub stabilizing: [f64; 2],
     /// Commanded force in N.
     pub total: [f64; 2],
-    /// Omega in N^2/s.
+    /// Omega in N^2/s; NaN for laws without it.
     pub omega: f64,
     /// Lyapunov function in N^2 and its derivative in N^2/s; `None` inside a critical region.
     pub lyapunov: Option<(f64, f64)>,
@@ -447,10 +465,5 @@ fn idle(body: &Body, position: Vec2<f64>) -> ObstacleTerms {
     } else {
         "free"
     };
-    ObstacleTerms {
-        repulsive: [0.0; 2],
-        detour: [0.0; 2],
-        region,
-        side: 0,
-    }
+    ObstacleTerms::idle(region)
 }

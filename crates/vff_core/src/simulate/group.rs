@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
 use crate::laws::compared::{BorensteinKoren, GeCui, Khatib, Masoud, Pairwise};
-use crate::laws::{Command, Law, LawFamily, Situation, VirtualForceField};
+use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation, VirtualForceField};
 use crate::planners::family::Planned;
 use crate::planners::field_d_star::FieldDStar;
 use crate::planners::reciprocal::ReciprocalAvoidance;
@@ -167,6 +167,8 @@ pub(crate) trait Driven: Send + Sync {
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
     /// What it asks for at first, with its own gains.
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
+    /// Every force term with its own gains; `None` for laws that are no sum of terms.
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
     fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>>;
     /// One run with its own gains and everything recorded.
@@ -263,6 +265,10 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
         let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
         Ok(Law::command(&mut law, situation))
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        self.0.terms(scenario, situation)
     }
 
     fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>> {

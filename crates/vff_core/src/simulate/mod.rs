@@ -23,11 +23,10 @@ pub(crate) use group::{Group, Plan};
 pub(crate) use nominal::{Key, Ways, key_of, nominal_runs};
 pub(crate) use table::min_clearance;
 
-use crate::error::Result;
+use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::{Body, RobotState};
-use crate::gains::GainLanes;
 use crate::lanes::Vec2;
-use crate::laws::{FieldTerms, ForceFieldLaw, Situation, VirtualForceField};
+use crate::laws::{FieldTerms, Situation};
 use crate::scenario::Scenario;
 
 /// Asked now and then whether to stop.
@@ -93,20 +92,23 @@ pub fn command_at(
     Ok(command.force.lane(0))
 }
 
-/// Every force term at one state.
+/// Every force term at one state, of a law that is a sum of terms.
 ///
 /// # Errors
-/// A value is not finite or the time is negative.
+/// A value is not finite, the time is negative, or the law is a planner.
 pub fn terms_at(
     scenario: &Scenario,
-    law: &VirtualForceField,
+    law: impl Into<AnyLaw>,
     position: [f64; 2],
     velocity: [f64; 2],
     time: f64,
 ) -> Result<FieldTerms> {
-    let gains = GainLanes::<f64>::gather(law.gains, &[]);
-    let mut field = ForceFieldLaw::<f64, true>::new(law, gains, scenario);
-    at_state(scenario, [position, velocity], time, |situation| {
-        field.terms(situation)
+    let law: AnyLaw = law.into();
+    let terms = at_state(scenario, [position, velocity], time, |situation| {
+        law.driven().terms(scenario, situation)
+    })?;
+    terms.ok_or_else(|| {
+        let rule = "be a sum of attraction and repulsion, such as VirtualForceField or Masoud";
+        Failure::invalid("law", rule, Given::Word(law.gain_names().join(", ")))
     })
 }

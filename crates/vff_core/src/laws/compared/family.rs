@@ -3,7 +3,7 @@
 use super::{BorensteinKoren, GeCui, Khatib, Masoud, PairwiseField, PairwiseLaw};
 use crate::error::{Result, not_negative};
 use crate::lanes::Real;
-use crate::laws::LawFamily;
+use crate::laws::{FieldTerms, LawFamily, Situation};
 use crate::scenario::Scenario;
 
 /// A field with its gains, by which it is known to a search.
@@ -37,6 +37,11 @@ impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
 
     fn free_gains(&self) -> &'static [usize] {
         F::FREE_GAINS
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        let field = self.0.with_gains::<f64>(&self.0.gains(), scenario);
+        Some(PairwiseLaw::new(field, scenario).terms(situation))
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {
