@@ -1,6 +1,6 @@
 //! Navigation laws.
 
-use groundwork::error::Result;
+use groundwork::error::{Failure, Given, Result};
 use pyo3::prelude::*;
 use vff_core::forces::side::SideRules;
 use vff_core::forces::stabilizing::Stabilizing;
@@ -147,7 +147,11 @@ impl Law {
         let selection = match selection {
             "fastest" => Selection::Fastest { sector },
             "time_and_risk" => Selection::TimeAndRisk { risk },
-            _ => Selection::ToGoal,
+            "to_goal" => Selection::ToGoal,
+            other => {
+                let rule = "be one of \"fastest\", \"time_and_risk\", \"to_goal\"";
+                return Err(Failure::invalid("selection", rule, Given::Word(other.into())).into());
+            }
         };
         Self::checked(Planned(VelocityObstacle {
             margin,

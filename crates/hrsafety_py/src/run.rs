@@ -59,7 +59,8 @@ fn run(
     // The bare method would be bound to one lifetime.
     #[allow(clippy::redundant_closure_for_method_calls)]
     let interrupted = || match Python::attach(|py| py.check_signals()) {
-        Ok(()) => false,
+        // A planner may have heard of the signal before the run asks.
+        Ok(()) => pending.lock().is_ok_and(|slot| slot.is_some()),
         Err(error) => {
             if let Ok(mut slot) = pending.lock() {
                 *slot = Some(error);

@@ -264,6 +264,7 @@ fn observed(
     (seed, stream): (u64, u64),
     control: &Control,
 ) -> Result<(Estimates, Vec<f64>, Vec<f64>), Failure> {
+    vision.check_frames(times.last().copied().unwrap_or(0.0))?;
     let mut sensor = VisionSensor::new(vision, seed, stream)?;
     let mut estimates = Estimates::with_capacity(times.len());
     let (mut exposed, mut measured) = (Vec::new(), Vec::new());

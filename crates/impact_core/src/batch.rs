@@ -4,8 +4,7 @@ mod kernel;
 
 pub(crate) use kernel::usual;
 
-use groundwork::threads::on_threads;
-use rayon::prelude::*;
+use groundwork::threads::{on_threads, try_each};
 
 use crate::criteria::{MetricOptions, Metrics, Status};
 use crate::error::{Failure, Given, Result};
@@ -347,7 +346,7 @@ pub fn metrics_batch(
     let mut result = MetricColumns::sized(rows, options.fields);
     let blocks = result.blocks();
     let work = || {
-        blocks.into_par_iter().try_for_each(|mut block| {
+        try_each(blocks, |mut block| {
             if interrupted() {
                 return Err(Failure::Interrupted);
             }

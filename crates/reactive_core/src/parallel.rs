@@ -3,8 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use groundwork::threads::on_threads;
-use rayon::prelude::*;
+use groundwork::threads::{on_threads, team, try_map};
 
 use crate::error::{Failure, Result};
 
@@ -35,7 +34,7 @@ pub fn each_run<T: Send>(
     run: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
     on_threads(work.threads, || {
-        let share = count / (BLOCKS_OF_THREAD * rayon::current_num_threads());
+        let share = count / (BLOCKS_OF_THREAD * team());
         let size = share.clamp(1, MOST_IN_BLOCK);
         let failure = First::new();
         let block = |block: usize| -> Result<Vec<T>> {
@@ -57,8 +56,7 @@ pub fn each_run<T: Send>(
             }
             Ok(found)
         };
-        let blocks = (0..count.div_ceil(size)).into_par_iter().map(block);
-        let all: Vec<Vec<T>> = blocks.collect::<Result<_>>()?;
+        let all: Vec<Vec<T>> = try_map(count.div_ceil(size), block)?;
         failure.or(all.into_iter().flatten().collect())
     })
 }

@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::gains::GainLanes;
 use vff_core::lanes::{Lanes, Real, Vec2};
-use vff_core::laws::{ForceFieldLaw, Law, Situation};
+use vff_core::laws::{ForceFieldLaw, Law, Situation, Stop};
 use vff_core::scenario::Scenario;
 
 fn bodies(scenario: &Scenario) -> Vec<Body> {
@@ -47,6 +47,7 @@ fn width<R: Real>(
                 bodies: black_box(&bodies),
                 robot: black_box(robot),
                 interval: 0.06,
+                stop: Stop::never(),
             };
             law.command(&situation)
         });

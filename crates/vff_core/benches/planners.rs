@@ -6,7 +6,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::Vec2;
-use vff_core::laws::Situation;
+use vff_core::laws::{Situation, Stop};
 use vff_core::motion::BodyState;
 use vff_core::obstacle::{Regions, Shape};
 use vff_core::planners::Planner;
@@ -111,6 +111,7 @@ fn measure<P: Planner>(
                     velocity: Vec2::splat([-0.7, 0.0]),
                 },
                 interval: PERIOD,
+                stop: Stop::never(),
             }))
         });
     });

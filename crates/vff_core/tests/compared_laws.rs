@@ -10,7 +10,7 @@ use vff_core::laws::compared::{
     BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, Pairwise, PairwiseFamily, PairwiseField,
     PairwiseLaw,
 };
-use vff_core::laws::{Law, Situation};
+use vff_core::laws::{Law, Situation, Stop};
 use vff_core::metrics::Weights;
 use vff_core::motion::{BodyState, Motion};
 use vff_core::obstacle::{Obstacle, Regions, Shape};
@@ -98,6 +98,7 @@ fn force(field: impl PairwiseField<f64>, velocity: [f64; 2], discs: &[Disc]) -> 
         bodies: &bodies,
         robot,
         interval,
+        stop: Stop::never(),
     };
     law.command(&situation).force.lane(0)
 }

@@ -15,6 +15,7 @@ use planning::{BARN_RADIUS, barn, body, distance_to_leg, scene, situation};
 use proptest::prelude::*;
 use slalom::{ROUNDING, slalom};
 use vff_core::lanes::Vec2;
+use vff_core::laws::Stop;
 use vff_core::obstacle::Shape;
 use vff_core::planners::footprint::Footprint;
 use vff_core::planners::outline::Outline;
@@ -221,6 +222,6 @@ fn tree_without_luck_says_so() {
     };
     let wall = Footprint::swept_disc([2.0, -0.5], [2.0, 0.5], 0.3);
     let mut path = vec![[9.0; 2]];
-    assert!(!Tree::new(growth, 0).grow([4.0, 0.0], &[wall], &mut path));
+    assert!(!Tree::new(growth, 0).grow([4.0, 0.0], &[wall], &mut path, Stop::never()));
     assert!(path.is_empty());
 }

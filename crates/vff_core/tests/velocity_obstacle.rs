@@ -5,8 +5,8 @@ mod draws;
 use draws::Draws;
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::Vec2;
-use vff_core::laws::Situation;
 use vff_core::laws::compared::{BorensteinKoren, Pairwise};
+use vff_core::laws::{Situation, Stop};
 use vff_core::metrics::clearances;
 use vff_core::motion::Motion;
 use vff_core::obstacle::{Limits, Obstacle};
@@ -89,6 +89,7 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
         bodies: &bodies,
         robot,
         interval,
+        stop: Stop::never(),
     };
     let mut planner = VelocityObstaclePlanner::new(exact, scenario);
     planner.best_free(&situation).is_some()

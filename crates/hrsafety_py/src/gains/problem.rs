@@ -176,6 +176,7 @@ impl GainProblem {
                 values: &mut native_values,
                 margins: &mut native_margins,
                 failed: &mut *into.failed,
+                stop: into.stop,
             },
         )?;
         let calls = self.is_metric.len() - self.is_metric.iter().filter(|is| **is).count();
@@ -187,6 +188,7 @@ impl GainProblem {
                 values: &mut called_values,
                 margins: &mut called_margins,
                 failed: &mut *into.failed,
+                stop: into.stop,
             },
         )?;
         for row in 0..rows {
@@ -291,7 +293,13 @@ fn objectives_of(words: &[String]) -> CoreResult<Vec<Objective>> {
         let metric = Metric::of(word)?;
         let over = match metric {
             Metric::MinClearance => Over::Worst,
-            _ => Over::Mean,
+            Metric::Performance
+            | Metric::TimePerformance
+            | Metric::AvoidancePerformance
+            | Metric::EnergyPerformance
+            | Metric::ArrivalTime
+            | Metric::Energy
+            | Metric::PathLength => Over::Mean,
         };
         Ok(Objective { metric, over })
     };

@@ -39,7 +39,7 @@ impl Scorer {
                 &self.law,
                 points,
                 &self.options,
-                &|| false,
+                into.stop.0,
                 &|_| {},
             )?;
             let runs = table.outcome.chunks_exact(scenarios.len());

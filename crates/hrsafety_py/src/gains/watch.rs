@@ -55,6 +55,10 @@ impl Observer for Watch {
             Control::Continue
         }
     }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
 }
 
 impl Watch {

@@ -177,7 +177,7 @@ fn metrics(
         _ if system.head == Target::Constrained => Status::Constrained,
         Some(found) if found.impact_duration.is_infinite() => Status::NoRelease,
         Some(found) if found.compression > system.foam.linear_range => Status::BeyondLinearRange,
-        _ => Status::Released,
+        Some(_) | None => Status::Released,
     };
     let row = Metrics::none(status);
     Ok(peaks.map_or(row, |found| Metrics {

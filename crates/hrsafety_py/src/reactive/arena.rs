@@ -173,6 +173,7 @@ impl<R: Real> Law<R> for Impeded {
                     bodies: situation.bodies,
                     robot,
                     interval: situation.interval,
+                    stop: situation.stop,
                 },
             );
             force = Vec2 {

@@ -2,6 +2,10 @@
 
 use crate::error::{Failure, Given, Result};
 use crate::sonar::shapes::Shape;
+use groundwork::error::at_most;
+
+/// Most rays of a beam.
+pub const MOST_RAYS: usize = 100_000;
 
 /// Where a sensor is, and where it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +80,7 @@ impl Beam {
             let rule = "be at least 1";
             return Err(Failure::invalid("rays", rule, Given::Count(0)));
         }
+        at_most("rays", rays, MOST_RAYS)?;
         let gaps = (rays - 1) as f64;
         let ray = |index: usize| {
             // Twice the offset from the middle is a whole number: left and right are mirrored.

@@ -10,6 +10,31 @@ use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Real, Vec2};
 use crate::scenario::Scenario;
 
+/// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
+/// after it was told to stop counts for nothing.
+#[derive(Clone, Copy)]
+pub struct Stop<'a>(pub &'a (dyn Fn() -> bool + Sync));
+
+impl Stop<'_> {
+    /// Nobody asks to stop.
+    #[must_use]
+    pub fn never() -> Self {
+        Self(&|| false)
+    }
+
+    /// Whether to stop.
+    #[must_use]
+    pub fn asked(&self) -> bool {
+        (self.0)()
+    }
+}
+
+impl std::fmt::Debug for Stop<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Stop")
+    }
+}
+
 /// What a law knows when it is asked for a force.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a, R> {
@@ -19,6 +44,8 @@ pub struct Situation<'a, R> {
     pub robot: RobotState<R>,
     /// How long the force will act, in s.
     pub interval: f64,
+    /// Whether to stop.
+    pub stop: Stop<'a>,
 }
 
 /// What a law answers.

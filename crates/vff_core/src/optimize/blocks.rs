@@ -3,15 +3,14 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::prelude::*;
-
 use crate::error::{Failure, Result};
+use crate::laws::Stop;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::SearchState;
 use crate::optimize::meeting::{Asker, meet};
 use crate::optimize::observe::{Control, Observer, Report, Stage};
 use crate::optimize::problem::{Candidate, Problem, Score};
-use groundwork::threads::on_threads;
+use groundwork::threads::{on_threads, team, try_map};
 
 /// Blocks that a list of points is cut into at least, so that threads share the work evenly.
 const LEAST_BLOCKS: usize = 64;
@@ -22,24 +21,9 @@ const LEAST_BLOCK: usize = 16;
 /// Points of several solvers are cut into multiples of this.
 const FEW_LANES: usize = 4;
 
-/// Values of points block by block; `None` for blocks that are missing after a stop.
-pub(crate) struct Parts {
-    block: usize,
-    parts: Vec<Option<Evaluated>>,
-}
-
-impl Parts {
-    /// Whether no block is missing.
-    pub fn complete(&self) -> bool {
-        self.parts.iter().all(Option::is_some)
-    }
-
-    /// Blocks that are there, with the position of their first point.
-    pub fn blocks(&self) -> impl Iterator<Item = (usize, &Evaluated)> {
-        let parts = self.parts.iter().enumerate();
-        parts.filter_map(|(index, part)| Some((index * self.block, part.as_ref()?)))
-    }
-}
+/// What is done with the values of a block: the position of its first point, its points, and their
+/// values. Called from any thread, in any order.
+pub(crate) type Take<'a> = &'a (dyn Fn(usize, &[f64], &Evaluated) + Sync);
 
 /// A search at work: who watches it, and what is done.
 pub(crate) struct Session<'a> {
@@ -70,7 +54,7 @@ impl<'a> Session<'a> {
 
     /// Whether the observer has asked to stop.
     pub fn stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
+        self.stopped.load(Ordering::Relaxed) || self.observer.stopped()
     }
 
     /// Begins a stage.
@@ -123,39 +107,51 @@ impl<'a> Session<'a> {
         self.progress.lock().ok().map(|mut guard| work(&mut guard))
     }
 
-    /// Values of points that come in blocks; `points` gives those of a range of positions.
+    /// Evaluates points that come in blocks; `points` gives those of a range of positions, `take`
+    /// gets their values. Whether all blocks were evaluated: after a stop some are missing.
     pub fn evaluate(
         &self,
         stage: Stage,
         problem: &dyn Problem,
         count: usize,
         points: &(dyn Fn(std::ops::Range<usize>) -> Vec<f64> + Sync),
-    ) -> Result<Parts> {
+        take: Take<'_>,
+    ) -> Result<bool> {
         self.begin();
         let block = block_of(problem, count);
-        let parts = (0..count.div_ceil(block))
-            .into_par_iter()
-            .map(|index| {
-                let range = index * block..count.min((index + 1) * block);
-                let size = range.len();
-                let known = self.known(stage, index).filter(|known| known.len() == size);
-                if known.is_none() && self.stopped() {
-                    return Ok(None);
-                }
-                let points = points(range);
-                let fresh = known.is_none();
-                let evaluated = known.map_or_else(|| Evaluated::of(problem, &points), Ok)?;
-                if problem.objectives() == 1 {
-                    self.offer_best(problem.dimension(), &points, &evaluated);
-                }
-                if fresh {
-                    self.record(|state| state.insert(stage, index, evaluated.clone()));
-                }
-                self.report(stage, size as u64, count as u64);
-                Ok(Some(evaluated))
-            })
-            .collect::<Result<_>>()?;
-        Ok(Parts { block, parts })
+        let done = try_map(count.div_ceil(block), |index| {
+            let range = index * block..count.min((index + 1) * block);
+            let (first, size) = (range.start, range.len());
+            let known = self.known(stage, index).filter(|known| known.len() == size);
+            if known.is_none() && self.stopped() {
+                return Ok(false);
+            }
+            let points = points(range);
+            let fresh = known.is_none();
+            let found =
+                known.map_or_else(|| self.values(problem, &points), |known| Ok(Some(known)));
+            let Some(evaluated) = found? else {
+                return Ok(false);
+            };
+            if problem.objectives() == 1 {
+                self.offer_best(problem.dimension(), &points, &evaluated);
+            }
+            take(first, &points, &evaluated);
+            if fresh {
+                self.record(|state| state.insert(stage, index, evaluated));
+            }
+            self.report(stage, size as u64, count as u64);
+            Ok(true)
+        })?;
+        Ok(done.into_iter().all(|done| done))
+    }
+
+    /// Values of points that a problem computes; none when stopped meanwhile.
+    fn values(&self, problem: &dyn Problem, points: &[f64]) -> Result<Option<Evaluated>> {
+        match Evaluated::of(problem, points, Stop(&|| self.stopped())) {
+            Err(Failure::Interrupted) if self.stopped() => Ok(None),
+            found => found.map(Some),
+        }
     }
 
     /// Runs a number of solvers that ask for one point at a time, and evaluates their points side
@@ -195,7 +191,9 @@ impl<'a> Session<'a> {
                     Some(answers)
                 }
                 Err(error) => {
-                    failure = Some(error);
+                    if !(error == Failure::Interrupted && self.stopped()) {
+                        failure = Some(error);
+                    }
                     None
                 }
             }
@@ -210,15 +208,14 @@ impl<'a> Session<'a> {
         problem: &dyn Problem,
         asked: &[(usize, Vec<f64>)],
     ) -> Result<Vec<Evaluated>> {
-        let even = asked.len().div_ceil(2 * rayon::current_num_threads());
+        let even = asked.len().div_ceil(2 * team());
         let part = even.next_multiple_of(FEW_LANES).min(problem.block());
-        let parts: Vec<Evaluated> = asked
-            .par_chunks(part)
-            .map(|asked| {
-                let points: Vec<f64> = asked.iter().flat_map(|(_, point)| point).copied().collect();
-                Evaluated::of(problem, &points)
-            })
-            .collect::<Result<_>>()?;
+        let chunks: Vec<_> = asked.chunks(part).collect();
+        let parts = try_map(chunks.len(), |index| {
+            let points = chunks[index].iter().flat_map(|(_, point)| point);
+            let points: Vec<f64> = points.copied().collect();
+            Evaluated::of(problem, &points, Stop(&|| self.stopped()))
+        })?;
         let answers: Vec<Evaluated> = parts
             .iter()
             .flat_map(|part| (0..part.len()).map(|index| part.single(index)))
@@ -258,15 +255,13 @@ pub fn evaluate_all(
     let dimension = problem.dimension();
     let block = block_of(problem, points.len() / dimension);
     on_threads(threads, || {
-        let parts: Vec<Evaluated> = points
-            .par_chunks(block * dimension)
-            .map(|points| {
-                if interrupted() {
-                    return Err(Failure::Interrupted);
-                }
-                Evaluated::of(problem, points)
-            })
-            .collect::<Result<_>>()?;
+        let chunks: Vec<&[f64]> = points.chunks(block * dimension).collect();
+        let parts = try_map(chunks.len(), |index| {
+            if interrupted() {
+                return Err(Failure::Interrupted);
+            }
+            Evaluated::of(problem, chunks[index], Stop(interrupted))
+        })?;
         let mut all = Evaluated::default();
         for part in &parts {
             all.extend(part);

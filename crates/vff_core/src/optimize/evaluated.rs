@@ -1,6 +1,7 @@
 //! Values of points.
 
 use crate::error::Result;
+use crate::laws::Stop;
 use crate::optimize::problem::{Evaluation, Problem, Score};
 
 /// Values of some points, row by row.
@@ -16,7 +17,7 @@ pub struct Evaluated {
 
 impl Evaluated {
     /// Values of points that a problem computes.
-    pub(crate) fn of(problem: &dyn Problem, points: &[f64]) -> Result<Self> {
+    pub(crate) fn of(problem: &dyn Problem, points: &[f64], stop: Stop<'_>) -> Result<Self> {
         let count = points.len() / problem.dimension();
         let mut evaluated = Self {
             values: vec![f64::NEG_INFINITY; count * problem.objectives()],
@@ -29,6 +30,7 @@ impl Evaluated {
                 values: &mut evaluated.values,
                 margins: &mut evaluated.margins,
                 failed: &mut evaluated.failed,
+                stop,
             },
         )?;
         Ok(evaluated)

@@ -2,13 +2,15 @@
 //! points that no other point beats.
 
 use std::collections::HashSet;
+use std::sync::Mutex;
 
 use crate::error::{Failure, Given, Result};
-use crate::optimize::blocks::{Parts, Session};
+use crate::optimize::archive::Archive;
+use crate::optimize::blocks::Session;
+use crate::optimize::evaluated::Evaluated;
 use crate::optimize::grid::{Grid, GridOptions};
 use crate::optimize::ledger::SearchState;
 use crate::optimize::observe::{Observer, Stage};
-use crate::optimize::pareto::non_dominated;
 use crate::optimize::problem::{Bounds, Problem};
 use crate::optimize::search::fingerprint;
 use groundwork::threads::on_threads;
@@ -94,44 +96,91 @@ fn rounds(
     let dimension = problem.dimension();
     let grid = Grid::new(bounds, &options.shape, problem.slowest_first());
     let mut increments = grid.increments();
-    let mut points = grid.points(0..grid.len());
     let mut seen = HashSet::new();
     let mut front = Front::default();
+    let mut archive = Archive::new(dimension, problem.objectives());
     for round in 0..=options.refinements {
-        if round > 0 {
+        let wanted = if round == 0 {
+            whole(&grid, session)
+        } else {
             for increment in &mut increments {
                 *increment *= 0.5;
             }
-            points = neighbours(bounds, &front.points, &increments);
-        }
-        points = unseen(&mut seen, &points, dimension);
+            Some(neighbours(bounds, &front.points, &increments))
+        };
+        let fresh = wanted.and_then(|points| unseen(&mut seen, &points, dimension, session));
+        let Some(points) = fresh else {
+            front.interrupted = true;
+            break;
+        };
         let stage = Stage::Front { round };
         let rows = |range: std::ops::Range<usize>| {
             points[range.start * dimension..range.end * dimension].to_vec()
         };
-        let parts = session.evaluate(stage, problem, points.len() / dimension, &rows)?;
-        let (evaluations, failures) = take(&mut front, problem, &points, &parts);
-        if !parts.complete() {
+        let count = points.len() / dimension;
+        let taken = Mutex::new(archive.renewed());
+        let take = |first: usize, points: &[f64], part: &Evaluated| {
+            let best = Archive::best_of(first, points, part, problem);
+            // A thread that panics while it holds the lock ends the whole search.
+            if let Ok(mut taken) = taken.lock() {
+                taken.merge(best, part);
+            }
+        };
+        let complete = session.evaluate(stage, problem, count, &rows, &take)?;
+        archive = taken.into_inner().map_err(|_| Failure::Interrupted)?;
+        archive.number_from(count);
+        front.evaluations += archive.evaluations;
+        front.failures += archive.failures;
+        (front.points, front.values) = archive.rows();
+        if !complete {
             front.interrupted = true;
             break;
         }
         front.rounds.push(FrontRound {
             increments: increments.clone(),
-            evaluations,
-            failures,
+            evaluations: archive.evaluations,
+            failures: archive.failures,
             size: front.points.len() / dimension,
         });
     }
     Ok(front)
 }
 
-/// Points that were not met before, each once.
-fn unseen(seen: &mut HashSet<Vec<u64>>, points: &[f64], dimension: usize) -> Vec<f64> {
+/// Points that are handled between two looks at whether to stop.
+const POINTS_PER_LOOK: usize = 4096;
+
+/// All points of a grid; none when stopped meanwhile.
+fn whole(grid: &Grid, session: &Session<'_>) -> Option<Vec<f64>> {
+    let mut points = Vec::with_capacity(grid.len() * grid.axes.len());
+    for first in (0..grid.len()).step_by(POINTS_PER_LOOK) {
+        if session.stopped() {
+            return None;
+        }
+        points.extend(grid.points(first..grid.len().min(first + POINTS_PER_LOOK)));
+    }
+    Some(points)
+}
+
+/// Points that were not met before, each once; none when stopped meanwhile.
+fn unseen(
+    seen: &mut HashSet<Vec<u64>>,
+    points: &[f64],
+    dimension: usize,
+    session: &Session<'_>,
+) -> Option<Vec<f64>> {
     let bits = |point: &[f64]| point.iter().map(|value| value.to_bits()).collect();
-    let fresh = points
-        .chunks_exact(dimension)
-        .filter(|point| seen.insert(bits(point)));
-    fresh.flatten().copied().collect()
+    let mut fresh = Vec::with_capacity(points.len());
+    for part in points.chunks(POINTS_PER_LOOK * dimension) {
+        if session.stopped() {
+            return None;
+        }
+        for point in part.chunks_exact(dimension) {
+            if seen.insert(bits(point)) {
+                fresh.extend_from_slice(point);
+            }
+        }
+    }
+    Some(fresh)
 }
 
 /// Points one increment away along each axis, inside the box.
@@ -152,40 +201,4 @@ fn neighbours(bounds: &Bounds, points: &[f64], increments: &[f64]) -> Vec<f64> {
         }
     }
     all
-}
-
-/// Takes evaluated points into the front; gives their number and the failures among them.
-fn take(front: &mut Front, problem: &dyn Problem, points: &[f64], parts: &Parts) -> (u64, u64) {
-    let (dimension, objectives) = (problem.dimension(), problem.objectives());
-    let (mut evaluations, mut failures) = (0, 0);
-    for (first, part) in parts.blocks() {
-        evaluations += part.len() as u64;
-        for index in 0..part.len() {
-            failures += u64::from(part.failed[index]);
-            if part.score(index).feasible() {
-                let point = (first + index) * dimension;
-                front
-                    .points
-                    .extend_from_slice(&points[point..point + dimension]);
-                let values = index * objectives;
-                front
-                    .values
-                    .extend_from_slice(&part.values[values..values + objectives]);
-            }
-        }
-    }
-    front.evaluations += evaluations;
-    front.failures += failures;
-    let mut kept = non_dominated(&front.values, objectives);
-    kept.sort_by(|one, other| {
-        let first = |index: &usize| front.values[index * objectives] + 0.0;
-        first(other).total_cmp(&first(one)).then(one.cmp(other))
-    });
-    let rows = |all: &[f64], width: usize| -> Vec<f64> {
-        let of = |index: &usize| all[index * width..(index + 1) * width].iter().copied();
-        kept.iter().flat_map(of).collect()
-    };
-    front.points = rows(&front.points, dimension);
-    front.values = rows(&front.values, objectives);
-    (evaluations, failures)
 }

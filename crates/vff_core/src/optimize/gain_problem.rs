@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Mutex;
 
 use crate::error::{Failure, Result};
+use crate::laws::Stop;
 use crate::metrics::{Nominal, score};
 use crate::optimize::gain_objective::{
     Judged, Metric, MetricConstraint, Objective, Over, arrival_margin,
@@ -116,7 +117,7 @@ impl GainProblem {
     }
 
     /// Runs without obstacles of some points along a way: remembered, or made side by side.
-    fn nominal(&self, way: usize, points: &[f64]) -> Result<Vec<Nominal>> {
+    fn nominal(&self, way: usize, points: &[f64], stop: Stop<'_>) -> Result<Vec<Nominal>> {
         let dimension = self.dimension();
         let key = |set: &[f64]| (way, key_of(self.law.driven().free_gains(), set));
         let known = self.remembered(points, &key)?;
@@ -137,7 +138,7 @@ impl GainProblem {
         for sets in sets.chunks(plan.team(0) * dimension) {
             let way = &self.ways.scenarios[way];
             let driven = self.law.driven();
-            fresh.extend(nominal_runs(way, driven, sets, &plan, &|| false)?);
+            fresh.extend(nominal_runs(way, driven, sets, &plan, stop.0)?);
         }
         let mut made = missing.iter().zip(&fresh);
         let mut last: Option<(&(usize, Key), &Nominal)> = None;
@@ -174,6 +175,7 @@ impl GainProblem {
         points: &[f64],
         free: &[Nominal],
         judged: &mut [Judged],
+        stop: Stop<'_>,
     ) -> Result<()> {
         let (dimension, count) = (self.dimension(), self.scenarios.len());
         let scenario = &self.scenarios[index];
@@ -199,7 +201,7 @@ impl GainProblem {
                 scenario,
                 points: sets,
                 plan: &plan,
-                interrupted: &|| false,
+                interrupted: stop.0,
             };
             self.law.driven().run(&group, &mut |set, run, distance| {
                 let set = live[first + set];
@@ -279,10 +281,11 @@ impl Problem for GainProblem {
         let mut judged = vec![Judged::hopeless(); into.failed.len() * count];
         let mut free: Vec<Vec<Nominal>> = Vec::with_capacity(self.ways.scenarios.len());
         for way in 0..self.ways.scenarios.len() {
-            free.push(self.nominal(way, points)?);
+            free.push(self.nominal(way, points, into.stop)?);
         }
         for index in 0..count {
-            self.judge(index, points, &free[self.ways.of(index)], &mut judged)?;
+            let free = &free[self.ways.of(index)];
+            self.judge(index, points, free, &mut judged, into.stop)?;
         }
         let (objectives, constraints) = (&self.options.objectives, &self.options.constraints);
         let margins_each = self.constraints();

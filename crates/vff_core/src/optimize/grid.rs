@@ -1,7 +1,11 @@
 //! Coarse-to-fine grid: the best points of one grid span the next, Zeng (2011), C.2, steps 1-6.
 
+use std::cmp::Ordering;
+use std::sync::Mutex;
+
 use crate::error::{Failure, Given, Result};
-use crate::optimize::blocks::{Parts, Session};
+use crate::optimize::blocks::Session;
+use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::Fingerprint;
 use crate::optimize::observe::Stage;
 use crate::optimize::problem::{Bounds, Candidate, Problem, Score};
@@ -157,12 +161,9 @@ impl Grid {
         point
     }
 
-    /// Number of every position of the visit.
-    pub fn numbers(&self) -> Vec<usize> {
-        let mut point = vec![0.0; self.axes.len()];
-        (0..self.len())
-            .map(|position| self.visited(position, &mut point))
-            .collect()
+    /// Number of the point at a position of the visit.
+    fn number(&self, position: usize) -> usize {
+        self.visited(position, &mut vec![0.0; self.axes.len()])
     }
 }
 
@@ -201,52 +202,92 @@ pub(crate) fn grids(
         let grid = Grid::new(&range, &options.shape, problem.slowest_first());
         let stage = Stage::Grid { round };
         let points = |positions| grid.points(positions);
-        let parts = session.evaluate(stage, problem, grid.len(), &points)?;
-        let scores = ranked(&grid, &parts);
-        let failures = scores.iter().filter(|(score, _)| score.failed).count() as u64;
-        result.evaluations += scores.len() as u64;
-        result.failures += failures;
-        merge(&mut result.top, &grid, &scores, options.keep);
-        result.complete = parts.complete();
+        let ranking = Ranking::new(options.survivors.max(options.keep));
+        let take = |first: usize, _: &[f64], part: &Evaluated| ranking.take(&grid, first, part);
+        result.complete = session.evaluate(stage, problem, grid.len(), &points, &take)?;
+        let ranked = ranking.finish();
+        result.evaluations += ranked.evaluations;
+        result.failures += ranked.failures;
+        merge(&mut result.top, &grid, &ranked.best, options.keep);
         if !result.complete {
             break;
         }
-        let summary = summary(&grid, scores, failures, options.survivors);
+        let summary = summary(&grid, &ranked, options.survivors);
         range = next_range(bounds, &summary)?;
         result.rounds.push(summary);
     }
     Ok(result)
 }
 
-/// Scores of the points that were evaluated, with their numbers, in the order of the visit.
-fn ranked(grid: &Grid, parts: &Parts) -> Vec<(Score, usize)> {
-    let numbers = grid.numbers();
-    let mut scores = Vec::with_capacity(numbers.len());
-    for (first, part) in parts.blocks() {
-        let own = (0..part.len()).map(|index| part.score(index));
-        scores.extend(own.zip(numbers[first..].iter().copied()));
-    }
-    scores
+/// The best points of a round and how many there were, gathered while they are evaluated: nothing
+/// is left to do after a stop.
+struct Ranking {
+    keep: usize,
+    ranked: Mutex<Ranked>,
 }
 
-/// The best points in front, in order; points of the same score by their number.
-fn best_in_front(scores: &mut [(Score, usize)], count: usize) -> &[(Score, usize)] {
-    let order = |one: &(Score, usize), other: &(Score, usize)| {
-        one.0.order(&other.0).then(one.1.cmp(&other.1))
-    };
+#[derive(Default)]
+struct Ranked {
+    /// Scores with the numbers of their points, best first.
+    best: Vec<(Score, usize)>,
+    evaluations: u64,
+    failures: u64,
+}
+
+impl Ranking {
+    fn new(keep: usize) -> Self {
+        let ranked = Mutex::default();
+        Self { keep, ranked }
+    }
+
+    /// Takes the values of a block.
+    fn take(&self, grid: &Grid, first: usize, part: &Evaluated) {
+        let score = |index| (part.score(index), grid.number(first + index));
+        let mut own: Vec<(Score, usize)> = (0..part.len()).map(score).collect();
+        let failures = own.iter().filter(|(score, _)| score.failed).count() as u64;
+        best_in_front(&mut own, self.keep);
+        own.truncate(self.keep);
+        // A thread that panics while it holds the lock ends the whole search.
+        let Ok(mut ranked) = self.ranked.lock() else {
+            return;
+        };
+        ranked.evaluations += part.len() as u64;
+        ranked.failures += failures;
+        if ranked.best.len() == self.keep
+            && let Some(worst) = ranked.best.last()
+        {
+            own.retain(|one| order(one, worst).is_lt());
+        }
+        if !own.is_empty() {
+            ranked.best.append(&mut own);
+            best_in_front(&mut ranked.best, self.keep);
+            ranked.best.truncate(self.keep);
+        }
+    }
+
+    fn finish(self) -> Ranked {
+        self.ranked.into_inner().unwrap_or_default()
+    }
+}
+
+/// Better scores first; points of the same score by their number.
+fn order(one: &(Score, usize), other: &(Score, usize)) -> Ordering {
+    one.0.order(&other.0).then(one.1.cmp(&other.1))
+}
+
+/// Brings the best points to the front, in order.
+fn best_in_front(scores: &mut [(Score, usize)], count: usize) {
     let count = count.min(scores.len());
     if count < scores.len() {
         scores.select_nth_unstable_by(count, order);
     }
     scores[..count].sort_unstable_by(order);
-    &scores[..count]
 }
 
 /// Takes the best points of a round into the best of all; of equal ones the earlier stays ahead,
 /// and a point that is met again is not taken twice.
-fn merge(top: &mut Vec<Candidate>, grid: &Grid, scores: &[(Score, usize)], keep: usize) {
-    let mut scores = scores.to_vec();
-    for (score, number) in best_in_front(&mut scores, keep) {
+fn merge(top: &mut Vec<Candidate>, grid: &Grid, best: &[(Score, usize)], keep: usize) {
+    for (score, number) in best.iter().take(keep) {
         let point = grid.point(*number);
         if top.iter().any(|known| known.point == point) {
             continue;
@@ -263,9 +304,8 @@ fn merge(top: &mut Vec<Candidate>, grid: &Grid, scores: &[(Score, usize)], keep:
     top.truncate(keep);
 }
 
-fn summary(grid: &Grid, mut scores: Vec<(Score, usize)>, failures: u64, survivors: usize) -> Round {
-    let evaluations = scores.len() as u64;
-    let survivors = best_in_front(&mut scores, survivors);
+fn summary(grid: &Grid, ranked: &Ranked, survivors: usize) -> Round {
+    let survivors = &ranked.best[..survivors.min(ranked.best.len())];
     let (first, last) = (survivors[0], survivors[survivors.len() - 1]);
     let mut low = grid.point(first.1);
     let mut high = low.clone();
@@ -278,8 +318,8 @@ fn summary(grid: &Grid, mut scores: Vec<(Score, usize)>, failures: u64, survivor
     Round {
         axes: grid.axes.clone(),
         increments: grid.increments(),
-        evaluations,
-        failures,
+        evaluations: ranked.evaluations,
+        failures: ranked.failures,
         best: Candidate {
             point: grid.point(first.1),
             score: first.0,

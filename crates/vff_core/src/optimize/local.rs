@@ -1,6 +1,7 @@
 //! Constrained local searches from several starts, C.2, step 8.
 
 use crate::error::{Failure, Given, Result};
+use crate::laws::Stop;
 use crate::optimize::blocks::Session;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::{Fingerprint, SearchState};
@@ -175,7 +176,7 @@ pub fn local_search(
     }
     let session = Session::new(observer, SearchState::resumed(resume, sum.value())?);
     on_threads(threads, || {
-        let scored = Evaluated::of(problem, &starts.concat())?;
+        let scored = Evaluated::of(problem, &starts.concat(), Stop(&|| session.stopped()))?;
         let starts: Vec<Candidate> = starts
             .iter()
             .enumerate()

@@ -5,6 +5,7 @@
 //! Zeng (2011), appendix C.2. Every result is the same, bit for bit, for any number of threads,
 //! and after an interruption that was resumed.
 
+mod archive;
 mod blocks;
 mod evaluated;
 mod front;

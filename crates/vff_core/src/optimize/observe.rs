@@ -48,6 +48,10 @@ pub enum Control {
 pub trait Observer: Sync {
     /// A piece of work is done. `state` gives all that is needed to resume from here.
     fn report(&self, report: &Report<'_>, state: &dyn Fn() -> SearchState) -> Control;
+    /// Whether the search is to stop, asked often between two reports.
+    fn stopped(&self) -> bool {
+        false
+    }
 }
 
 /// Does not care.

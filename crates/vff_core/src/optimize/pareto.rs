@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 /// Whether a row is at least as good in every objective and better in one; all maximized.
-fn dominates(one: &[f64], other: &[f64]) -> bool {
+pub(crate) fn dominates(one: &[f64], other: &[f64]) -> bool {
     let pairs = || one.iter().zip(other);
     pairs().all(|(a, b)| a >= b) && pairs().any(|(a, b)| a > b)
 }

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::error::{Failure, Given, Result, finite};
+use crate::laws::Stop;
 
 /// A constraint may miss its limit by this much, in its own unit: rounding, and the last steps
 /// of a local search towards an active constraint.
@@ -17,6 +18,8 @@ pub struct Evaluation<'a> {
     pub margins: &'a mut [f64],
     /// Whether a point counts as a failure.
     pub failed: &'a mut [bool],
+    /// Whether to stop; what is there then counts for nothing.
+    pub stop: Stop<'a>,
 }
 
 /// A function to maximize over a box.

@@ -59,6 +59,7 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
                 bodies: situation.bodies,
                 robot,
                 interval: situation.interval,
+                stop: situation.stop,
             });
             wanted.x = wanted.x.replace(lane, x);
             wanted.y = wanted.y.replace(lane, y);

@@ -164,7 +164,7 @@ impl FieldDStarPlanner {
         self.status = if self.grid.goal_is_blocked() {
             PathStatus::GoalBlocked
         } else {
-            self.search.repair();
+            self.search.repair_until(situation.stop);
             if self.search.start_costs().contains(&f64::INFINITY) {
                 PathStatus::NoPath
             } else if leaving {

@@ -197,6 +197,7 @@ impl Planner for ReciprocalPlanner {
             bodies,
             robot,
             interval,
+            ..
         } = *situation;
         self.neighbors.clear();
         for (index, body) in bodies.iter().enumerate() {

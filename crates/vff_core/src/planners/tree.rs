@@ -8,13 +8,13 @@ pub mod safety;
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::forces::geometry::Body;
-use crate::laws::Situation;
+use crate::laws::{Situation, Stop};
 use crate::planners::Planner;
 use crate::planners::footprint::Footprint;
 use crate::planners::path::{PathStatus, distance, length, point_ahead, velocity_towards};
 use crate::scenario::Scenario;
 
-use growth::{Growth, Tree, is_free, shorten};
+use growth::{DRAWS_PER_LOOK, Growth, Tree, is_free, shorten};
 use safety::Stopping;
 
 /// Directions in which a way out of an obstacle's clearance is looked for.
@@ -222,7 +222,9 @@ impl TreePlanner {
             Some(position)
         };
         match entry {
-            Some(entry) if self.status != PathStatus::GoalBlocked => self.plan_from(entry),
+            Some(entry) if self.status != PathStatus::GoalBlocked => {
+                self.plan_from(entry, situation.stop);
+            }
             _ => self.path.clear(),
         }
         if self.path.is_empty() && self.status != PathStatus::GoalBlocked {
@@ -237,8 +239,10 @@ impl TreePlanner {
     }
 
     /// Plans from a free point; no path if neither the new tree nor the last path gives one.
-    fn plan_from(&mut self, entry: [f64; 2]) {
-        let found = self.tree.grow(entry, &self.footprints, &mut self.fresh);
+    fn plan_from(&mut self, entry: [f64; 2], stop: Stop<'_>) {
+        let found = self
+            .tree
+            .grow(entry, &self.footprints, &mut self.fresh, stop);
         if found {
             shorten(&mut self.fresh, &self.footprints);
         }
@@ -323,7 +327,10 @@ impl TreePlanner {
             return wanted;
         }
         let mut best: Option<(f64, [f64; 2])> = None;
-        for _ in 0..draws {
+        for draw in 1..=draws {
+            if draw % DRAWS_PER_LOOK == 0 && situation.stop.asked() {
+                break;
+            }
             let chance = self.tree.chance();
             // Uniform over the disc of speeds.
             let speed = self.max_speed * chance.unit().sqrt();

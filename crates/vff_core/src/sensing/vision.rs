@@ -109,7 +109,24 @@ pub struct Vision {
     pub compensated: bool,
 }
 
+/// Most frames of one body in a run.
+const MOST_FRAMES: f64 = 1e7;
+
 impl Vision {
+    /// Checks that a time in s holds frames that can be taken one by one.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn check_frames(&self, duration: f64) -> Result<()> {
+        if duration / self.period <= MOST_FRAMES {
+            return Ok(());
+        }
+        let rule = format!("be so long that {duration} s hold at most {MOST_FRAMES:e} frames");
+        let least = duration / MOST_FRAMES;
+        let error = Failure::invalid("period", rule, Given::Number(self.period));
+        Err(error.mended_by(format!("take at least {least:?} s")))
+    }
+
     /// Passes a vision whose values make sense.
     ///
     /// # Errors

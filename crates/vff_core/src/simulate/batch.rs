@@ -1,7 +1,6 @@
 //! Many runs: gain sets side by side in lanes, lane groups and scenarios over all cores.
 
-use groundwork::threads::on_threads;
-use rayon::prelude::*;
+use groundwork::threads::{on_threads, try_each};
 
 use crate::error::{Failure, Given, Result};
 use crate::metrics::{Weights, score};
@@ -179,9 +178,9 @@ impl Batch<'_> {
             .map_err(|error| error.of_run(|run| run * count))?;
         let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
         let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
-        tasks(&mut strips, plan.team(sets * count))
-            .into_par_iter()
-            .try_for_each(|task| self.work(task, &plan, (&ways, &nominal)))?;
+        try_each(tasks(&mut strips, plan.team(sets * count)), |task| {
+            self.work(task, &plan, (&ways, &nominal))
+        })?;
         Ok(BatchTable::gather(self.scenarios, &strips))
     }
 

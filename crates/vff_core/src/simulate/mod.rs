@@ -26,7 +26,7 @@ pub(crate) use table::min_clearance;
 use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::Vec2;
-use crate::laws::{FieldTerms, Situation};
+use crate::laws::{FieldTerms, Situation, Stop};
 use crate::scenario::Scenario;
 
 /// Asked now and then whether to stop.
@@ -71,6 +71,7 @@ fn at_state<T>(
         bodies: &bodies,
         robot,
         interval: scenario.rules.control_period,
+        stop: Stop::never(),
     }))
 }
 

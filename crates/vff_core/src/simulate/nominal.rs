@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
+use groundwork::threads::try_map;
 
 use crate::error::Result;
 use crate::metrics::Nominal;
@@ -128,14 +128,11 @@ impl NominalRuns {
         };
         let team = plan.team(0);
         let along = |way: &Scenario| -> Result<Vec<Nominal>> {
-            let parts: Vec<Vec<Nominal>> = sets
-                .par_chunks(team * dimension)
-                .enumerate()
-                .map(|(part, points)| {
-                    nominal_runs(way, law, points, &plan, interrupted)
-                        .map_err(|error| error.of_run(|run| first[part * team + run]))
-                })
-                .collect::<Result<_>>()?;
+            let chunks: Vec<&[f64]> = sets.chunks(team * dimension).collect();
+            let parts = try_map(chunks.len(), |part| {
+                nominal_runs(way, law, chunks[part], &plan, interrupted)
+                    .map_err(|error| error.of_run(|run| first[part * team + run]))
+            })?;
             Ok(parts.concat())
         };
         let runs = ways.scenarios.iter().map(along).collect::<Result<_>>()?;

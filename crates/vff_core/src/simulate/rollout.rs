@@ -3,7 +3,7 @@
 use crate::error::{Failure, Result};
 use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Mask, Real, Vec2};
-use crate::laws::{Law, Situation};
+use crate::laws::{Law, Situation, Stop};
 use crate::measurement::{Measured, Sensor};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
@@ -55,7 +55,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let mut seen = scene.frames[0].clone();
     let mut groups: Vec<Runs<'_, R>> = team
         .iter()
-        .map(|_| Runs::new(scenario, clock, &seen))
+        .map(|_| Runs::new(scenario, clock, &seen).heeding(Stop(interrupted)))
         .collect();
     // Positions between two samples are wanted only for robots that are measured late.
     let late = groups.first().is_some_and(|runs| runs.past.is_some());
@@ -179,6 +179,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         bodies: known,
         robot,
         interval: clock.interval,
+        stop: runs.stop,
     });
     runs.check_force(command.force, time)?;
     runs.command = command;
@@ -278,6 +279,7 @@ fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_
     let first = runs.acceleration;
     let robot = &runs.scenario.robot;
     let Clock { step, interval, .. } = runs.clock;
+    let stop = runs.stop;
     let (start, velocity) = (runs.position, runs.velocity);
     let mut push = |bodies: &[Body], position, velocity| {
         let state = RobotState { position, velocity };
@@ -287,6 +289,7 @@ fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_
                 bodies,
                 robot: state,
                 interval,
+                stop,
             },
         ))
     };

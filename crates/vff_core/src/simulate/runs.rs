@@ -3,7 +3,7 @@
 use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::{Mask, Real, Vec2};
-use crate::laws::Command;
+use crate::laws::{Command, Stop};
 use crate::measurement::Past;
 use crate::robots::WheelModel;
 use crate::scenario::Scenario;
@@ -23,6 +23,8 @@ const BOUND_MARGIN: f64 = 1e-6;
 pub(crate) struct Runs<'a, R: Real> {
     pub scenario: &'a Scenario,
     pub clock: Clock,
+    /// Whether to stop, for a law that thinks long.
+    pub stop: Stop<'a>,
     pub position: Vec2<R>,
     pub velocity: Vec2<R>,
     pub speed: R,
@@ -71,6 +73,7 @@ impl<'a, R: Real> Runs<'a, R> {
         let mut runs = Self {
             scenario,
             clock,
+            stop: Stop::never(),
             position: Vec2::splat(scenario.start),
             velocity,
             speed: R::zero(),
@@ -115,6 +118,11 @@ impl<'a, R: Real> Runs<'a, R> {
         if let Some(past) = &mut self.past {
             past.push(self.position);
         }
+    }
+
+    /// The same; a law that thinks long asks whether to stop.
+    pub fn heeding(self, stop: Stop<'a>) -> Self {
+        Self { stop, ..self }
     }
 
     /// Counts a sample of the force.

@@ -1,6 +1,6 @@
 //! The result of a batch as columns.
 
-use rayon::prelude::*;
+use groundwork::threads::{each_piece, map};
 
 use crate::metrics::Performance;
 use crate::scenario::Scenario;
@@ -50,7 +50,7 @@ impl Strip {
 
 /// A vector of one value, written by all cores: for many runs it is tens of megabytes.
 fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
-    rayon::iter::repeat_n(value, count).collect()
+    map(count, |_| value)
 }
 
 /// Columns of a batch; row `g * scenarios + s` is gain set `g` in scenario `s`.
@@ -156,7 +156,7 @@ impl Source<'_> {
             let (strip, set) = self.place(row);
             value(&self.strips[strip].cells[set])
         };
-        (0..self.rows).into_par_iter().map(of_row).collect()
+        map(self.rows, of_row)
     }
 
     /// Least distances of a row, and its scenario.
@@ -172,7 +172,7 @@ impl Source<'_> {
             let (scenario, distances) = self.of_row(row);
             value(scenario, distances)
         };
-        (0..self.rows).into_par_iter().map(of_row).collect()
+        map(self.rows, of_row)
     }
 
     fn distances(&self, width: usize) -> Vec<f64> {
@@ -180,8 +180,7 @@ impl Source<'_> {
             return Vec::new();
         }
         let mut matrix = filled(f64::NAN, self.rows * width);
-        let rows = matrix.par_chunks_exact_mut(width).enumerate();
-        rows.for_each(|(row, target)| {
+        each_piece(&mut matrix, width, |row, target| {
             let (_, distances) = self.of_row(row);
             target[..distances.len()].copy_from_slice(distances);
         });

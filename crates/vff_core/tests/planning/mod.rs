@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::Vec2;
-use vff_core::laws::Situation;
+use vff_core::laws::{Situation, Stop};
 use vff_core::motion::BodyState;
 use vff_core::obstacle::{Limits, Obstacle, Regions, Shape};
 use vff_core::planners::Planner;
@@ -43,6 +43,7 @@ pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Sit
             velocity: Vec2::splat(velocity),
         },
         interval: 0.06,
+        stop: Stop::never(),
     }
 }
 

@@ -4,6 +4,10 @@ use super::cost::corner_cost;
 use super::queue::{Key, Queue};
 use super::surroundings::{Neighbor, Triangle, bound, neighbors, triangles};
 use crate::error::{Failure, Given, Result};
+use crate::laws::Stop;
+
+/// Nodes that are expanded between two looks at whether to stop.
+const EXPANSIONS_PER_LOOK: u64 = 4096;
 
 /// Rings of blocked cells around the grid, so that every neighbor exists.
 const RINGS: usize = 2;
@@ -147,6 +151,11 @@ impl IncrementalSearch {
 
     /// Makes the costs of the corners of the robot's cell final.
     pub fn repair(&mut self) {
+        self.repair_until(Stop::never());
+    }
+
+    /// As [`Self::repair`], until told to stop; the costs are not final then.
+    pub(super) fn repair_until(&mut self, stop: Stop<'_>) {
         let mut dirty = std::mem::take(&mut self.dirty);
         for &node in &dirty {
             self.is_dirty[node] = false;
@@ -164,6 +173,9 @@ impl IncrementalSearch {
                 continue;
             }
             self.expansions += 1;
+            if self.expansions.is_multiple_of(EXPANSIONS_PER_LOOK) && stop.asked() {
+                break;
+            }
             if self.nodes[node].cost > self.nodes[node].lookahead {
                 self.lower(node);
             } else {

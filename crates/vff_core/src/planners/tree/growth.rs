@@ -4,8 +4,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::buckets::Buckets;
+use crate::laws::Stop;
 use crate::planners::footprint::Footprint;
 use crate::planners::path::distance;
+
+/// Draws between two looks at whether to stop.
+pub(super) const DRAWS_PER_LOOK: usize = 256;
 
 /// Steps shorter than this share of the step length add nothing.
 const LEAST_STEP: f64 = 1e-6;
@@ -113,12 +117,13 @@ impl Tree {
     }
 
     /// Grows a tree from a point until an edge reaches the goal, and writes the path there;
-    /// `false` if the draws do not suffice.
+    /// `false` if the draws do not suffice, or when told to stop.
     pub fn grow(
         &mut self,
         from: [f64; 2],
         footprints: &[Footprint],
         path: &mut Vec<[f64; 2]>,
+        stop: Stop<'_>,
     ) -> bool {
         path.clear();
         self.nodes.clear();
@@ -131,7 +136,10 @@ impl Tree {
             self.remember(path);
             return true;
         }
-        for _ in 0..self.growth.draws {
+        for draw in 1..=self.growth.draws {
+            if draw % DRAWS_PER_LOOK == 0 && stop.asked() {
+                return false;
+            }
             let target = self.target();
             let Some(node) = self.extend(target, footprints) else {
                 continue;

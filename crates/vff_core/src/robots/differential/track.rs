@@ -1,13 +1,11 @@
 //! Runs of a robot with ideal wheels that follows a reference.
 
-use rayon::prelude::*;
-
 use super::drive::{DifferentialDrive, DifferentialLimits, Pose, Twist};
 use super::reference::{Reference, ReferencePath};
 use super::tracker::{Tracker, Tracking};
 use crate::error::{Failure, Given, Result, finite_pair, positive};
 use crate::simulate::Interrupted;
-use groundwork::threads::on_threads;
+use groundwork::threads::{map, on_threads};
 
 /// Largest number of motion steps of one run.
 const MAX_STEPS: f64 = 1e8;
@@ -300,21 +298,17 @@ pub fn track_batch(
         positive(&format!("levels[{index}]"), *level)?;
     }
     on_threads(threads, || {
-        let rows: Vec<Result<TrackRow>> = starts
-            .par_iter()
-            .enumerate()
-            .map(|(index, start)| {
-                if interrupted() {
-                    return Err(Failure::Interrupted);
-                }
-                let path = &paths[if paths.len() == 1 { 0 } else { index }];
-                let row = course
-                    .summarize(path, start, levels)
-                    .map_err(|error| error.of_run(|_| index))?;
-                progress(1);
-                Ok(row)
-            })
-            .collect();
+        let rows: Vec<Result<TrackRow>> = map(starts.len(), |index| {
+            if interrupted() {
+                return Err(Failure::Interrupted);
+            }
+            let path = &paths[if paths.len() == 1 { 0 } else { index }];
+            let row = course
+                .summarize(path, &starts[index], levels)
+                .map_err(|error| error.of_run(|_| index))?;
+            progress(1);
+            Ok(row)
+        });
         // The first error by the order of the starts, whichever came first in time.
         rows.into_iter().collect()
     })

@@ -1,7 +1,5 @@
 //! The same scenario with many seeds.
 
-use rayon::prelude::*;
-
 use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::Body;
 use crate::lanes::Vec2;
@@ -13,7 +11,7 @@ use crate::simulate::built::motion::Reading;
 use crate::simulate::built::run::{clock_of, robot_of, run};
 use crate::simulate::group::AnyLaw;
 use crate::simulate::outcome::RunSummary;
-use groundwork::threads::on_threads;
+use groundwork::threads::{on_threads, try_map};
 
 /// What is kept of a run once every control period, and at its end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,8 +89,8 @@ pub fn repeat_built(
         return Err(Failure::invalid("seeds", rule, none));
     }
     let every = clock_of(scenario, built)?.steps_per_sample;
-    let one = |(index, seed): (usize, &u64)| {
-        let scenario = scenario.clone().reseeded(*seed);
+    let one = |index: usize| {
+        let scenario = scenario.clone().reseeded(seeds[index]);
         let mut robot = robot_of(&scenario, built)?;
         let mut sampled = Sampled {
             kept: Histories::default(),
@@ -111,5 +109,5 @@ pub fn repeat_built(
         progress(1);
         Ok((summary, sampled.finish()))
     };
-    on_threads(threads, || seeds.par_iter().enumerate().map(one).collect())
+    on_threads(threads, || try_map(seeds.len(), one))
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
-use crate::laws::Situation;
+use crate::laws::{Situation, Stop};
 use crate::metrics::{Performance, Weights, performance};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
@@ -109,6 +109,7 @@ pub(super) fn run(
                 bodies: seen.bodies,
                 robot: seen.robot,
                 interval: clock.interval,
+                stop: Stop(interrupted),
             });
             runs.check_force(command.force, time)?;
             runs.count_sample();

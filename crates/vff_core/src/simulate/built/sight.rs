@@ -82,6 +82,12 @@ impl<'a> Eye<'a> {
 impl Cameras {
     fn new(scenario: &Scenario, built: &Built) -> Result<Self> {
         let seed = scenario.seed;
+        for vision in [&built.robot_vision, &built.obstacle_vision]
+            .into_iter()
+            .flatten()
+        {
+            vision.check_frames(scenario.rules.time_limit)?;
+        }
         let pair = built.robot_vision.as_ref().map(|vision| -> Result<_> {
             let center = VisionSensor::new(vision, seed, 0)?;
             Ok([center, VisionSensor::new(vision, seed, MARK_STREAM)?])
