@@ -1,0 +1,35 @@
+"""Every bad input of the list is refused with exactly the message that the documents show."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+from bad_inputs import BAD_INPUTS, PENDING, message
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PAGE = (REPOSITORY / "docs" / "bad_inputs.md").read_text(encoding="utf-8")
+SCRIPT = runpy.run_path(str(REPOSITORY / "docs" / "list_bad_inputs.py"))
+CASES = [(name, call) for inputs in BAD_INPUTS.values() for name, call in inputs.items()]
+
+
+@pytest.mark.parametrize(("name", "call"), CASES, ids=[name for name, _ in CASES])
+def test_bad_input_gives_the_message_of_the_page(name: str, call: str, tmp_path: Path) -> None:
+    said = message(call, tmp_path.resolve())
+    assert SCRIPT["row"](name, call, said) in PAGE.splitlines()
+    assert str(tmp_path) not in said
+
+
+def test_page_shows_every_bad_input_and_no_other() -> None:
+    rows = re.findall(r"^\| (.+?) \| `", PAGE, re.MULTILINE)
+    assert rows == [name for name, _ in CASES]
+    assert len(rows) == len(set(rows)) >= 80
+
+
+def test_no_input_is_listed_twice() -> None:
+    both = [*BAD_INPUTS.items(), *PENDING.items()]
+    calls = [call for _, inputs in both for call in inputs.values()]
+    assert len(calls) == len(set(calls))
