@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgb, to_rgba
+from matplotlib.colors import to_rgb, to_rgba, to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -185,6 +185,22 @@ def _marker(line: Any) -> str:
     return f"polygon of {marker[0]}" if isinstance(marker, tuple) else str(marker)
 
 
+def _first(colors: Any) -> tuple[float, float, float]:
+    """Return the first of one or several colors; white without one."""
+    found = np.atleast_2d(np.asarray(to_rgba_array(colors)))
+    return to_rgb(found[0]) if len(found) else (1.0, 1.0, 1.0)
+
+
+def _face(handle: Any) -> tuple[float, float, float]:
+    """Return the color of the area of a patch or of the first of a collection."""
+    return _first(handle.get_facecolor())
+
+
+def _edge(handle: Any) -> tuple[float, float, float]:
+    """Return the color of the edge of a patch or of the first of a collection."""
+    return _first(handle.get_edgecolor())
+
+
 def unnamed_marks(figure: Figure) -> list[str]:
     """Return shapes of markers that are drawn, but neither in a legend nor beside a label; caps of intervals aside."""
     named = {_marker(handle) for legend in legends_of(figure) for handle in legend.legend_handles}
@@ -193,7 +209,7 @@ def unnamed_marks(figure: Figure) -> list[str]:
     for line in drawn_lines(figure):
         alone = line.get_linestyle() in NO_LINE or len(line.get_xdata()) == 1
         labelled = len(line.get_xdata()) == 1 and tuple(np.round(line.get_xydata()[0], 9)) in said
-        if _marker(line) not in {"", "_"} and alone and _marker(line) not in named and not labelled:
+        if _marker(line) and line.get_label() != "_nolegend_" and alone and _marker(line) not in named and not labelled:
             found.add(_marker(line))
     return sorted(found)
 
@@ -206,7 +222,7 @@ def unnamed_lines(figure: Figure) -> list[str]:
     handles = [handle for legend in legends_of(figure) for handle in legend.legend_handles]
     named = {to_rgb(handle.get_color()) for handle in handles if isinstance(handle, Line2D)}
     named |= {to_rgb(handle.get_markeredgecolor()) for handle in handles if isinstance(handle, Line2D)}
-    named |= {to_rgb(each.get_facecolor()) for each in handles if hasattr(each, "get_facecolor")}
+    named |= {_face(each) for each in handles if hasattr(each, "get_facecolor")}
     return sorted(
         {
             f"{line.get_label()!r} in {line.get_color()}"
@@ -242,8 +258,8 @@ def empty_entries(figure: Figure) -> list[str]:
                 color = to_rgb(handle.get_color())
                 generic = color == to_rgb(style.NEUTRAL) or color == (0.0, 0.0, 0.0)
                 there = shape in marks | {"o", ">"} if shape else generic or color in drawn | edges | areas
-            elif hasattr(handle, "get_facecolor") and to_rgb(style.NEUTRAL) != to_rgb(handle.get_edgecolor()):
-                there = to_rgb(handle.get_facecolor()) in patches | areas
+            elif hasattr(handle, "get_facecolor") and to_rgb(style.NEUTRAL) != _edge(handle):
+                there = not {_face(handle), _edge(handle)}.isdisjoint(patches | areas)
             else:
                 there = True  # grey samples of regions stand for every color
             if not there:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import doctest
 from collections.abc import Callable
 from typing import Any
 
@@ -218,6 +219,26 @@ PICTURES: dict[str, Callable[[], Any]] = {
 @pytest.mark.parametrize("name", PICTURES)
 def test_picture_can_be_read(name: str) -> None:
     assert_readable(PICTURES[name]())
+
+
+DRAWING = [name for name in plotting.__all__ if not name.startswith("animate") and name != "MissingExtraError"]
+
+
+@pytest.mark.parametrize("name", DRAWING)
+def test_picture_of_the_example_can_be_read(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw, drawn = getattr(plotting, name), []
+
+    def keep(*args: Any, **options: Any) -> Any:
+        drawn.append(draw(*args, **options))
+        return drawn[-1]
+
+    monkeypatch.setattr(plotting, name, keep)
+    known: dict[str, Any] = {}
+    for example in doctest.DocTestParser().get_examples(draw.__doc__):
+        exec(compile(example.source, name, "single"), known)
+    assert len(drawn) > 0
+    for figure in drawn:
+        assert_readable(figure)
 
 
 @pytest.mark.parametrize("draw", [plotting.plot_arena_paths, lambda runs: plotting.plot_arena_sequence(runs, [1.0])])

@@ -71,7 +71,8 @@ def energy(
             axes.set_title(name, loc="left")
         if axes is not panels[0]:
             axes.sharey(panels[0])
-    panels[0].legend(**style.LEGEND_BESIDE)
+    most = max(range(len(runs)), key=lambda index: runs[index].wheel_current.shape[1])
+    panels[0].legend(*panels[most].get_legend_handles_labels(), **style.LEGEND_BESIDE)
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
         loss = accumulated_loss(run)
         panels[-1].plot(run.time, loss, label=f"{name}, {loss[-1]:.2f} J", **style.run_look(index))

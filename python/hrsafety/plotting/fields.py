@@ -12,6 +12,7 @@ from hrsafety.navigation.forces import ForceField
 from hrsafety.plotting import inputs, shapes, style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
@@ -147,7 +148,9 @@ def force_field(
     spacing = stride * min(float(np.diff(grid.x).min()), float(np.diff(grid.y).min()))
     limits = _limits(grid, spacing / 2.0)
     figure = style.new_figure(
-        style.scene_height(limits, titled=title is not None, color_bar=True), title=title, compressed=True
+        style.scene_height(limits, legend_rows=2, titled=title is not None, color_bar=True),
+        title=title,
+        compressed=True,
     )
     axes = figure.subplots()
     style.frame_scene(axes, limits)
@@ -167,7 +170,17 @@ def force_field(
     bar = figure.colorbar(arrows, ax=axes, extend="both", pad=0.02, shrink=0.9)
     style.set_log_ticks(bar, low, high)
     bar.set_label(f"{term} force (N)")
+    style.legend_below(figure, _scene_handles(scenario), columns=5)
     return figure
+
+
+def _scene_handles(scenario: Scenario) -> list[Artist]:
+    """Return the legend of goal and obstacles."""
+    from matplotlib.lines import Line2D
+
+    star: style.Properties = {"marker": "*", "color": style.GOAL_COLOR, "markersize": 12, "linestyle": "none"}
+    regions = len(scenario.obstacles) > 0
+    return [Line2D([], [], label="goal", **star), *shapes.obstacle_handles(scenario.obstacles, regions=regions)]
 
 
 def _checked_places(scenario: Scenario, obstacle_position: npt.ArrayLike | None) -> Array:

@@ -107,7 +107,7 @@ def impact_histories(
             if index in marked:
                 _mark_peak(axes, run, values, look["color"])
         _finish(axes, quantity, limits)
-    handles = _history_handles(runs, names if len(runs) > 1 or labels is not None else [], panels)
+    handles = _history_handles(runs, names if len(runs) > 1 or labels is not None else [], list(panels))
     if handles:
         style.legend_below(figure, handles, columns=min(len(handles), 3))
     panels[-1].set_xlabel("time (ms)")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -53,9 +53,7 @@ def clear_labels(figure: Figure, labels: Iterable[Annotation]) -> None:
     figure.draw_without_rendering()  # lays out the axes, so that places in px are known
     taken: dict[Axes, tuple[Array, list[Bbox]]] = {}
     for drawn in wanted:
-        axes = drawn.axes
-        if axes is None:
-            continue
+        axes: Any = drawn.axes
         if axes not in taken:
             taken[axes] = (_curve_points(axes), _boxes(axes, wanted))
         points, boxes = taken[axes]
@@ -132,10 +130,13 @@ def _curve_points(axes: Axes) -> Array:
             found.append((where[:, np.newaxis] + square).reshape(-1, 2))
     for patch in axes.patches:
         if patch.get_visible():
-            found += [_dense(each) for each in patch.get_transform().transform_path(patch.get_path()).to_polygons()]
+            found += [
+                _dense(np.asarray(each))
+                for each in patch.get_transform().transform_path(patch.get_path()).to_polygons()
+            ]
     for collection in axes.collections:
-        if getattr(collection, "get_segments", None) is not None:
-            found += [_dense(np.asarray(axes.transData.transform(each))) for each in collection.get_segments()]
+        segments: Any = getattr(collection, "get_segments", list)
+        found += [_dense(np.asarray(axes.transData.transform(each))) for each in segments()]
     points = np.concatenate(found)
     return points[np.isfinite(points).all(axis=1)]
 

@@ -48,7 +48,7 @@ def paths(
     are shown with their active and critical regions. A moving obstacle leaves a dotted path.
     If the robot entered its active region, it is shown, with its regions, where it was when
     the robot came closest, together with the robot and a line between the two; with several
-    runs, once for each run and edged in the color of that run. Of more than six obstacles the
+    runs, edged in the color of the run, and once where it hardly moved between them. Of more than six obstacles the
     moving ones are shown without regions, but with their number; the dotted paths are only of
     those that came near. Runs whose paths lie on each other are lines of decreasing width, so
     that each can be seen. A first contact is marked by a cross.
@@ -161,7 +161,8 @@ def _draw_encounters(
     if met or not many:
         trace = longest.obstacle_position[:, index]
         axes.plot(trace[:, 0], trace[:, 1], ":", color=look.color, linewidth=1.0 if many else 1.6, zorder=2.5)
-    named, drawn = [], []
+    named: list[Annotation] = []
+    drawn: list[inputs.Array] = []
     for number, run, row in met:
         obstacle, place, robot = run.scenario.obstacles[index], run.obstacle_position[row, index], run.position[row]
         color = style.run_look(number)["color"]

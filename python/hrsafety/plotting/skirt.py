@@ -317,6 +317,8 @@ def skirt_sensor_counts(studies: Sequence[SmallestSkirt], *, title: str | None =
     >>> study = reactive.smallest_skirt(0.2, counts=[6, 9, 12], layouts=3)
     >>> figure = plotting.skirt_sensor_counts([study])
     """
+    from matplotlib.lines import Line2D
+
     if not studies:
         raise InvalidParameterError("studies", "hold at least one study", "none")
     figure = style.new_figure(4.9 + (0.3 if title is not None else 0.0), title=title)
@@ -330,7 +332,11 @@ def skirt_sensor_counts(studies: Sequence[SmallestSkirt], *, title: str | None =
     axes.set_ylim(-0.02, 1.02)
     axes.set_xlabel("number of sensors")
     axes.set_ylabel("share of the tests with contact")
-    style.legend_below(figure, axes.get_legend_handles_labels()[0], columns=2)
+    handles = [*axes.get_legend_handles_labels()[0]]
+    if any(study.sensors is not None for study in studies):
+        ring: style.Properties = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "linestyle": "none"}
+        handles.append(Line2D([], [], color=style.NEUTRAL, label="smallest number that is enough", **ring))
+    style.legend_below(figure, handles, columns=2)
     return figure
 
 

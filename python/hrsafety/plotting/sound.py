@@ -21,6 +21,7 @@ __all__ = ["sound_burst", "sound_fixes", "sound_likeness"]
 
 MILLI = 1000.0
 MICROPHONES = ("M1, right", "M2, middle", "M3, left")
+TRUE_LOOK: style.Properties = {"color": style.CONTACT_COLOR, "linewidth": 1.1, "linestyle": (0, (5, 3))}
 DOT_ALPHA = 0.35
 SIGMAS = 2.0
 SIGMAS_IN_VIEW = 3.5
@@ -81,11 +82,13 @@ def sound_burst(
         look = {"color": style.RUN_COLORS[index], "linewidth": 0.9}
         axes.plot(MILLI * recording.time[shown], recording.samples[index, shown], **look)
         if arrivals is not None:
-            axes.axvline(MILLI * arrivals[index], color=style.CONTACT_COLOR, linewidth=1.1, linestyle=(0, (5, 3)))
+            axes.axvline(MILLI * arrivals[index], label="arrival", **TRUE_LOOK)
         axes.set_title(MICROPHONES[index], loc="left", fontsize=style.SMALL_FONT_SIZE)
         axes.set_ylabel("share of scale")
     panels[-1].set_xlabel("time (ms)")
     panels[-1].set_xlim(MILLI * first, MILLI * last)
+    if arrivals is not None:
+        style.legend_below(figure, panels[0].get_legend_handles_labels()[0], columns=1)
     return figure
 
 
@@ -139,7 +142,7 @@ def sound_likeness(
             where, values = _curve(curve, pair)
             axes.plot(where, values / values.max(), label=name, marker="." if span else None, **style.run_look(place))
         if lags is not None:
-            axes.axvline(lags[index], color=style.CONTACT_COLOR, linewidth=1.1, linestyle=(0, (5, 3)))
+            axes.axvline(lags[index], label="true lag", **TRUE_LOOK)
         where, values = _curve(next(iter(curves.values())), pair)
         best = int(where[values.argmax()])
         axes.set_xlim((best - span, best + span) if span else (int(where[0]), int(where[-1])))

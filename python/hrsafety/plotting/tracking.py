@@ -70,11 +70,13 @@ def tracking_paths(
     >>> figure.axes[0].get_xlabel()
     'x (m)'
     """
+    from matplotlib.lines import Line2D
+
     groups = _groups(runs, labels)
     everyone = [run for _, members in groups for run in members]
     points: list[Any] = [part for run in everyone for part in (run.position, run.reference_position)]
     limits = inputs.view_limits(points, margin=MARGIN)
-    entries = len(groups) + 1
+    entries = len(groups) + 2
     rows = math.ceil(entries / LEGEND_COLUMNS)
     height = style.scene_height(limits, legend_rows=rows, titled=title is not None)
     figure = style.new_figure(height, title=title, compressed=True)
@@ -87,6 +89,7 @@ def tracking_paths(
         line.set_label(name)
         handles.append(line)
     handles.append(_draw_references(axes, everyone))
+    handles.append(Line2D([], [], marker="o", color=style.NEUTRAL, markersize=4, linestyle="none", label="start"))
     style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
     return figure
 
