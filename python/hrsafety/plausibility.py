@@ -89,6 +89,26 @@ RANGES: dict[str, Range] = {
         "fastest sprint over 100 m",
         "ids that changed from one person to another, or a wrong position",
     ),
+    "robot_mass": Range(0.05, 10000.0, "kg", "palm-sized robots to heavy industrial trucks", "g or t given for kg"),
+    "robot_radius": Range(0.01, 5.0, "m", "palm-sized robots to heavy industrial trucks", "mm or cm given for m"),
+    "robot_max_acceleration": Range(
+        0.01, 50.0, "m/s^2", "heavy trucks to what rubber tires hold several times over", "g or mm/s^2 given for m/s^2"
+    ),
+    "robot_max_angular_acceleration": Range(
+        0.01, 2000.0, "rad/s^2", "heavy trucks to light two-wheel robots", "degrees given for radians"
+    ),
+    "control_period": Range(1e-4, 1.0, "s", "fastest servo loops to slow planners", "ms given for s"),
+    "time_limit": Range(0.1, 86400.0, "s", "one evasion to one day", "ms given for s"),
+    "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),
+    "floor_position": Range(-10000.0, 10000.0, "m", "the largest sites", "mm given for m"),
+    "obstacle_size": Range(0.005, 1000.0, "m", "thin poles to long walls", "mm or cm given for m"),
+    "person_radius": Range(0.1, 1.0, "m", "a child to a long step with room around it", "mm or cm given for m"),
+    "person_speed": Range(
+        0.0, 12.5, "m/s", "standing to the fastest sprinter ever timed", "mm/s or km/h given for m/s"
+    ),
+    "obstacle_speed": Range(0.0, 40.0, "m/s", "standing to road vehicles", "mm/s or km/h given for m/s"),
+    "measurement_scale": Range(0.0, 1.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
+    "latency": Range(0.0, 5.0, "s", "immediate to very slow networks", "ms given for s"),
     # ---- impact -----------------------------------------------------------------------------
 }
 

@@ -122,8 +122,8 @@ LAW = nav.OptimalReciprocalCollisionAvoidance(horizon=HORIZON, reciprocal=True, 
 def commanded(agents: Agents) -> Array:
     """Return the velocities that the law wants, one agent after the other."""
     discs = [
-        # Regions mean nothing to this law; given ones are not computed.
-        nav.MovingDisc(center=place, velocity=velocity, radius=radius, critical_radius=0.0, active_radius=1.0)
+        # Regions mean nothing to this law; given ones leave no region to be computed.
+        nav.MovingDisc(center=place, velocity=velocity, radius=radius, critical_clearance=0.0, active_clearance=1.0)
         for place, velocity, radius in zip(agents.position, agents.velocity, agents.radius, strict=True)
     ]
     found = []

@@ -2,9 +2,12 @@
 
 use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::measurement::Measurement;
-use crate::obstacle::{Obstacle, Regions};
+use crate::obstacle::{Obstacle, Regions, Shape};
 use crate::region::{self, RobotLimits, Sensing};
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
+
+/// Rounding of a critical radius that was computed as the contact distance, in m.
+const ROUNDING: f64 = 1e-9;
 
 /// An obstacle whose regions are known.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,8 +70,8 @@ impl Scenario {
     ///
     /// # Errors
     /// A value is out of range, start and goal are within the arrival tolerance, the robot would
-    /// start in contact with an obstacle, or the goal lies in the active region of a stationary
-    /// one.
+    /// start in contact with an obstacle, the goal lies in the active region of a stationary one, or
+    /// a critical radius is below the distance at which robot and obstacle touch.
     pub fn new(
         robot: HolonomicRobot,
         start: [f64; 2],
@@ -252,12 +255,14 @@ fn place_all(
     let obstacles = obstacles.into_iter().enumerate();
     let obstacles = obstacles
         .map(|(index, obstacle)| {
-            place(robot, obstacle, rules.control_period, sensing)
-                .map_err(|error| error.within(&format!("obstacles[{index}]")))
+            let placed = place(robot, obstacle, rules.control_period, sensing)
+                .map_err(|error| error.within(&format!("obstacles[{index}]")))?;
+            check_critical_region(&placed, index, robot, rules, sensing)?;
+            Ok(placed)
         })
         .collect::<Result<Vec<_>>>()?;
-    for placed in &obstacles {
-        check_ends(placed, start, goal)?;
+    for (index, placed) in obstacles.iter().enumerate() {
+        check_ends(placed, index, start, goal)?;
     }
     Ok(obstacles)
 }
@@ -283,21 +288,21 @@ fn place(
         }
     };
     if regions.active_radius <= regions.critical_radius {
-        let rule = "be larger than critical_radius";
-        return Err(Failure::invalid(
-            "active_radius",
-            rule,
-            Given::Number(regions.active_radius),
-        ));
+        let rule = format!(
+            "be larger than critical_radius, {} m",
+            metres(regions.critical_radius)
+        );
+        let given = Given::Number(regions.active_radius);
+        return Err(Failure::invalid("active_radius", rule, given));
     }
     let contact_distance = robot.radius + obstacle.shape.inner_radius();
     if regions.active_radius <= contact_distance {
-        let rule = "be larger than the radii of robot and obstacle together";
-        return Err(Failure::invalid(
-            "active_radius",
-            rule,
-            Given::Number(regions.active_radius),
-        ));
+        let rule = format!(
+            "be larger than the radii of robot and obstacle together, {} m",
+            metres(contact_distance)
+        );
+        let given = Given::Number(regions.active_radius);
+        return Err(Failure::invalid("active_radius", rule, given));
     }
     let stationary = obstacle.motion.is_stationary();
     let speed_bound = obstacle.motion.speed_bound();
@@ -310,17 +315,73 @@ fn place(
     })
 }
 
-fn check_ends(placed: &PlacedObstacle, start: [f64; 2], goal: [f64; 2]) -> Result<()> {
+/// Refuses a critical region in which robot and obstacle touch before it is entered.
+fn check_critical_region(
+    placed: &PlacedObstacle,
+    index: usize,
+    robot: &RobotLimits,
+    rules: &Rules,
+    sensing: &Sensing,
+) -> Result<()> {
+    let critical = placed.regions.critical_radius;
+    if critical >= placed.contact_distance - ROUNDING {
+        return Ok(());
+    }
+    let owner = format!("obstacles[{index}]");
+    let safe = region::radii(robot, &placed.obstacle, rules.control_period, None, sensing)?;
+    let rule = format!(
+        "be at least {} m, where the robot (radius {} m) touches {owner}",
+        metres(placed.contact_distance),
+        robot.radius,
+    );
+    let name = format!("{owner}.critical_radius");
+    Err(
+        Failure::invalid(name, rule, Given::Number(critical)).mended_by(format!(
+            "leave it out, or give the {} m of region_radii or more, in which the robot can stop",
+            metres(safe.critical_radius)
+        )),
+    )
+}
+
+/// A length in m as a message shows it: rounded up to 0.1 mm, so that it does as a least value.
+fn metres(length: f64) -> f64 {
+    (length * 1e4 - 1e-4).ceil() / 1e4
+}
+
+fn check_ends(
+    placed: &PlacedObstacle,
+    index: usize,
+    start: [f64; 2],
+    goal: [f64; 2],
+) -> Result<()> {
     let state = placed.obstacle.motion.at(0.0, &mut 0);
+    let side = match placed.obstacle.shape {
+        Shape::Disc { .. } => "center",
+        Shape::Rectangle { .. } => "contour",
+    };
+    let refuse = |name: &str, rule: &str, given, distance: f64, least: f64| {
+        let rule = format!(
+            "{rule}: at least {} m from the {side} of obstacles[{index}]",
+            metres(least)
+        );
+        let away = metres(least - distance).max(1e-4);
+        let near = (distance * 1e4).round() / 1e4;
+        Failure::invalid(name, rule, Given::Pair(given))
+            .mended_by(format!("it is {near} m away, move it by {away} m or more"))
+    };
     let distance = placed.obstacle.distance(state.position, start);
     if state.present && distance <= placed.contact_distance {
-        let rule = "not be in contact with an obstacle";
-        return Err(Failure::invalid("start", rule, Given::Pair(start)));
+        let (rule, least) = (
+            "not be in contact with an obstacle",
+            placed.contact_distance,
+        );
+        return Err(refuse("start", rule, start, distance, least));
     }
     let distance = placed.obstacle.distance(state.position, goal);
-    if placed.stationary && distance < placed.regions.active_radius {
+    let least = placed.regions.active_radius;
+    if placed.stationary && distance < least {
         let rule = "lie outside the active region of every stationary obstacle";
-        return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
+        return Err(refuse("goal", rule, goal, distance, least));
     }
     Ok(())
 }

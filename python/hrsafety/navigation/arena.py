@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -15,8 +15,10 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_warnings import of_runs
 from hrsafety.navigation.simulation import Integrator
 from hrsafety.navigation.statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, with_units
 
 __all__ = ["ArenaResult", "Metric", "Standing", "arena", "step_cost"]
@@ -93,6 +95,15 @@ class ArenaResult(Table):
     min_distance: Array
     moving_contacts: npt.NDArray[np.int64]
     performance_total: Array
+    _ran: tuple[tuple[Scenario, ...], tuple[Law, ...]] | None = field(default=None, repr=False)
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why episodes may not mean what they seem to: the first warning of each kind, and how many follow."""
+        if self._ran is None:
+            return ()
+        scenes, laws = self._ran
+        return of_runs(scenes, [f"scenarios[{name!r}]" for name in self.scenario_names], laws)
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each law and episode.
@@ -292,6 +303,7 @@ def arena(
         min_distance=np.stack([table.min_distance for table in tables]),
         moving_contacts=np.stack([table.contacts_moving for table in tables]),
         performance_total=np.stack([table.performance_total for table in tables]),
+        _ran=(tuple(episodes[k] for k in np.unique(index, return_index=True)[1]), tuple(laws.values())),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
 from hrsafety.navigation.simulation import Integrator, check_weights
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = ["BatchSummary", "simulate_batch"]
@@ -87,6 +88,17 @@ class BatchSummary(Table):
     performance_energy_saving: Array
     descent_share: Array
     force_evaluations: npt.NDArray[np.int64]
+    _ran: tuple[tuple[Scenario, ...], Law] | None = field(default=None, repr=False)
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
+        from hrsafety.navigation import scenario_warnings  # found only when asked for
+
+        if self._ran is None:
+            return ()
+        scenes, law = self._ran
+        return scenario_warnings.of_runs(scenes, [f"scenarios[{k}]" for k in range(len(scenes))], [law])
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -110,7 +122,7 @@ class BatchSummary(Table):
         table: Columns = {}
         for entry in fields(self):
             values = getattr(self, entry.name)
-            if entry.name == "gain_names":
+            if entry.name in ("gain_names", "_ran"):
                 continue
             if entry.name == "gains":
                 table |= {name: values[:, i] for i, name in enumerate(self.gain_names)}
@@ -207,7 +219,7 @@ def simulate_batch(
         lanes=lanes,
         progress=callback("progress", progress),
     )
-    return BatchSummary(gain_names=law.GAIN_NAMES, **columns)
+    return BatchSummary(gain_names=law.GAIN_NAMES, _ran=(tuple(scenes), law), **columns)
 
 
 def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:

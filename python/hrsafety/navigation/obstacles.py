@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, number, numbers, pair, points, sequence
+from hrsafety._arguments import Pair, Parameters, not_negative, number, numbers, pair, points, positive, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Disc", "Human", "MovingDisc", "Obstacle", "Rectangle"]
@@ -21,17 +22,22 @@ Path = tuple[tuple[float, ...], tuple[Pair, ...]]
 
 
 class Obstacle(Parameters):
-    """What all obstacles share: a radius of the active and of the critical region.
+    """What all obstacles share: an active and a critical region.
 
-    Both radii may be left ``None``; a `Scenario` then computes them from the limits of its
-    robot (see `region_radii`). Given radii must obey active > critical >= 0.
+    A region is given by its radius as in the source, from the center of a disc and from the contour
+    of a rectangle to the center of the robot, or by its clearance, between the surfaces of obstacle
+    and robot for every shape. What is left ``None`` is computed by a `Scenario` from the limits of
+    its robot (see `region_radii`). Given values must obey active > critical >= 0, and a critical
+    radius may not be below the distance at which the scenario's robot touches the obstacle.
     """
 
-    __slots__ = ()
+    __slots__ = ("_given",)  # set only where a scenario filled in radii
     active_radius: float | None
     critical_radius: float | None
+    active_clearance: float | None
+    critical_clearance: float | None
+    max_speed: float | None
     _native: _hrsafety.Obstacle
-    _given: Obstacle | None
 
     def as_given(self) -> Self:
         """Return the obstacle as it was before a scenario filled in the radii of its regions.
@@ -48,7 +54,8 @@ class Obstacle(Parameters):
         >>> scene.obstacles[0].as_given() == nav.Disc(center=(2, 0), radius=0.1)
         True
         """
-        return self if self._given is None else self._given  # type: ignore[return-value]  # of the same class
+        given: Self = getattr(self, "_given", self)
+        return given
 
     def filled_in(self, **radii: float) -> Self:
         """Return the obstacle with the radii that were not given.
@@ -63,17 +70,73 @@ class Obstacle(Parameters):
         Obstacle
             A copy that remembers what was given.
         """
-        missing = {name: value for name, value in radii.items() if getattr(self, name) is None}
-        filled = dataclasses.replace(self, **missing)  # type: ignore[type-var]  # obstacles are dataclasses
-        filled._set(_given=self)
+        values = {name: getattr(self, name) for name in _init_names(type(self))}
+        values |= {name: value for name, value in radii.items() if values[name] is None}
+        if self._by_clearance():
+            values |= dict.fromkeys(_CLEARANCES.values())
+        filled = type(self)(**values)
+        object.__setattr__(filled, "_given", self)
         return filled
+
+    def _by_clearance(self) -> bool:
+        return self.active_clearance is not None or self.critical_clearance is not None
+
+    def contact_distance(self, robot_radius: float) -> float:
+        """Return the distance, measured as the radii are, at which a robot touches the obstacle.
+
+        Parameters
+        ----------
+        robot_radius : float
+            Radius of the robot in m.
+
+        Returns
+        -------
+        float
+            Distance in m from the center of a disc or the contour of a rectangle.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.Human(start=(0, 0), velocity=(1, 0)).contact_distance(0.25)
+        0.65
+        """
+        return robot_radius + self._inner_radius()
+
+    def _inner_radius(self) -> float:
+        """Return the part of the radii that lies inside the obstacle, in m."""
+        return float(getattr(self, "radius", 0.0))
+
+    def radii_from_clearances(self, robot_radius: float) -> dict[str, float]:
+        """Return the radii of the regions that were given by clearances.
+
+        Parameters
+        ----------
+        robot_radius : float
+            Radius of the robot in m.
+
+        Returns
+        -------
+        dict of str to float
+            ``active_radius`` and ``critical_radius`` in m, as far as given.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.Disc(center=(0, 0), radius=0.5, critical_clearance=0.25).radii_from_clearances(0.25)
+        {'critical_radius': 1.0}
+        """
+        if not self._by_clearance():
+            return {}
+        contact = self.contact_distance(robot_radius)
+        given = {radius: getattr(self, clearance) for radius, clearance in _CLEARANCES.items()}
+        return {radius: contact + clearance for radius, clearance in given.items() if clearance is not None}
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle by public fields; what a scenario filled in is filled in again."""
-        if self._given is None:
+        given = self.as_given()
+        if given is self:
             return super().__reduce__()
-        radii = {name: getattr(self, name) for name in ("active_radius", "critical_radius")}
-        return _filled_in, (self._given, radii)
+        return _filled_in, (given, {name: getattr(self, name) for name in _CLEARANCES})
 
     def _limits(self) -> dict[str, float | None]:
         limits = {}
@@ -81,7 +144,36 @@ class Obstacle(Parameters):
             value = getattr(self, name)
             limits[name] = None if value is None else number(name, value)
         self._set(**limits)
+        if self._by_clearance():
+            self._check_clearances()
         return limits
+
+    def _check_clearances(self) -> None:
+        """Check clearances, which exclude radii."""
+        for radius, clearance in _CLEARANCES.items():
+            value = getattr(self, clearance)
+            if value is not None:
+                check = positive if radius == "active_radius" else not_negative
+                self._set(**{clearance: check(clearance, value)})
+            if getattr(self, radius) is not None:
+                given = next(name for name in _CLEARANCES.values() if getattr(self, name) is not None)
+                remedy = "a radius is measured to the center of the robot, a clearance between the surfaces"
+                raise InvalidParameterError(radius, f"be None where {given} is given", getattr(self, radius), remedy)
+        active, critical = self.active_clearance, self.critical_clearance
+        if active is not None and critical is not None and active <= critical:
+            raise InvalidParameterError(
+                "active_clearance", f"be larger than critical_clearance, {critical:g} m", active
+            )
+
+
+# The clearance that stands for each radius.
+_CLEARANCES = {"active_radius": "active_clearance", "critical_radius": "critical_clearance"}
+
+
+@functools.cache
+def _init_names(kind: type[Obstacle]) -> tuple[str, ...]:
+    """Return the fields that a class takes; `dataclasses.replace` would look them up for every obstacle."""
+    return tuple(each.name for each in dataclasses.fields(kind) if each.init)  # type: ignore[arg-type]  # a dataclass
 
 
 def _filled_in(given: Obstacle, radii: dict[str, float]) -> Obstacle:
@@ -101,6 +193,9 @@ class Disc(Obstacle):
     active_radius, critical_radius : float or None
         Radii r_2 and r_3 of the active and critical region around the centre, in m; computed
         by the scenario when ``None``.
+    active_clearance, critical_clearance : float or None
+        The same regions measured between the surfaces of obstacle and robot, in m; instead of the
+        radii.
     max_speed : float or None
         Speed that the regions are sized for, in m/s; ``None`` means 0.
 
@@ -121,9 +216,10 @@ class Disc(Obstacle):
     radius: float
     active_radius: float | None = None
     critical_radius: float | None = None
+    active_clearance: float | None = None
+    critical_clearance: float | None = None
     max_speed: float | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
-    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -149,6 +245,9 @@ class Rectangle(Obstacle):
     active_radius, critical_radius : float or None
         Distances r_2 and r_3 of the borders of the active and critical region from the
         contour, in m; computed by the scenario when ``None``.
+    active_clearance, critical_clearance : float or None
+        The same regions measured between the surfaces of obstacle and robot, in m; instead of the
+        radii.
     max_speed : float or None
         Must be ``None`` or 0: a rectangle does not move.
 
@@ -171,9 +270,10 @@ class Rectangle(Obstacle):
     heading: float = 0.0
     active_radius: float | None = None
     critical_radius: float | None = None
+    active_clearance: float | None = None
+    critical_clearance: float | None = None
     max_speed: float | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
-    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -254,6 +354,9 @@ class MovingDisc(Obstacle):
         Where it comes to a sudden stop, in m; needs a velocity towards it and no acceleration.
     active_radius, critical_radius : float or None
         Radii r_2 and r_3 of the active and critical region, in m; computed when ``None``.
+    active_clearance, critical_clearance : float or None
+        The same regions measured between the surfaces of obstacle and robot, in m; instead of the
+        radii.
     max_speed : float or None
         Speed that the regions are sized for, in m/s; the largest initial speed of any segment
         of the motion when ``None``.
@@ -280,11 +383,12 @@ class MovingDisc(Obstacle):
     stop: Pair | None = None
     active_radius: float | None = None
     critical_radius: float | None = None
+    active_clearance: float | None = None
+    critical_clearance: float | None = None
     max_speed: float | None = None
     segments: tuple[Segment, ...] | None = None
     path: Path | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
-    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -331,6 +435,9 @@ class Human(Obstacle):
         Radius in m; the default is half an average step of 0.8 m.
     active_radius, critical_radius : float or None
         Radii r_2 and r_3 of the active and critical region, in m; computed when ``None``.
+    active_clearance, critical_clearance : float or None
+        The same regions measured between the surfaces of obstacle and robot, in m; instead of the
+        radii.
     max_speed : float or None
         Speed that the regions are sized for, in m/s; 1.0 when ``None``.
     segments, path : tuple or None
@@ -355,11 +462,12 @@ class Human(Obstacle):
     radius: float = 0.4
     active_radius: float | None = None
     critical_radius: float | None = None
+    active_clearance: float | None = None
+    critical_clearance: float | None = None
     max_speed: float | None = None
     segments: tuple[Segment, ...] | None = None
     path: Path | None = None
     _native: _hrsafety.Obstacle = field(init=False, repr=False, compare=False)
-    _given: Obstacle | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -380,7 +488,8 @@ class Human(Obstacle):
         position : array_like, shape (n, 2)
             Positions in m.
         **fields
-            ``radius``, ``active_radius``, ``critical_radius``, ``max_speed``.
+            ``radius``, ``active_radius``, ``critical_radius``, ``active_clearance``,
+            ``critical_clearance``, ``max_speed``.
 
         Returns
         -------
@@ -418,7 +527,8 @@ class Human(Obstacle):
             Duration in s, velocity at the begin of the segment in m/s, acceleration in m/s^2.
             After the last segment the velocity reached is kept.
         **fields
-            ``radius``, ``active_radius``, ``critical_radius``, ``max_speed``.
+            ``radius``, ``active_radius``, ``critical_radius``, ``active_clearance``,
+            ``critical_clearance``, ``max_speed``.
 
         Returns
         -------

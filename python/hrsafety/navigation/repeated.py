@@ -17,7 +17,9 @@ from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.built import AsBuilt, _checked
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_warnings import of_run
 from hrsafety.navigation.statistics import Share, wilson
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, with_units
 
 __all__ = ["Band", "Repeated", "repeat"]
@@ -93,6 +95,11 @@ class Repeated(Table):
     time: Array
     position: Array
     distance: Array
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the runs may not mean what they seem to: the warnings of the scenario that matter for the law."""
+        return of_run(self.scenario, self.law)
 
     def __len__(self) -> int:
         """Return the number of runs."""

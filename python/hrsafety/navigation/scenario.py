@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
@@ -11,6 +12,7 @@ from hrsafety._arguments import Pair, Parameters, number, pair, sequence, with_a
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Measurement", "Regions", "Scenario", "region_radii"]
 
@@ -114,8 +116,9 @@ class Scenario(Parameters):
     ------
     InvalidParameterError
         If a value is not finite or out of range, the robot would start in contact with an
-        obstacle, the goal lies in the active region of a stationary obstacle, or start and
-        goal are within the arrival tolerance.
+        obstacle, the goal lies in the active region of a stationary obstacle, start and goal are
+        within the arrival tolerance, or a critical radius is below the distance at which robot and
+        obstacle touch.
 
     Examples
     --------
@@ -139,6 +142,7 @@ class Scenario(Parameters):
     measurement: Measurement | None = None
     seed: int = 0
     _native: _hrsafety.Scenario = field(init=False, repr=False, compare=False)
+    _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values and compute the regions that were not given."""
@@ -152,22 +156,49 @@ class Scenario(Parameters):
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
             raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
         obstacles = _with_regions(self.robot, self.obstacles, self.control_period, self.measurement)
-        native = _hrsafety.Scenario(
-            robot=self.robot._native,
-            start=self.start,
-            goal=self.goal,
-            obstacles=[obstacle._native for obstacle in obstacles],
-            measurement=None if self.measurement is None else self.measurement._native,
-            seed=self.seed,
-            **values,
-        )
+        try:
+            native = _hrsafety.Scenario(
+                robot=self.robot._native,
+                start=self.start,
+                goal=self.goal,
+                obstacles=[obstacle._native for obstacle in obstacles],
+                measurement=None if self.measurement is None else self.measurement._native,
+                seed=self.seed,
+                **values,
+            )
+        except InvalidParameterError as error:
+            raise _naming_kinds(error, obstacles) from None
         self._set(obstacles=obstacles, _native=native)
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why a run of the scenario may not mean what it seems to; found when first asked for."""
+        if self._warnings is None:
+            from hrsafety.navigation import scenario_warnings  # which needs this module
+
+            self._set(_warnings=scenario_warnings.found(self))
+        return self._warnings  # type: ignore[return-value]  # just set
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        shown = ", ".join(f"{each.name}={getattr(self, each.name)!r}" for each in fields(self) if each.repr)
+        return "\n".join([f"Scenario({shown})", *map(str, self.warnings)])
 
 
 def _require(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         words = " or ".join(kind.__name__ for kind in kinds)
         raise InvalidParameterError(name, f"be {with_article(words)}", value)
+
+
+def _naming_kinds(error: InvalidParameterError, obstacles: tuple[Obstacle, ...]) -> InvalidParameterError:
+    """Return an error whose rule says of what kind the obstacle is that it names by its index."""
+
+    def named(found: re.Match[str]) -> str:
+        return f"{found[0]} ({type(obstacles[int(found[1])]).__name__})"
+
+    rule = re.sub(r"obstacles\[(\d+)\]", named, error.requirement)
+    return InvalidParameterError(error.argument, rule, error.value, error.remedy)
 
 
 def _with_regions(
@@ -178,12 +209,19 @@ def _with_regions(
 ) -> tuple[Obstacle, ...]:
     """Return the obstacles with every region radius filled in."""
     complete = []
+    sensing = None if measurement is None else measurement._native
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
         _require(f"obstacles[{index}]", obstacle, Obstacle)
-        given = obstacle.as_given()
+        given = getattr(obstacle, "_given", obstacle)  # as `as_given`, in the loop of every construction
         if None in (given.active_radius, given.critical_radius):
-            radii = region_radii(robot, given, control_period, measurement=measurement)
-            obstacle = given.filled_in(**radii._asdict())
+            radii = given.radii_from_clearances(robot.radius)
+            if len(radii) < 2:
+                # Everything is checked already: the native function without the checks of `region_radii`.
+                critical, active = _hrsafety.region_radii(
+                    robot._native, given._native, control_period, None, None, None, sensing
+                )
+                radii = {"critical_radius": critical, "active_radius": active, **radii}
+            obstacle = given.filled_in(**radii)
         complete.append(obstacle)
     return tuple(complete)
 

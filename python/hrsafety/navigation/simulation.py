@@ -15,6 +15,7 @@ from hrsafety.navigation.forces import check_law
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane
 
 __all__ = [
@@ -129,6 +130,13 @@ class Trajectory(Table):
             found[f"distance_{index}_m"] = self.distance[:, index]
         return found | plane("stabilizing_{}", self.stabilizing, "N") | {"lyapunov_N2": self.lyapunov}
 
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the run may not mean what it seems to: the warnings of its scenario that matter for its law."""
+        from hrsafety.navigation import scenario_warnings  # found only when asked for
+
+        return scenario_warnings.of_run(self.scenario, self.law)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Performance:
@@ -154,6 +162,11 @@ class Performance:
     energy_saving: float
     trajectory: Trajectory
     nominal: Trajectory
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the score may not mean what it seems to: the warnings of the run."""
+        return self.trajectory.warnings
 
 
 def simulate(

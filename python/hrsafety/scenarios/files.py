@@ -83,6 +83,8 @@ _MEASUREMENT: Keys = MappingProxyType(
 _REGIONS: dict[str, kind.Kind] = {
     "active_radius": kind.number,
     "critical_radius": kind.number,
+    "active_clearance": kind.number,
+    "critical_clearance": kind.number,
     "max_speed": kind.number,
 }
 _ROUND: dict[str, kind.Kind] = {"type": kind.word, "radius": kind.number, **_REGIONS}

@@ -1,0 +1,165 @@
+"""Whether obstacles that stand close every way of a robot: a coarse grid, on the safe side of doubt."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, Pair
+from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.scenario import Scenario
+
+__all__ = ["certainly_closed", "distance", "stands"]
+
+# Cells per radius of the robot, and most cells: beyond that the cells get larger.
+FINENESS = 5
+MOST_CELLS = 250_000
+
+# Fewer convex bodies than this enclose nothing.
+LEAST_BODIES = 3
+
+
+def stands(obstacle: Obstacle) -> bool:
+    """Return whether an obstacle stands for all time.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        What is asked about.
+
+    Returns
+    -------
+    bool
+        Whether it is a disc, a rectangle, or a body whose velocity is zero for ever.
+    """
+    if isinstance(obstacle, (Human, MovingDisc)):
+        still = obstacle.path is None and obstacle.segments is None and not any(obstacle.velocity)
+        return still and not any(getattr(obstacle, "acceleration", ()))
+    return isinstance(obstacle, (Disc, Rectangle))
+
+
+def distance(obstacle: Obstacle, point: Pair) -> float:
+    """Return the distance at time 0 that the radii of an obstacle are compared with.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        One that stands.
+    point : tuple of float
+        Where the center of the robot is, in m.
+
+    Returns
+    -------
+    float
+        Distance from the center of a disc or the contour of a rectangle, in m.
+    """
+    return float(_distances(obstacle, np.array([point[0]]), np.array([point[1]]))[0, 0])
+
+
+def _distances(obstacle: Obstacle, x: Array, y: Array) -> Array:
+    """Return distances at the crossings of columns x and rows y."""
+    if isinstance(obstacle, Rectangle):
+        cos, sin = math.cos(obstacle.heading), math.sin(obstacle.heading)
+        right, up = x[None, :] - obstacle.center[0], y[:, None] - obstacle.center[1]
+        along = np.abs(right * cos + up * sin) - 0.5 * obstacle.length
+        across = np.abs(up * cos - right * sin) - 0.5 * obstacle.width
+        return np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0))
+    center = _center(obstacle)
+    return np.hypot(x[None, :] - center[0], y[:, None] - center[1])
+
+
+def certainly_closed(scenario: Scenario) -> bool:
+    """Return whether the obstacles that stand close every way from start to goal.
+
+    A cell counts as closed only if the robot touches one obstacle wherever its center is in the cell,
+    and a way may lead over corners of cells. So ``True`` is certain; a gap that is too narrow by less
+    than a cell is not noticed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is asked about.
+
+    Returns
+    -------
+    bool
+        Whether there is no way.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> from hrsafety.navigation.free_space import certainly_closed
+    >>> box = [nav.Rectangle(center=c, length=4.2, width=0.2, heading=h, active_radius=0.4, critical_radius=0.3)
+    ...        for c, h in (((0, 2), 0), ((0, -2), 0), ((2, 0), 1.5708), ((-2, 0), 1.5708))]
+    >>> certainly_closed(nav.Scenario(start=(5, 0), goal=(0, 0), obstacles=box))
+    True
+    """
+    standing = [each for each in scenario.obstacles if stands(each)]
+    if len(standing) < LEAST_BODIES:
+        return False
+    ends = np.array([scenario.start, scenario.goal])
+    low, high = _bounds(standing, ends, scenario.robot.radius)
+    side = scenario.robot.radius / FINENESS
+    side = max(side, math.sqrt(float(np.prod(high - low)) / MOST_CELLS))
+    x, y = (np.arange(low[axis] - 2.0 * side, high[axis] + 3.0 * side, side) for axis in (0, 1))
+    reach = side / math.sqrt(2.0)  # from the center of a cell to its corner
+    free = np.ones((len(y), len(x)), dtype=bool)
+    for obstacle in standing:
+        closed = obstacle.contact_distance(scenario.robot.radius) - reach
+        if closed > 0.0:
+            (left, bottom), (right, top) = _box(obstacle, closed)
+            columns = slice(*np.searchsorted(x, [left, right]))
+            rows = slice(*np.searchsorted(y, [bottom, top]))
+            free[rows, columns] &= _distances(obstacle, x[columns], y[rows]) > closed
+    from_goal = np.hypot(x[None, :] - ends[1, 0], y[:, None] - ends[1, 1])
+    target = free & (from_goal <= scenario.arrival_tolerance + reach)
+    begin = np.hypot(x[None, :] - ends[0, 0], y[:, None] - ends[0, 1]) <= reach
+    return not _connected(free, begin & free, target)
+
+
+def _bounds(standing: list[Obstacle], ends: Array, radius: float) -> tuple[Array, Array]:
+    """Return the corners of the area outside which everything is free."""
+    corners = np.concatenate([ends, *(_box(obstacle, radius) for obstacle in standing)])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def _box(obstacle: Obstacle, margin: float) -> Array:
+    """Return the corners of an upright box around an obstacle."""
+    center = np.array(_center(obstacle))
+    half = margin + obstacle.contact_distance(0.0)
+    if isinstance(obstacle, Rectangle):
+        half += 0.5 * math.hypot(obstacle.length, obstacle.width)
+    return np.array([center - half, center + half])
+
+
+def _center(obstacle: Obstacle) -> Pair:
+    """Return where the center of an obstacle that stands is, in m."""
+    if isinstance(obstacle, Human):
+        return obstacle.start
+    if isinstance(obstacle, (Disc, MovingDisc, Rectangle)):
+        return obstacle.center
+    raise TypeError(type(obstacle).__name__)
+
+
+def _connected(free: npt.NDArray[np.bool_], begin: npt.NDArray[np.bool_], target: npt.NDArray[np.bool_]) -> bool:
+    """Return whether free cells, corners included, lead from the begin to the target."""
+    rows, columns = free.shape
+    padded = np.zeros((rows + 2, columns + 2), dtype=bool)
+    padded[1:-1, 1:-1] = free
+    wanted = np.zeros_like(padded)
+    wanted[1:-1, 1:-1] = target
+    open_cells, goal = padded.ravel(), wanted.ravel()
+    width = columns + 2
+    around = np.array([-width - 1, -width, -width + 1, -1, 1, width - 1, width, width + 1])
+    start = np.zeros_like(padded)
+    start[1:-1, 1:-1] = begin
+    front = np.flatnonzero(start.ravel())
+    while len(front):
+        if goal[front].any():
+            return True
+        open_cells[front] = False
+        near = np.unique(front[:, None] + around)
+        front = near[open_cells[near]]
+    return False

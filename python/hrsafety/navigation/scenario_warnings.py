@@ -1,0 +1,228 @@
+"""Why a run of a scenario may not mean what it seems to: regions, plausible numbers, ways that are closed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from hrsafety.navigation import free_space
+from hrsafety.navigation.laws import Law, VirtualForceField
+from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.scenario import Scenario, region_radii
+from hrsafety.plausibility import ResultWarning, implausible
+
+__all__ = ["found", "of_run", "of_runs"]
+
+# A critical radius this far below the safe one is that one, typed with fewer digits; in m.
+ROUNDING = 1e-9
+
+BELOW_SAFE = "region_below_safe"
+
+
+def found(scenario: Scenario) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is looked at.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"implausible"``,
+        ``"goal_out_of_reach"`` and ``"closed_in"``.
+    """
+    return tuple(
+        [*_regions(scenario), *_starts(scenario), *_plausibility(scenario), *_reach(scenario), *_closed(scenario)]
+    )
+
+
+def of_run(scenario: Scenario, law: Law) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a scenario that matter for a law.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where it runs.
+    law : Law
+        What drives the robot. Only the virtual force field brakes in critical regions, so their size
+        says nothing about the other laws.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        The warnings.
+    """
+    if isinstance(law, VirtualForceField):
+        return scenario.warnings
+    about_regions = (BELOW_SAFE, "start_in_critical_region")
+    return tuple(each for each in scenario.warnings if each.code not in about_regions)
+
+
+def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:
+    """Return the warnings of many runs, the first of each kind with the number of the others.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        Where they run.
+    names : sequence of str
+        Their names, for the subjects.
+    laws : iterable of Law
+        What drives the robots.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One for each code, in the order in which they were found.
+    """
+    kept = list(laws)
+    first: dict[str, ResultWarning] = {}
+    others: dict[str, int] = {}
+    for name, scenario in zip(names, scenarios, strict=True):
+        seen = {each: None for law in kept for each in of_run(scenario, law)}
+        for each in seen:
+            if each.code in first:
+                others[each.code] = others.get(each.code, 0) + 1
+            else:
+                message = f"{name}: {each.message}"
+                first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", message)
+    more = {code: f" ({count} more of this kind in these scenarios)" for code, count in others.items()}
+    return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
+
+
+def _regions(scenario: Scenario) -> Iterator[ResultWarning]:
+    """Yield critical regions in which the robot cannot be sure to stop."""
+    for index, obstacle in enumerate(scenario.obstacles):
+        given = obstacle.as_given()
+        sized, speed = _sized_for(given), _own_speed(given)
+        faster = speed > sized + ROUNDING
+        if not faster and given.critical_radius is None and given.critical_clearance is None:
+            continue  # computed as the safe one
+        checked = replace(given, max_speed=speed) if faster else given  # type: ignore[type-var]  # a dataclass
+        safe = region_radii(scenario.robot, checked, scenario.control_period, measurement=scenario.measurement)
+        radius = obstacle.critical_radius
+        if radius is None or radius >= safe.critical_radius - ROUNDING:
+            continue
+        remedy = "leave it out"
+        why = "region_radii"
+        if scenario.measurement is not None:
+            why += " with this measurement"
+        if faster:
+            why += f" for the {speed:.4g} m/s at which it moves, above the {sized:g} m/s of max_speed"
+            remedy = f"give max_speed={_up(speed):g}"
+        yield ResultWarning(
+            BELOW_SAFE,
+            f"obstacles[{index}].critical_radius",
+            f"critical_radius of obstacles[{index}] ({type(obstacle).__name__}) is {radius:.4g} m, below the "
+            f"{_up(safe.critical_radius):.4f} m in which the robot can stop ({why}); {remedy}",
+        )
+
+
+def _up(value: float) -> float:
+    return math.ceil(value * 1e4 - 1e-4) / 1e4
+
+
+def _sized_for(obstacle: Obstacle) -> float:
+    """Return the speed that the regions of an obstacle are sized for, in m/s."""
+    if obstacle.max_speed is not None:
+        return obstacle.max_speed
+    return 1.0 if isinstance(obstacle, Human) else _own_speed(obstacle)
+
+
+def _own_speed(obstacle: Obstacle) -> float:
+    """Return the largest speed that the motion of an obstacle is known to have, in m/s."""
+    if not isinstance(obstacle, (Human, MovingDisc)):
+        return 0.0
+    if obstacle.path is not None:
+        instants, places = obstacle.path
+        steps = zip(instants, instants[1:], places, places[1:], strict=False)
+        return max((math.dist(first, second) / (late - soon) for soon, late, first, second in steps), default=0.0)
+    if obstacle.segments is None:
+        return math.hypot(*obstacle.velocity)
+    starts = (math.hypot(*velocity) for _, velocity, _ in obstacle.segments)
+    return max(starts, default=0.0)
+
+
+def _starts(scenario: Scenario) -> Iterator[ResultWarning]:
+    """Yield starts from which the robot never moves: in the critical region of something that stands."""
+    for index, obstacle in enumerate(scenario.obstacles):
+        if not free_space.stands(obstacle):
+            continue
+        distance = free_space.distance(obstacle, scenario.start)
+        radius = obstacle.critical_radius
+        if radius is not None and distance <= radius:
+            yield ResultWarning(
+                "start_in_critical_region",
+                "start",
+                f"start is {distance:.4g} m from obstacles[{index}] ({type(obstacle).__name__}), inside its critical "
+                f"region of {radius:.4g} m, where the robot brakes and never leaves; move it by "
+                f"{_up(radius - distance):g} m",
+            )
+
+
+def _plausibility(scenario: Scenario) -> tuple[ResultWarning, ...]:
+    """Return numbers outside the ranges of their quantities."""
+    robot = scenario.robot
+    values: dict[str, object] = {
+        "start": scenario.start,
+        "goal": scenario.goal,
+        "heading": scenario.heading,
+        "control_period": scenario.control_period,
+        "time_limit": scenario.time_limit,
+        "arrival_tolerance": scenario.arrival_tolerance,
+    }
+    quantities = {"start": "floor_position", "goal": "floor_position"}
+    for name in ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"):
+        values[f"robot.{name}"] = getattr(robot, name, None)
+        quantities[f"robot.{name}"] = f"robot_{name}"
+    if scenario.measurement is not None:
+        values["measurement.scale"] = scenario.measurement.scale
+        values["measurement.latency"] = scenario.measurement.latency
+        quantities |= {"measurement.scale": "measurement_scale", "measurement.latency": "latency"}
+    for index, obstacle in enumerate(scenario.obstacles):
+        for name, (value, quantity) in _numbers(obstacle).items():
+            values[f"obstacles[{index}].{name}"] = value
+            quantities[f"obstacles[{index}].{name}"] = quantity
+    return implausible(values, quantities)
+
+
+def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
+    """Return the numbers of an obstacle with their quantities."""
+    found: dict[str, tuple[object, str]] = {}
+    for place in ("start", "center"):
+        found[place] = (getattr(obstacle, place, None), "floor_position")
+    if isinstance(obstacle, Rectangle):
+        found |= {name: (getattr(obstacle, name), "obstacle_size") for name in ("length", "width")}
+        return found | {"heading": (obstacle.heading, "heading")}
+    person = isinstance(obstacle, Human)
+    kind = "person_speed" if person else "obstacle_speed"
+    found["radius"] = (getattr(obstacle, "radius", None), "person_radius" if person else "obstacle_size")
+    return found | {"velocity": (_own_speed(obstacle), kind), "max_speed": (obstacle.max_speed, kind)}
+
+
+def _reach(scenario: Scenario) -> Iterator[ResultWarning]:
+    """Yield goals that are too far for the time limit."""
+    away = math.dist(scenario.start, scenario.goal) - scenario.arrival_tolerance
+    reach = scenario.robot.max_speed * scenario.time_limit
+    if away > reach:
+        needed = math.ceil(away / scenario.robot.max_speed)
+        yield ResultWarning(
+            "goal_out_of_reach",
+            "goal",
+            f"goal is {away:g} m away and the robot covers at most {reach:g} m at {scenario.robot.max_speed:g} m/s in "
+            f"time_limit = {scenario.time_limit:g} s; give time_limit={needed} or more",
+        )
+
+
+def _closed(scenario: Scenario) -> Iterator[ResultWarning]:
+    """Yield stationary obstacles that leave no way for the robot."""
+    if free_space.certainly_closed(scenario):
+        yield ResultWarning(
+            "closed_in",
+            "obstacles",
+            f"obstacles that stand close every way from start to goal for a robot of radius "
+            f"{scenario.robot.radius:g} m; move start, goal or an obstacle",
+        )
