@@ -70,7 +70,7 @@ class Obstacle(Parameters):
         Obstacle
             A copy that remembers what was given.
         """
-        values = {name: getattr(self, name) for name in _init_names(type(self))}
+        values = {name: getattr(self, name) for name in _init_names(type(self))}  # type: ignore[arg-type]  # a class
         values |= {name: value for name, value in radii.items() if values[name] is None}
         if self._by_clearance():
             values |= dict.fromkeys(_CLEARANCES.values())

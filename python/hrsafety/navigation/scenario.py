@@ -302,12 +302,13 @@ def region_radii(
     _require("obstacle", obstacle, Obstacle)
     if measurement is not None:
         _require("measurement", measurement, Measurement)
-    optional = {"faced_side": faced_side, "latency": latency, "position_error": position_error}
     critical, active = _hrsafety.region_radii(
         robot._native,
         obstacle._native,
         number("control_period", control_period),
-        *(_number_or_none(name, value) for name, value in optional.items()),
+        _number_or_none("faced_side", faced_side),
+        _number_or_none("latency", latency),
+        _number_or_none("position_error", position_error),
         None if measurement is None else measurement._native,
     )
     return Regions(critical, active)

@@ -122,7 +122,7 @@ def scene_points(obstacles: Iterable[Obstacle]) -> list[Array]:
 
 def region_radii(obstacle: Obstacle) -> tuple[float, float]:
     """Return active and critical radius of an obstacle that belongs to a scenario, in m."""
-    return obstacle.active_radius, obstacle.critical_radius  # type: ignore[attr-defined]  # filled in by the scenario
+    return obstacle.active_radius, obstacle.critical_radius  # type: ignore[return-value]  # filled in by the scenario
 
 
 def region_patches(obstacle: Obstacle, position: npt.ArrayLike, color: str, *, filled: bool = True) -> list[Patch]:
