@@ -68,6 +68,8 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "radius": POSITIVE,
         "active_radius": OPTIONAL_POSITIVE,
         "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "active_clearance": OPTIONAL_POSITIVE,
+        "critical_clearance": OPTIONAL_NOT_NEGATIVE,
         "max_speed": OPTIONAL_NOT_NEGATIVE,
     },
     "Rectangle": {
@@ -77,6 +79,8 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "heading": NUMBER,
         "active_radius": OPTIONAL_POSITIVE,
         "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "active_clearance": OPTIONAL_POSITIVE,
+        "critical_clearance": OPTIONAL_NOT_NEGATIVE,
         "max_speed": (*OPTIONAL_NOT_NEGATIVE, 0.5),
     },
     "MovingDisc": {
@@ -87,6 +91,8 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "stop": (*OPTIONAL_POINT, (3.0, 5.0), (4.0, 3.0)),
         "active_radius": OPTIONAL_POSITIVE,
         "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "active_clearance": OPTIONAL_POSITIVE,
+        "critical_clearance": OPTIONAL_NOT_NEGATIVE,
         "max_speed": OPTIONAL_NOT_NEGATIVE,
     },
     "Human": {
@@ -96,6 +102,8 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "radius": POSITIVE,
         "active_radius": OPTIONAL_POSITIVE,
         "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "active_clearance": OPTIONAL_POSITIVE,
+        "critical_clearance": OPTIONAL_NOT_NEGATIVE,
         "max_speed": OPTIONAL_NOT_NEGATIVE,
     },
     "Scenario": {
