@@ -63,10 +63,19 @@ def number(name: str, value: object) -> float:
     """Return ``value`` as a float, or say what it should have been."""
     if isinstance(value, (bool, np.bool_, str, bytes)):
         raise InvalidParameterError(name, "be a number", value)
+    _check_mask(name, value)
     try:
         return float(value)  # type: ignore[arg-type]  # the failure is the check
     except (TypeError, ValueError, OverflowError):
         raise InvalidParameterError(name, "be a number", value) from None
+
+
+def _check_mask(name: str, value: object) -> None:
+    """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
+    masked = np.ma.count_masked(value) if isinstance(value, np.ma.MaskedArray) else 0
+    if masked:
+        shown = Shown(f"{masked} masked of {value.size}")  # type: ignore[attr-defined]  # a masked array
+        raise InvalidParameterError(name, "have no masked values", shown, "leave them out with .compressed()")
 
 
 def positive(name: str, value: object) -> float:
@@ -175,6 +184,10 @@ def sequence(name: str, rule: str, value: object) -> list[Any]:
 
 def numbers(name: str, value: object, rule: str = "be a number or an array of numbers") -> Array:
     """Return ``value`` as a contiguous array; words, None and complex numbers are refused."""
+    _check_mask(name, value)
+    if isinstance(value, (list, tuple)):
+        for each in value:
+            _check_mask(name, each)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):

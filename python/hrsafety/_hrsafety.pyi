@@ -975,6 +975,7 @@ def recorded_metrics(
     manipulator_velocity: _Array | None,
     start: float | None,
     linear_range: float,
+    thickness: float,
 ) -> _Row:
     """Return numbers, status and whether the foam leaves its linear range, of a recorded impact."""
 

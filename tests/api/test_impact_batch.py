@@ -74,7 +74,7 @@ def test_every_number_can_be_an_array() -> None:
         "manipulator_stiffness": source.uniform(1e3, 40e3, 40),
         "foam_stiffness": source.uniform(2e3, 80e3, 40),
         "foam_damping": source.uniform(0.0, 200.0, 40),
-        "linear_range": source.uniform(0.005, 0.03, 40),
+        "linear_range": source.uniform(0.005, 0.0254, 40),
         "head_mass": source.uniform(3.0, 6.0, 40),
         "head_damping": source.uniform(0.0, 150.0, 40),
         "head_stiffness": source.uniform(1e3, 6e3, 40),

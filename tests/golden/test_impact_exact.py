@@ -33,7 +33,7 @@ def parts(p: Parameters) -> tuple[impact.Manipulator, impact.Foam, impact.Head]:
     """Return the parameter objects of one set; the linear range is far away."""
     return (
         impact.Manipulator(mass=p[0], damping=p[1], stiffness=p[2]),
-        impact.Foam(stiffness=p[6], damping=p[7], linear_range=LINEAR_RANGE),
+        impact.Foam(stiffness=p[6], damping=p[7], thickness=LINEAR_RANGE, linear_range=LINEAR_RANGE),
         impact.Head(mass=p[3], damping=p[4], stiffness=p[5]),
     )
 

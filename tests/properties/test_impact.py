@@ -39,7 +39,11 @@ manipulators = st.builds(
 )
 heads = st.builds(impact.Head, mass=st.floats(3.0, 7.0), damping=st.floats(0.0, 200.0), stiffness=st.floats(500.0, 1e4))
 foams = st.builds(
-    impact.Foam, stiffness=st.floats(2e3, 1.5e5), damping=st.floats(0.0, 350.0), linear_range=st.just(1e6)
+    impact.Foam,
+    stiffness=st.floats(2e3, 1.5e5),
+    damping=st.floats(0.0, 350.0),
+    thickness=st.just(1e6),
+    linear_range=st.just(1e6),
 )
 speeds = st.floats(0.05, 2.0)
 shares = st.floats(0.0, 1.0)

@@ -127,7 +127,8 @@ impl<'a> Columns<'a> {
             foam: Foam {
                 stiffness: self.foam_stiffness.at(row),
                 damping: self.foam_damping.at(row),
-                thickness: 1.0,
+                // Rows have none; whoever knows it tells crushed foams from the compression.
+                thickness: f64::MAX,
                 linear_range: self.linear_range.at(row),
             },
             head: match self.head {
@@ -296,6 +297,7 @@ fn code(status: Status) -> u8 {
         Status::NoImpact => 4,
         Status::InvalidParameter => 5,
         Status::TooStiff => 6,
+        Status::Bottomed => 7,
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::batch;
 use crate::error::{Result, finite, positive};
 use crate::motion::{Motion, cell_length};
-use crate::parameters::{GRAVITY, System, Target};
+use crate::parameters::{Foam, GRAVITY, System, Target};
 use crate::roots::{Peak, maximum};
 use crate::series::Plant;
 use crate::windows::{Window, first_fall, held, injury};
@@ -38,11 +38,13 @@ pub enum Status {
     InvalidParameter,
     /// The fastest root is too fast for the horizon.
     TooStiff,
+    /// Released, but the foam was compressed by more than it is thick.
+    Bottomed,
 }
 
 impl Status {
     /// All of them; the place of one is its code in a batch.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Released,
         Self::NoRelease,
         Self::BeyondLinearRange,
@@ -50,7 +52,20 @@ impl Status {
         Self::NoImpact,
         Self::InvalidParameter,
         Self::TooStiff,
+        Self::Bottomed,
     ];
+
+    /// What a released impact is worth, from its largest compression: NaN where there is none.
+    #[must_use]
+    pub fn released(compression: f64, foam: &Foam) -> Self {
+        if compression > foam.thickness {
+            Self::Bottomed
+        } else if compression > foam.linear_range {
+            Self::BeyondLinearRange
+        } else {
+            Self::Released
+        }
+    }
 
     /// The word for it.
     #[must_use]
@@ -63,6 +78,7 @@ impl Status {
             Self::NoImpact => "no_impact",
             Self::InvalidParameter => "invalid_parameter",
             Self::TooStiff => "too_stiff",
+            Self::Bottomed => "bottomed",
         }
     }
 }
@@ -182,6 +198,7 @@ pub struct Impact {
     constrained: bool,
     duration: f64,
     end: f64,
+    horizon: f64,
     pieces: usize,
 }
 
@@ -205,6 +222,7 @@ impl Impact {
             constrained,
             duration: f64::INFINITY,
             end: horizon,
+            horizon,
             pieces: 0,
         };
         impact.run(horizon);
@@ -305,6 +323,37 @@ impl Impact {
         })
     }
 
+    /// Largest compression until the foam gives back, which may be after the impact period; infinite
+    /// if it does not within the horizon: then the foam stops nothing, whatever the period says.
+    #[must_use]
+    pub fn compression_of_contact(&self) -> f64 {
+        let inside = self.max_compression().value;
+        if self.motion.compression(self.end)[1] <= 0.0 {
+            return inside;
+        }
+        let mut motion = self.motion.clone();
+        let piece = motion.length() / PIECES as f64;
+        let mut from = self.end;
+        while from < self.horizon {
+            let to = (from + piece).min(self.horizon);
+            motion.reach(to);
+            if motion.compression(to)[1] <= 0.0 {
+                let turn = maximum(
+                    |time| {
+                        let [value, first, second, _] = motion.compression(time);
+                        [value, first, second]
+                    },
+                    from,
+                    to,
+                    1,
+                );
+                return inside.max(turn.value);
+            }
+            from = to;
+        }
+        f64::INFINITY
+    }
+
     /// Window of the head injury criterion, accelerations in m/s^2.
     #[must_use]
     pub fn injury(&self, width: f64) -> Window {
@@ -385,6 +434,11 @@ pub fn metrics(system: &System, closing_speed: f64, options: &MetricOptions) -> 
         return Ok(Metrics::none(Status::NoImpact));
     }
     match batch::usual(system, closing_speed, options) {
+        // A batch knows linear ranges only.
+        Some(metrics) if metrics.status == Status::BeyondLinearRange => Ok(Metrics {
+            status: Status::released(metrics.max_compression, &system.foam),
+            ..metrics
+        }),
         Some(metrics) => Ok(metrics),
         None => searched(system, closing_speed, options),
     }
@@ -467,10 +521,8 @@ impl Peaks {
             Status::Constrained
         } else if impact_duration.is_infinite() {
             Status::NoRelease
-        } else if compression.value > system.foam.linear_range {
-            Status::BeyondLinearRange
         } else {
-            Status::Released
+            Status::released(compression.value, &system.foam)
         }
     }
 }

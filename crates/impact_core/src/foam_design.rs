@@ -30,8 +30,10 @@ pub enum Quantity {
     Injury15,
     /// Head injury criterion, windows up to 36 ms.
     Injury36,
-    /// Largest compression; limit in m.
+    /// Largest compression in the impact period; limit in m.
     Compression,
+    /// Largest compression until the foam gives back, infinite if it never does; limit in m.
+    ContactCompression,
 }
 
 impl Quantity {
@@ -44,6 +46,7 @@ impl Quantity {
             Self::Injury15 => "hic15",
             Self::Injury36 => "hic36",
             Self::Compression => "max_compression",
+            Self::ContactCompression => "contact_compression",
         }
     }
 
@@ -52,7 +55,10 @@ impl Quantity {
     pub fn power(self) -> f64 {
         match self {
             Self::Injury15 | Self::Injury36 => 2.5,
-            Self::HeadAcceleration | Self::ContactForce | Self::Compression => 1.0,
+            Self::HeadAcceleration
+            | Self::ContactForce
+            | Self::Compression
+            | Self::ContactCompression => 1.0,
         }
     }
 }
@@ -282,7 +288,7 @@ fn check(problem: &DesignProblem, requirements: &[Requirement]) -> Result<()> {
             Target::Constrained => {
                 let meaningful = matches!(
                     requirement.quantity,
-                    Quantity::ContactForce | Quantity::Compression
+                    Quantity::ContactForce | Quantity::Compression | Quantity::ContactCompression
                 );
                 if !meaningful {
                     let rule = "not be limited for a constrained head";
@@ -354,6 +360,10 @@ impl DesignProblem {
             }
             Quantity::ContactForce => impact.peak_contact_force(),
             Quantity::Compression => impact.max_compression(),
+            Quantity::ContactCompression => {
+                let largest = impact.compression_of_contact();
+                return Ok((largest, CrossingStatus::LocalMaximum));
+            }
             Quantity::Injury15 | Quantity::Injury36 => {
                 let index = usize::from(requirement.quantity == Quantity::Injury36);
                 let window = impact.injury(INJURY_WINDOWS[index]);
@@ -389,7 +399,7 @@ impl DesignProblem {
     }
 
     /// Largest closing speed at which a foam of this damping keeps all requirements, and its
-    /// stiffness. Metrics are powers of the closing speed, so one response serves all speeds.
+    /// stiffness; 0 and NaN where none does at any speed. Metrics are powers of the closing speed, so one response serves all speeds.
     ///
     /// # Errors
     /// An argument is out of range.
@@ -409,11 +419,12 @@ impl DesignProblem {
             .nodes()
             .map(|stiffness| Ok([stiffness, speed(stiffness)?]))
             .collect::<Result<Vec<_>>>()?;
-        let mut best = [f64::NAN, f64::NEG_INFINITY];
+        let mut best = [f64::NAN, 0.0];
         for (index, node) in nodes.iter().enumerate() {
             let left = nodes[index.saturating_sub(1)];
             let right = nodes[(index + 1).min(nodes.len() - 1)];
-            if node[1] < left[1] || node[1] < right[1] {
+            // Foam that stops nothing keeps nothing, at any speed.
+            if node[1] == 0.0 || node[1] < left[1] || node[1] < right[1] {
                 continue;
             }
             let found = golden(&speed, left[0], right[0])?;

@@ -14,7 +14,7 @@ pub use drive::{
     DirectDriveFit, DriveConstants, OpenLoop, PdGains, Tube, TubeInertia, fit_open_loop,
     identify_direct_drive, pd_gains, tube_inertia,
 };
-pub use drop_test::{DropContact, DropModel, drop_trajectory};
+pub use drop_test::{DropContact, DropModel, drop_trajectory, drop_trajectory_until};
 pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam, identify_foam_until};
 pub use line::{Line, fit_static, student_quantile};
 

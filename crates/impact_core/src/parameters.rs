@@ -1,6 +1,6 @@
 //! Manipulator, foam, head and the system they make.
 
-use crate::error::{Result, not_negative, positive};
+use crate::error::{Failure, Given, Result, not_negative, positive};
 
 /// Standard acceleration of gravity, in m/s^2.
 pub const GRAVITY: f64 = 9.806_65;
@@ -36,7 +36,7 @@ pub struct Foam {
     pub damping: f64,
     /// Thickness `T_u`, in m.
     pub thickness: f64,
-    /// Largest compression `lambda` of the linear range, in m.
+    /// Largest compression `lambda` of the linear range, in m; at most the thickness.
     pub linear_range: f64,
 }
 
@@ -148,6 +148,14 @@ impl Foam {
         not_negative("damping", self.damping)?;
         positive("thickness", self.thickness)?;
         positive("linear_range", self.linear_range)?;
+        if self.linear_range > self.thickness {
+            let rule = format!("be at most the thickness of {} m", self.thickness);
+            let failure = Failure::invalid("linear_range", rule, Given::Number(self.linear_range));
+            return Err(failure.mended_by(
+                "give the thickness as well, or leave linear_range out for the smaller of 0.02 m \
+                 and 0.8 of the thickness",
+            ));
+        }
         Ok(self)
     }
 }

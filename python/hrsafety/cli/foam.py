@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +14,7 @@ import numpy as np
 from hrsafety import impact
 from hrsafety.cli import foam_page, output
 from hrsafety.cli.foam_file import Array, FoamDesignFile, load
+from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,7 +77,9 @@ class Judged:
     foam : Foam
         Its parameters.
     accepted : bool
-        Whether all limits are kept.
+        Whether all limits are kept, and the foam stays in its linear range.
+    status : str
+        See `FoamMargin.status`.
     checks : tuple of Check
         Each limit.
     max_closing_speed : float
@@ -86,8 +89,17 @@ class Judged:
     name: str
     foam: impact.Foam
     accepted: bool
+    status: str
     checks: tuple[Check, ...]
     max_closing_speed: float
+
+    @property
+    def verdict(self) -> str:
+        """Whether the foam fits, and if its model says nothing about that, why."""
+        if self.accepted:
+            return "fits"
+        why = {"bottomed": ": bottomed", "beyond_linear_range": ": beyond linear range"}
+        return f"does not fit{why.get(self.status, '')}"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,9 +115,13 @@ class FoamReport:
     foams : tuple of Judged
         The foams.
     widest : Range or None
-        Widest range of stiffness, if any foam fits and both boundaries are limited.
+        Widest range of stiffness that keeps the margin, if any foam does.
     feasibility : FoamFeasibility
-        Whether some foam of the range of damping fits, and up to which closing speed.
+        Whether some foam of the range of damping fits with the margin, and up to which closing speed.
+    fitting : (ndarray, ndarray)
+        Least and largest stiffness that keep the limits at each damping, without a margin.
+    warnings : tuple of ResultWarning
+        Numbers of the file that are hardly what was meant.
     """
 
     file: FoamDesignFile
@@ -114,6 +130,8 @@ class FoamReport:
     foams: tuple[Judged, ...]
     widest: Range | None
     feasibility: impact.FoamFeasibility
+    fitting: tuple[Array, Array]
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 def design_file(options: argparse.Namespace) -> None:
@@ -138,6 +156,7 @@ def design_file(options: argparse.Namespace) -> None:
     print()
     for path in _write(report, place):
         print(f"wrote {path}")
+    output.report_warnings(report.warnings, options.strict)
 
 
 # ---- judging ----------------------------------------------------------------------------------------
@@ -153,29 +172,49 @@ _LOADS = {
 
 
 def _report(file: FoamDesignFile) -> FoamReport:
-    design = impact.design_foam(file.manipulator, file.limits, closing_speed=file.closing_speed)
-    bounded = file.limits.given().keys()
-    upper = design.upper(file.damping) if bounded - {"max_compression"} else None
-    lower = design.lower(file.damping) if "max_compression" in bounded else None
+    # Beyond its linear range no foam keeps a limit: the range is one, whether the file names it or not.
+    most = min(file.limits.max_compression or math.inf, file.sought.linear_range)
+    limits = replace(file.limits, max_compression=most)
+    design = impact.design_foam(
+        file.manipulator,
+        limits,
+        closing_speed=file.closing_speed,
+        thickness=file.sought.thickness,
+        linear_range=file.sought.linear_range,
+    )
+    upper = design.upper(file.damping) if limits.given().keys() - {"max_compression"} else None
     return FoamReport(
         file=file,
         upper=upper,
-        lower=lower,
+        lower=design.lower(file.damping),
         foams=tuple(_judged(design, name, foam) for name, foam in file.foams.items()),
-        widest=_widest(file.damping, upper, lower),
-        feasibility=design.feasibility(file.damping),
+        widest=_widest(file.damping, *design.stiffness_range(file.damping, file.margin)),
+        feasibility=design.feasibility(file.damping, file.margin),
+        fitting=design.stiffness_range(file.damping, 0.0),
+        warnings=_warnings(file, design),
     )
 
 
-def _widest(damping: Array, upper: impact.FoamBoundary | None, lower: impact.FoamBoundary | None) -> Range | None:
-    """Return the widest range of stiffness where both boundaries exist."""
-    if upper is None or lower is None:
-        return None
-    width = upper.stiffness - lower.stiffness
-    if not np.any(width > 0.0):
+def _warnings(file: FoamDesignFile, design: impact.FoamDesign) -> tuple[ResultWarning, ...]:
+    """Return the warnings of all numbers of the file, those of a foam with its place in it."""
+    of_foams = [
+        replace(each, subject=f"foams[{index}].{each.subject}", message=f"foams[{index}] ({name!r}): {each.message}")
+        for index, (name, foam) in enumerate(file.foams.items())
+        for each in foam.warnings
+    ]
+    return (*design.warnings, *file.limits.warnings, *file.sought.warnings, *of_foams)
+
+
+def _widest(damping: Array, least: Array, largest: Array) -> Range | None:
+    """Return the widest range of stiffness, if there is one at any damping."""
+    width = largest - least
+    if np.isnan(width).all():
         return None
     index = int(np.nanargmax(width))
-    return Range(float(damping[index]), float(lower.stiffness[index]), float(upper.stiffness[index]))
+    if np.isinf(width[index]):
+        # Nothing limits the stiffness: the range that begins first is the widest.
+        index = int(np.nanargmin(np.where(np.isinf(width), least, np.nan)))
+    return Range(float(damping[index]), float(least[index]), float(largest[index]))
 
 
 def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
@@ -190,7 +229,13 @@ def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
         # Loads are proportional to this power of the closing speed.
         speeds.append(design.closing_speed * (1.0 - margin) ** (-1.0 / power) if margin < 1.0 else math.inf)
     return Judged(
-        name=name, foam=foam, accepted=design.accepts(foam), checks=tuple(checks), max_closing_speed=min(speeds)
+        name=name,
+        foam=foam,
+        accepted=design.accepts(foam),
+        status=left.status,
+        checks=tuple(checks),
+        # The range of the foam itself binds as well; loads that never end leave no speed at all.
+        max_closing_speed=min(*speeds, design.closing_speed / max(1.0 - left.linear_range, 1e-300)),
     )
 
 
@@ -205,12 +250,16 @@ def _summary(report: FoamReport) -> Iterator[str]:
     yield f"limits         {foam_page.limits_words(file.limits)}"
     found = report.feasibility
     span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
+    yield f"margin         {100.0 * file.margin:g} % of every limit and of the linear range"
+    if not found.max_closing_speed > 0.0:
+        yield f"foams          none fits with a damping of {span}, at any speed"
+        return
     if not found.feasible:
         yield f"foams          none fits with a damping of {span}"
         yield f"slow down by   {found.slow_down:.3f} m/s"
     elif report.widest is not None:
-        damping, low, high = report.widest
-        yield f"foams          fit; widest range at {damping:g} N s/m: {low / KILO:.2f} to {high / KILO:.2f} kN/m"
+        words = foam_page.range_words(report.widest)
+        yield f"foams          fit; widest range at {report.widest.damping:g} N s/m: {words}"
     else:
         yield f"foams          fit with a damping of {span}"
     yield (
@@ -223,7 +272,7 @@ def _foam_table(report: FoamReport) -> str:
     rows = []
     for judged in report.foams:
         values = [f"{check.value:.3f}{'' if check.kept else ' !'}" for check in judged.checks]
-        verdict = "fits" if judged.accepted else "does not fit"
+        verdict = judged.verdict
         stiffness, damping = f"{judged.foam.stiffness / KILO:.2f}", f"{judged.foam.damping:.1f}"
         rows.append((judged.name, verdict, stiffness, damping, *values, f"{judged.max_closing_speed:.3f}"))
     checks = report.foams[0].checks
@@ -272,6 +321,7 @@ def _picture(report: FoamReport) -> Figure:
         accepted={judged.name: judged.accepted for judged in report.foams},
         statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},
         results=[design],
+        fitting=report.fitting,
         upper_label="upper",
         lower_label="lower",
         title=report.file.title,

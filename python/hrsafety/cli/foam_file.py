@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from hrsafety import impact
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.impact.design import DEFAULT_MARGIN, check_margin
 from hrsafety.scenarios import files
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
@@ -28,6 +29,9 @@ _TOP: Keys = MappingProxyType(
     {
         "title": kind.word,
         "closing_speed": kind.number,
+        "margin": kind.number,
+        "thickness": kind.number,
+        "linear_range": kind.number,
         "manipulator": kind.table,
         "limits": kind.table,
         "damping": kind.table,
@@ -73,6 +77,10 @@ class FoamDesignFile:
         What must be kept.
     closing_speed : float
         In m/s.
+    margin : float
+        Share of every limit that advice leaves.
+    sought : Foam
+        Thickness and linear range of the foam that is looked for.
     damping : ndarray, shape (n,)
         Foam damping that is looked at, in N s/m.
     foams : dict of str to Foam
@@ -83,6 +91,8 @@ class FoamDesignFile:
     manipulator: impact.Manipulator
     limits: impact.FoamLimits
     closing_speed: float
+    margin: float
+    sought: impact.Foam
     damping: Array
     foams: dict[str, impact.Foam]
 
@@ -117,6 +127,12 @@ def load(path: str) -> FoamDesignFile:
         manipulator=manipulator_of(fields["manipulator"]),
         limits=kept,
         closing_speed=speed,
+        margin=check_margin(fields.get("margin", DEFAULT_MARGIN)),
+        sought=impact.Foam(
+            stiffness=1e4,
+            damping=0.0,
+            **{name: fields[name] for name in ("thickness", "linear_range") if name in fields},
+        ),
         damping=_damping(fields.get("damping", {})),
         foams=_foams(fields.get("foams", [])),
     )

@@ -15,9 +15,9 @@ from hrsafety.reproduce.markup import figure
 
 if TYPE_CHECKING:
     from hrsafety import impact
-    from hrsafety.cli.foam import FoamReport, Judged
+    from hrsafety.cli.foam import FoamReport, Judged, Range
 
-__all__ = ["html", "limits_words"]
+__all__ = ["html", "limits_words", "range_words"]
 
 KILO = 1000.0
 STATUS_WORDS = {
@@ -40,6 +40,13 @@ def limits_words(limits: impact.FoamLimits) -> str:
     return ", ".join(
         f"{name} {scale * value:g} {unit}".rstrip() for name, value, scale, unit in parts if value is not None
     )
+
+
+def range_words(found: Range) -> str:
+    """Return a range of stiffness in words; it may have no upper end."""
+    if np.isinf(found.high):
+        return f"{found.low / KILO:.2f} kN/m and more"
+    return f"{found.low / KILO:.2f} to {found.high / KILO:.2f} kN/m"
 
 
 def html(report: FoamReport, picture: bytes) -> str:
@@ -67,6 +74,7 @@ def html(report: FoamReport, picture: bytes) -> str:
             f"<title>{title}</title>",
             f"<style>{style}</style></head><body><main>",
             f"<h1>{title}</h1>",
+            *_warnings(report),
             *_answer(report),
             figure("Boundaries of the foam stiffness over the foam damping, and the foams of the file.", picture),
             *_foams(report),
@@ -77,6 +85,12 @@ def html(report: FoamReport, picture: bytes) -> str:
     )
 
 
+def _warnings(report: FoamReport) -> Iterator[str]:
+    if report.warnings:
+        items = "".join(f"<li>{escape(message)}</li>" for message in dict.fromkeys(map(str, report.warnings)))
+        yield f'<div class="banner no"><strong>Is this what was meant?</strong><ul>{items}</ul></div>'
+
+
 def _answer(report: FoamReport) -> Iterator[str]:
     """Yield what was asked and whether there is a foam for it."""
     file = report.file
@@ -84,23 +98,32 @@ def _answer(report: FoamReport) -> Iterator[str]:
     yield (
         f"<p>Manipulator at the impact point: {arm.mass:g} kg, {arm.damping:g} N s/m, {arm.stiffness / KILO:g} kN/m. "
         f"Closing speed {file.closing_speed:g} m/s. Limits: {escape(limits_words(file.limits))}; acceleration and HIC "
-        "with the lightest head on the softest neck, force and compression with the heaviest on the stiffest.</p>"
+        "with the lightest head on the softest neck, force and compression with the heaviest on the stiffest. Foam is "
+        f"linear up to {KILO * file.sought.linear_range:g} mm of {KILO * file.sought.thickness:g} mm; no limit counts as "
+        "kept beyond that.</p>"
     )
     found = report.feasibility
     fastest = f"{found.max_closing_speed:.3f} m/s, with {found.stiffness / KILO:.2f} kN/m and {found.damping:g} N s/m"
+    margin = f"with {100.0 * file.margin:g} % of every limit and of the linear range to spare"
+    span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
+    if not found.max_closing_speed > 0.0:
+        yield (
+            f'<p class="banner no"><strong>No foam with a damping of {span} fits at any speed.</strong> None gives back '
+            f"within its linear range {margin}.</p>"
+        )
+        return
     if not found.feasible:
         yield (
-            f'<p class="banner no"><strong>No foam with a damping of {file.damping[0]:g} to {file.damping[-1]:g} N s/m '
-            f"fits at {file.closing_speed:g} m/s.</strong> The largest closing speed at which one would: {fastest}. "
+            f'<p class="banner no"><strong>No foam with a damping of {span} '
+            f"fits at {file.closing_speed:g} m/s</strong> {margin}. The largest closing speed at which one would: {fastest}. "
             f"The impact must be slower by {found.slow_down:.3f} m/s.</p>"
         )
         return
     widest = ""
     if report.widest is not None:
-        damping, low, high = report.widest
-        widest = f"The range of stiffness is widest at {damping:g} N s/m: {low / KILO:.2f} to {high / KILO:.2f} kN/m. "
+        widest = f"The range of stiffness is widest at {report.widest.damping:g} N s/m: {range_words(report.widest)}. "
     yield (
-        f'<p class="banner"><strong>There are foams that fit.</strong> {widest}'
+        f'<p class="banner"><strong>There are foams that fit</strong> {margin}. {widest}'
         f"Some foam fits up to a closing speed of {fastest}.</p>"
     )
 
@@ -120,9 +143,11 @@ def _foams(report: FoamReport) -> Iterator[str]:
 
 
 def _line(judged: Judged) -> str:
-    verdict = ("good", "&#10003; fits") if judged.accepted else ("bad", "&#10007; does not fit")
+    verdict = ("good", "&#10003; fits") if judged.accepted else ("bad", f"&#10007; {judged.verdict}")
+    # Loads of a foam outside its linear range are too low: none of them is a kept limit.
+    linear = judged.status in ("kept", "exceeded")
     cells = "".join(
-        f'<td class="{"good" if check.kept else "bad"}">{check.value:.3f} '
+        f'<td class="{"good" if check.kept and linear else "bad"}">{check.value:.3f} '
         f"<small>({100.0 * check.margin:+.1f} %)</small></td>"
         for check in judged.checks
     )

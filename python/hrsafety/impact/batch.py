@@ -12,8 +12,17 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, instance, numbers, positive, word
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria import ImpactMetrics
-from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.impact.criteria import MOST_SPEED, Doubts, ImpactMetrics
+from hrsafety.impact.parameters import (
+    LINEAR_RANGE,
+    LINEAR_SHARE,
+    THICKNESS,
+    ConstrainedHead,
+    Foam,
+    Head,
+    Manipulator,
+)
+from hrsafety.plausibility import implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["ImpactMetricsBatch", "metrics_batch"]
@@ -24,10 +33,12 @@ MOST_THREADS = 1024
 _MANIPULATOR = ("manipulator_mass", "manipulator_damping", "manipulator_stiffness")
 _FOAM = ("foam_stiffness", "foam_damping", "linear_range")
 _HEAD = ("head_mass", "head_damping", "head_stiffness")
-_LINEAR_RANGE = Foam(stiffness=0.0, damping=0.0).linear_range
-STATUS_WORDS: tuple[str, ...] = tuple(_hrsafety.impact_status_words())
+STATUS_WORDS: tuple[str, ...] = (*_hrsafety.impact_status_words(), "invalid_thickness")
 """Every word that a status can be."""
 _FLAGS = ("status", "beyond_linear_range")
+_BEYOND, _BOTTOMED, _INVALID_THICKNESS = (
+    STATUS_WORDS.index(each) for each in ("beyond_linear_range", "bottomed", "invalid_thickness")
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -52,6 +63,10 @@ class ImpactMetricsBatch(Table):
         In W.
     beyond_linear_range : ndarray of bool
         Whether the compression leaves the linear range of the foam.
+    bottomed : ndarray of bool
+        Whether the compression is more than the thickness of the foam; no column, as the status says it.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant, one warning for each argument.
     """
 
     peak_head_acceleration: Array
@@ -68,6 +83,18 @@ class ImpactMetricsBatch(Table):
     peak_power_foam: Array
     beyond_linear_range: npt.NDArray[np.bool_]
     _status_code: npt.NDArray[np.uint8] = field(repr=False)
+    _bottomed: npt.NDArray[np.bool_] = field(repr=False)
+    _warnings: Doubts = ()
+
+    @property
+    def bottomed(self) -> npt.NDArray[np.bool_]:
+        """Whether the compression is more than the thickness of the foam, whatever the status."""
+        return self._bottomed
+
+    @property
+    def warnings(self) -> Doubts:
+        """Numbers that are hardly what was meant, one warning for each argument."""
+        return self._warnings
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
@@ -124,6 +151,7 @@ def metrics_batch(
     foam_stiffness: npt.ArrayLike | None = None,
     foam_damping: npt.ArrayLike | None = None,
     linear_range: npt.ArrayLike | None = None,
+    thickness: npt.ArrayLike | None = None,
     head_mass: npt.ArrayLike | None = None,
     head_damping: npt.ArrayLike | None = None,
     head_stiffness: npt.ArrayLike | None = None,
@@ -154,8 +182,11 @@ def metrics_batch(
     foam_stiffness, foam_damping : array_like or None
         K_c in N/m, C_c in N s/m.
     linear_range : array_like or None
-        Compression lambda up to which the foam is linear, in m; that of `Foam` by itself, 0.02,
-        when neither it nor a foam is given.
+        Compression lambda up to which the foam is linear, in m; as for `Foam` when neither it nor a
+        foam is given. Rows in which it is above the thickness are ``"invalid_linear_range"``.
+    thickness : array_like or None
+        Thickness T_u of the foam, in m, see ``"bottomed"``. When neither it nor a foam is given 0.0254, or the
+        linear range where that is more.
     head_mass, head_damping, head_stiffness : array_like or None
         M_h in kg, C_h in N s/m, K_h in N/m.
     horizon : float or None
@@ -200,7 +231,10 @@ def metrics_batch(
     constrained = isinstance(head, ConstrainedHead)
     given = _given_numbers(locals(), constrained)
     shape = _broadcast_shape(given)
-    flat = {name: _column(array, shape) for name, array in given.items()}
+    doubts = _doubts(given)
+    thick = given.pop("thickness")
+    possible = _possible(given, thick)
+    flat = {name: _column(array, shape) for name, array in possible.items()}
     result = _hrsafety.impact_metrics_batch(
         manipulator=[flat[name] for name in _MANIPULATOR],
         foam=[flat[name] for name in _FOAM],
@@ -216,10 +250,19 @@ def metrics_batch(
     columns = {name: values.reshape(shape) for name, values in result.items()}
     code = columns.pop("status_code")
     missing = np.broadcast_to(np.nan, shape)
+    beyond = np.asarray(columns["max_compression"] > given["linear_range"])
+    # Nothing is crushed that is linear.
+    bottomed = np.asarray(columns["max_compression"] > thick) if beyond.any() else beyond
+    if bottomed.any():
+        code[bottomed & (code == _BEYOND)] = _BOTTOMED
+    if not (np.isfinite(thick) & (thick > 0.0)).all():
+        code[np.broadcast_to(~(np.isfinite(thick) & (thick > 0.0)), shape)] = _INVALID_THICKNESS
     return ImpactMetricsBatch(
         **{name: columns.get(name, missing) for name in ImpactMetrics._fields if name not in _FLAGS},
-        beyond_linear_range=np.asarray(columns["max_compression"] > given["linear_range"]),
+        beyond_linear_range=beyond,
         _status_code=code,
+        _bottomed=bottomed,
+        _warnings=doubts,
     )
 
 
@@ -246,11 +289,47 @@ def _given_numbers(arguments: dict[str, Any], constrained: bool) -> dict[str, Ar
                 given[name] = numbers(name, value)
             elif arguments[owner] is not None and not fixed:
                 given[name] = np.asarray(getattr(arguments[owner], attribute), dtype=np.float64)
-            elif name == "linear_range":
-                given[name] = np.asarray(_LINEAR_RANGE)
-            elif not fixed:
+            elif name != "linear_range" and not fixed:
                 raise InvalidParameterError(name, f"be given, by itself or through {owner}", None)
-    return given
+    return given | _depths(arguments["linear_range"], arguments["thickness"], arguments["foam"])
+
+
+def _depths(linear_range: npt.ArrayLike | None, thickness: npt.ArrayLike | None, foam: Foam | None) -> dict[str, Array]:
+    """Return linear range and thickness, each from the other or from the foam where it is not given."""
+    within = None if linear_range is None else numbers("linear_range", linear_range)
+    if thickness is not None:
+        thick = numbers("thickness", thickness)
+    elif foam is not None:
+        thick = np.asarray(foam.thickness)
+    else:
+        thick = np.asarray(THICKNESS) if within is None else np.maximum(THICKNESS, within)
+    if within is None:
+        most = LINEAR_RANGE if foam is None else foam.linear_range
+        # The foam's own range holds for its own thickness.
+        within = np.minimum(most, LINEAR_SHARE * thick) if thickness is not None else np.asarray(most)
+    return {"linear_range": within, "thickness": thick}
+
+
+def _possible(given: dict[str, Array], thickness: Array) -> dict[str, Array]:
+    """Return the numbers with NaN where a row cannot be, which the core then names."""
+    possible = dict(given)
+    within = given["linear_range"]
+    # A thickness that is NaN must not make a range possible.
+    if not (within <= thickness).all():
+        possible["linear_range"] = np.where(within <= thickness, within, np.nan)
+    for name in ("closing_speed", "manipulator_speed"):
+        if name in given and given[name].size and np.abs(given[name]).max() > MOST_SPEED:
+            possible[name] = np.where(np.abs(given[name]) > MOST_SPEED, np.nan, given[name])
+    return possible
+
+
+def _doubts(given: dict[str, Array]) -> Doubts:
+    """Return what is doubtful; zero stiffness and no impact are not, rows that cannot be have a status."""
+    values: dict[str, object] = {}
+    for name, array in given.items():
+        positive_only = name != "manipulator_speed" and bool(array.size) and not array.min() > 0.0
+        values[name] = np.where(array > 0.0, array, np.nan) if positive_only else array
+    return implausible(values)
 
 
 def _broadcast_shape(given: dict[str, Array]) -> tuple[int, ...]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns, flag, instance, number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
 __all__ = [
     "HeadInjury",
@@ -26,7 +29,30 @@ __all__ = [
 ]
 
 
-class ImpactMetrics(NamedTuple):
+STANDARD_GRAVITY = 9.80665
+"""In m/s^2."""
+
+Doubts = tuple[ResultWarning, ...]
+
+
+class _Loads(NamedTuple):
+    peak_head_acceleration: float
+    peak_head_acceleration_g: float
+    mean_head_acceleration_g: float
+    peak_contact_force: float
+    max_compression: float
+    impact_duration: float
+    hic15: float
+    hic36: float
+    average_3ms_g: float
+    clip_3ms_g: float
+    peak_power_manipulator: float
+    peak_power_foam: float
+    status: str
+    beyond_linear_range: bool
+
+
+class ImpactMetrics(_Loads):
     """Loads of one impact, maxima over the impact period.
 
     The impact period runs from first contact to the first zero of the head acceleration. All
@@ -63,28 +89,39 @@ class ImpactMetrics(NamedTuple):
         closing speed is not positive, nothing happens, all numbers are NaN. ``"constrained"``: the head cannot
         move, maxima are over the horizon, head fields are NaN. ``"beyond_linear_range"``:
         released, but the foam was compressed beyond the range in which it is linear, so that
-        the true loads are higher.
+        the true loads are higher. ``"bottomed"``: released, but the foam was compressed by more than
+        it is thick, so that the manipulator itself has hit the head and the loads mean nothing.
     beyond_linear_range : bool
         Whether the compression leaves the linear range of the foam, whatever the status.
+    bottomed : bool
+        Whether the compression is more than the thickness of the foam, whatever the status. Like
+        ``warnings`` no item of the tuple.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant.
     """
 
-    peak_head_acceleration: float
-    peak_head_acceleration_g: float
-    mean_head_acceleration_g: float
-    peak_contact_force: float
-    max_compression: float
-    impact_duration: float
-    hic15: float
-    hic36: float
-    average_3ms_g: float
-    clip_3ms_g: float
-    peak_power_manipulator: float
-    peak_power_foam: float
-    status: str
-    beyond_linear_range: bool
+    bottomed: bool = False
+    warnings: Doubts = ()
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
 
 
-class HeadInjury(NamedTuple):
+def with_warnings(text: str, warnings: Doubts) -> str:
+    """Return the text of a result with what is doubtful about it."""
+    if not warnings:
+        return text
+    return f"{text[:-1]}, warnings=({', '.join(repr(str(each)) for each in warnings)},))"
+
+
+class _Window(NamedTuple):
+    value: float
+    start: float
+    end: float
+
+
+class HeadInjury(_Window):
     """Head injury criterion of a signal, and the window that gives it.
 
     Attributes
@@ -93,14 +130,18 @@ class HeadInjury(NamedTuple):
         (t_2 - t_1) [mean of a in g over the window]^2.5, in s.
     start, end : float
         The window t_1, t_2, in s.
+    warnings : tuple of ResultWarning
+        What is doubtful about the signal; no item of the tuple.
     """
 
-    value: float
-    start: float
-    end: float
+    warnings: Doubts = ()
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
 
 
-class MovingLevel(NamedTuple):
+class MovingLevel(_Window):
     """Level of a signal over 3 ms, and where it is reached.
 
     Attributes
@@ -109,11 +150,45 @@ class MovingLevel(NamedTuple):
         In g.
     start, end : float
         The 3 ms, in s.
+    warnings : tuple of ResultWarning
+        What is doubtful about the signal; no item of the tuple.
     """
 
-    value: float
-    start: float
-    end: float
+    warnings: Doubts = ()
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
+
+
+# Faster ones would only overflow: loads go with up to the power 2.5 of the speed.
+MOST_SPEED = 1e100
+_LEAST_PLAUSIBLE, _MOST_PLAUSIBLE = RANGES["closing_speed"][:2]
+
+
+def check_speeds(closing_speed: float, manipulator_speed: float | None = None) -> None:
+    """Refuse speeds whose loads cannot be represented."""
+    for name, speed in (("closing_speed", closing_speed), ("manipulator_speed", manipulator_speed)):
+        if speed is not None and MOST_SPEED < abs(speed) < math.inf:
+            raise InvalidParameterError(name, f"be at most {MOST_SPEED:g} m/s", speed)
+
+
+def speed_warnings(closing_speed: float, manipulator_speed: float | None = None) -> Doubts:
+    """Return what is doubtful about the speeds of an impact; without one there is nothing to doubt."""
+    if manipulator_speed is None and (closing_speed <= 0.0 or _LEAST_PLAUSIBLE <= closing_speed <= _MOST_PLAUSIBLE):
+        return ()
+    closing = closing_speed if closing_speed > 0.0 else None
+    return implausible({"closing_speed": closing, "manipulator_speed": manipulator_speed})
+
+
+def judged(values: tuple[object, ...], foam: Foam, warnings: Doubts) -> ImpactMetrics:
+    """Return the loads of a native row with what is known about the foam."""
+    found = ImpactMetrics._make(values)
+    if found.beyond_linear_range:
+        found.bottomed = found.max_compression > foam.thickness
+    if warnings:
+        found.warnings = warnings
+    return found
 
 
 def metrics(
@@ -169,6 +244,7 @@ def metrics(
         manipulator_speed = number("manipulator_speed", manipulator_speed)
     if horizon is not None and type(horizon) is not float:
         horizon = number("horizon", horizon)
+    check_speeds(closing_speed, manipulator_speed)
     try:
         values = _hrsafety.impact_metrics(
             manipulator._native, foam._native, head._native, closing_speed, manipulator_speed, horizon
@@ -177,7 +253,8 @@ def metrics(
         # Classes are checked only when something went wrong: the call takes microseconds.
         check_parts(manipulator, foam, head)
         raise
-    return ImpactMetrics._make(values)
+    doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(closing_speed, manipulator_speed)
+    return judged(values, foam, doubts)
 
 
 def check_parts(manipulator: object, foam: object, head: object) -> None:
@@ -217,7 +294,8 @@ def hic(
     Raises
     ------
     InvalidParameterError
-        If there are less than two samples, time does not increase, or a value is not finite.
+        If there are less than two samples, time does not increase, a value is not finite, or a step is
+        longer than the window, as with milliseconds.
     ShapeError
         If the arrays are not one-dimensional and of one length.
 
@@ -232,8 +310,10 @@ def hic(
     207.3
     """
     instants, signal = columns(time=time, acceleration_g=acceleration_g)
-    value, start, end = _hrsafety.hic(instants, signal, number("window", window), flag("interpolate", interpolate))
-    return HeadInjury(value, start, end)
+    width, free = number("window", window), flag("interpolate", interpolate)
+    found = HeadInjury._make(_hrsafety.hic(instants, signal, width, free))
+    found.warnings = signal_warnings(instants, signal, found)
+    return found
 
 
 def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 0.003) -> MovingLevel:
@@ -256,8 +336,8 @@ def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float
     Raises
     ------
     InvalidParameterError
-        If there are less than two samples, time does not increase, a value is not finite, or the signal
-        is shorter than the window.
+        If there are less than two samples, time does not increase, a value is not finite, the signal
+        is shorter than the window, or a step longer.
     ShapeError
         If the arrays are not one-dimensional and of one length.
 
@@ -307,7 +387,32 @@ def _moving_level(
     width: float,
 ) -> MovingLevel:
     instants, signal = columns(time=time, acceleration_g=acceleration_g)
-    return MovingLevel._make(level(instants, signal, number("width", width)))
+    found = MovingLevel._make(level(instants, signal, number("width", width)))
+    found.warnings = signal_warnings(instants, signal, found)
+    return found
+
+
+def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doubts:
+    """Return what is doubtful about a sampled acceleration, from its mean step, its peaks and its strongest window."""
+    first, last = np.searchsorted(time, (window.start, window.end))
+    # The whole push around the window: back and on to where the acceleration changes its sign.
+    before, after = acceleration_g[:first][::-1] <= 0.0, acceleration_g[last:] <= 0.0
+    first -= int(np.argmax(before)) if before.any() else first
+    last += int(np.argmax(after)) if after.any() else len(after)
+    with np.errstate(over="ignore"):
+        gain = STANDARD_GRAVITY * float(np.trapezoid(acceleration_g[first:last], time[first:last]))
+    return implausible(
+        {
+            "time": float(time[-1] - time[0]) / (len(time) - 1),
+            "acceleration_g": np.array([acceleration_g.min(), acceleration_g.max()]),
+            "velocity that the head gains by acceleration_g": gain,
+        },
+        {
+            "time": "sampling_step",
+            "acceleration_g": "head_acceleration_g",
+            "velocity that the head gains by acceleration_g": "head_velocity_gain",
+        },
+    )
 
 
 def hic_half_sine(peak_g: float, duration: float, window: float = 0.015) -> float:

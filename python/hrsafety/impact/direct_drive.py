@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, instance, number
+from hrsafety.impact.criteria import Doubts, check_speeds, speed_warnings
 from hrsafety.impact.parameters import Foam, Head, Manipulator
+from hrsafety.impact.response import check_finite, compression_status
 from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["DirectDrive", "DirectDriveResponse", "simulate_direct_drive"]
@@ -112,6 +116,11 @@ class DirectDriveResponse(Table):
         When the limit is reached first, in s; NaN if never.
     saturated_time : float
         How long the command is at its limit, in s.
+    status : str
+        What the maxima mean: ``"released"``, ``"no_release"``, ``"beyond_linear_range"`` or
+        ``"bottomed"``, as for `ImpactMetrics`.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant.
     """
 
     time: Array
@@ -130,6 +139,8 @@ class DirectDriveResponse(Table):
     impact_duration: float
     saturated_from: float
     saturated_time: float
+    status: str = "released"
+    warnings: Doubts = ()
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each instant.
@@ -204,13 +215,22 @@ def simulate_direct_drive(
     (True, True)
     """
     speed = number("closing_speed", closing_speed)
+    own_speed = None if manipulator_speed is None else number("manipulator_speed", manipulator_speed)
+    check_speeds(speed, own_speed)
     result = _hrsafety.simulate_direct_drive(
         instance("drive", drive, DirectDrive)._native,
         instance("foam", foam, Foam)._native,
         instance("head", head, Head)._native,
         closing_speed=speed,
-        manipulator_speed=speed if manipulator_speed is None else number("manipulator_speed", manipulator_speed),
+        manipulator_speed=speed if own_speed is None else own_speed,
         duration=number("duration", duration),
         step=number("step", step),
     )
-    return DirectDriveResponse(**result)
+    check_finite(speed, result["contact_force"], result["compression"], result["manipulator_position"])
+    worst = compression_status(np.array([result["max_compression"]]), foam)
+    lasting = "no_release" if np.isinf(result["impact_duration"]) else "released"
+    return DirectDriveResponse(
+        **result,
+        status=lasting if worst == "linear" else worst,
+        warnings=foam.warnings + head.warnings + speed_warnings(speed, own_speed),
+    )

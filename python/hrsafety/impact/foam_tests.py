@@ -12,7 +12,8 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.parameters import Foam
+from hrsafety.impact.parameters import THICKNESS, Foam
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["FoamFit", "StaticFit", "drop_trajectory", "fit_static", "identify_foam"]
 
@@ -20,7 +21,16 @@ Contact = Literal["unilateral", "attached"]
 _CONTACTS = ("unilateral", "attached")
 
 
-class StaticFit(NamedTuple):
+class _Line(NamedTuple):
+    stiffness: float
+    force_offset: float
+    covariance: Array
+    interval: Array
+    force_deviation: float
+    degrees_of_freedom: int
+
+
+class StaticFit(_Line):
     """Fit of a line to a static test.
 
     Attributes
@@ -37,14 +47,11 @@ class StaticFit(NamedTuple):
         Standard deviation of the residuals, in N.
     degrees_of_freedom : int
         Measurements less fitted numbers.
+    warnings : tuple of ResultWarning
+        Measurements or results that are hardly what was meant; no item of the tuple.
     """
 
-    stiffness: float
-    force_offset: float
-    covariance: Array
-    interval: Array
-    force_deviation: float
-    degrees_of_freedom: int
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -77,6 +84,8 @@ class FoamFit:
         Of the drop fit.
     iterations : int
         Steps that the drop fit took.
+    warnings : tuple of ResultWarning
+        Measurements or results that are hardly what was meant.
     """
 
     stiffness: float
@@ -90,8 +99,11 @@ class FoamFit:
     position_deviation: float
     degrees_of_freedom: int
     iterations: int
+    warnings: tuple[ResultWarning, ...] = ()
 
-    def foam(self, moving_mass: float, *, thickness: float = 0.0254, linear_range: float = 0.02) -> Foam:
+    def foam(
+        self, moving_mass: float, *, thickness: float = THICKNESS, linear_range: float | None = None
+    ) -> Foam:
         """Return the foam with its damping scaled to a moving mass.
 
         Parameters
@@ -148,7 +160,35 @@ def fit_static(static_force: npt.ArrayLike, static_compression: npt.ArrayLike, *
     (24143, [23728.0, 24558.0])
     """
     force, compression = columns(static_force=static_force, static_compression=static_compression)
-    return StaticFit(**_hrsafety.fit_static(force, compression, flag("offset", offset)))
+    found = StaticFit(**_hrsafety.fit_static(force, compression, flag("offset", offset)))
+    found.warnings = _static_warnings(force, compression) + _foam_warnings(found.stiffness)
+    return found
+
+
+def _extremes(values: Array) -> Array:
+    return np.array([values.min(), values.max()])
+
+
+def _static_warnings(force: Array, compression: Array) -> tuple[ResultWarning, ...]:
+    values = {"static_force": _extremes(force), "static_compression": _extremes(compression)}
+    return implausible(values, {"static_compression": "compression"})
+
+
+def _foam_warnings(stiffness: float) -> tuple[ResultWarning, ...]:
+    return implausible({"fitted stiffness": stiffness}, {"fitted stiffness": "foam_stiffness"})
+
+
+def _drop_warnings(
+    drops: list[tuple[Array, Array]], moving_mass: float, gravity: float
+) -> tuple[ResultWarning, ...]:
+    found = implausible({"moving_mass": moving_mass, "gravity": gravity})
+    for index, (time, position) in enumerate(drops):
+        if len(time) < 2:
+            continue
+        names = {f"drop_time[{index}]": "drop_step", f"drop_position[{index}]": "drop_height"}
+        steps = float(time[-1] - time[0]) / (len(time) - 1)
+        found += implausible(dict(zip(names, (steps, _extremes(position)), strict=True)), names)
+    return found
 
 
 def identify_foam(
@@ -218,18 +258,28 @@ def identify_foam(
     (24250, 0.112, 2.0)
     """
     force, compression = columns(static_force=static_force, static_compression=static_compression)
-    result = _hrsafety.identify_foam(
-        force,
-        compression,
-        _drops(drop_time, drop_position),
-        moving_mass=number("moving_mass", moving_mass),
-        gravity=number("gravity", gravity),
-        confidence=number("confidence", confidence),
-        attached=word("contact", contact, _CONTACTS) == "attached",
-        bootstrap=count("bootstrap", bootstrap, least=0),
-        seed=checked_seed("seed", seed),
-    )
-    return FoamFit(**result)
+    drops = _drops(drop_time, drop_position)
+    mass, pull = number("moving_mass", moving_mass), number("gravity", gravity)
+    doubts = _static_warnings(force, compression) if len(force) else ()
+    doubts += _drop_warnings(drops, mass, pull)
+    try:
+        result = _hrsafety.identify_foam(
+            force,
+            compression,
+            drops,
+            moving_mass=mass,
+            gravity=pull,
+            confidence=number("confidence", confidence),
+            attached=word("contact", contact, _CONTACTS) == "attached",
+            bootstrap=count("bootstrap", bootstrap, least=0),
+            seed=checked_seed("seed", seed),
+        )
+    except InvalidParameterError as error:
+        # What made the fit fail is most often a unit.
+        if not doubts or error.remedy is not None:
+            raise
+        raise InvalidParameterError(error.argument, error.requirement, error.value, doubts[0].message) from None
+    return FoamFit(**result, warnings=doubts + _foam_warnings(result["stiffness"]))
 
 
 def _drops(drop_time: object, drop_position: object) -> list[tuple[Array, Array]]:

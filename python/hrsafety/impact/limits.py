@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hrsafety._arguments import Parameters, positive
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["FoamFeasibility", "FoamLimits", "FoamMargin"]
 
@@ -52,6 +53,12 @@ class FoamLimits(Parameters):
         if not self.given():
             raise InvalidParameterError("limits", "hold at least one limit", "none")
 
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Limits that are hardly what was meant."""
+        given = self.given()
+        return implausible({f"limits.{name}": limit for name, limit in given.items()}, {f"limits.{name}": name for name in given})
+
     def given(self) -> dict[str, float]:
         """Return the limits that are set.
 
@@ -64,17 +71,7 @@ class FoamLimits(Parameters):
         return {name: value for name, value in values.items() if value is not None}
 
 
-class FoamMargin(NamedTuple):
-    """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
-
-    Attributes
-    ----------
-    peak_head_acceleration_g, peak_contact_force, hic15, hic36, max_compression : float
-        1 - load / limit.
-    least : float
-        The least of them.
-    """
-
+class _Shares(NamedTuple):
     peak_head_acceleration_g: float
     peak_contact_force: float
     hic15: float
@@ -83,8 +80,30 @@ class FoamMargin(NamedTuple):
     least: float
 
 
+class FoamMargin(_Shares):
+    """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
+
+    Attributes
+    ----------
+    peak_head_acceleration_g, peak_contact_force, hic15, hic36, max_compression : float
+        1 - load / limit.
+    least : float
+        The least of them, and of ``linear_range`` where that is negative: no limit is kept by foam that is
+        compressed beyond its linear range.
+    linear_range : float
+        What is left of the foam's own linear range when it gives back, whether that is limited or not; minus
+        infinity if it never does. Like ``status`` no item of the tuple.
+    status : str
+        ``"kept"``; ``"exceeded"``: a limit is; ``"beyond_linear_range"``: the foam is compressed beyond its linear
+        range; ``"bottomed"``: by more than it is thick. The last two come first, because loads mean little there.
+    """
+
+    linear_range: float = 0.0
+    status: str = "kept"
+
+
 class FoamFeasibility(NamedTuple):
-    """Whether some foam keeps all limits, and if not how much slower the manipulator has to be.
+    """Whether some foam keeps all limits with a margin, and if not how much slower the manipulator has to be.
 
     Attributes
     ----------
@@ -95,7 +114,8 @@ class FoamFeasibility(NamedTuple):
     slow_down : float
         How much the closing speed has to be reduced, in m/s; 0 if feasible.
     damping, stiffness : float
-        The foam that allows the largest closing speed, in N s/m and N/m.
+        The foam that allows the largest closing speed, in N s/m and N/m; the stiffness is NaN where no
+        foam does at any speed.
     """
 
     feasible: bool

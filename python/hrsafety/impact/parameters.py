@@ -10,6 +10,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, count, not_negative, number, pair, positive, square
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = [
     "FOAM_1",
@@ -23,9 +24,27 @@ __all__ = [
     "Manipulator",
 ]
 
+THICKNESS = 0.0254
+"""Thickness of the foams of the source, in m."""
+
+LINEAR_RANGE = 0.02
+LINEAR_SHARE = 0.8
+"""Foam is linear up to 0.02 m in the source; thinner foam up to this share of its thickness at most."""
+
+
+class _Part(Parameters):
+    """A part of an impact: its numbers are looked at when it is made, so that results only pass the doubts on."""
+
+    __slots__ = ()
+
+    def _doubts(self, owner: str, **quantities: str) -> tuple[ResultWarning, ...]:
+        """Return warnings of its own numbers; zero stiffness and damping are none rather than little."""
+        values = {f"{owner}.{name}": getattr(self, name) or None for name in quantities}
+        return implausible(values, {f"{owner}.{name}": quantity for name, quantity in quantities.items()})
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Manipulator(Parameters):
+class Manipulator(_Part):
     """Manipulator as it is felt at the impact point, along the impact.
 
     Parameters
@@ -36,6 +55,11 @@ class Manipulator(Parameters):
         Effective damping C_r in N s/m.
     stiffness : float
         Effective stiffness K_r in N/m.
+
+    Attributes
+    ----------
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant; results pass them on.
 
     Raises
     ------
@@ -52,11 +76,14 @@ class Manipulator(Parameters):
     mass: float
     damping: float
     stiffness: float
+    warnings: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
     _native: _hrsafety.Manipulator = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(_native=_hrsafety.Manipulator(**self._as_numbers("mass", "damping", "stiffness")))
+        names = {name: f"manipulator_{name}" for name in ("mass", "damping", "stiffness")}
+        self._set(warnings=self._doubts("manipulator", **names))
 
     @classmethod
     def from_joint(cls, *, inertia: float, damping: float, stiffness: float, lever_arm: float) -> Manipulator:
@@ -160,7 +187,7 @@ class Manipulator(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Head(Parameters):
+class Head(_Part):
     """Head on a neck; the torso is infinitely heavy.
 
     Parameters
@@ -171,6 +198,11 @@ class Head(Parameters):
         Damping C_h of the neck, in N s/m.
     stiffness : float
         Stiffness K_h of the neck, in N/m.
+
+    Attributes
+    ----------
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant; results pass them on.
 
     Raises
     ------
@@ -187,11 +219,14 @@ class Head(Parameters):
     mass: float
     damping: float
     stiffness: float
+    warnings: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
     _native: _hrsafety.Head = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(_native=_hrsafety.Head(**self._as_numbers("mass", "damping", "stiffness")))
+        names = {name: f"head_{name}" for name in ("mass", "damping", "stiffness")}
+        self._set(warnings=self._doubts("head", **names))
 
     @classmethod
     def minimum(cls) -> Head:
@@ -240,7 +275,7 @@ class Head(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ConstrainedHead(Parameters):
+class ConstrainedHead(_Part):
     """Head that cannot move, for example against a wall.
 
     Head fields of results are NaN, there is no impact period, and the force grows like a ramp
@@ -255,6 +290,7 @@ class ConstrainedHead(Parameters):
     ('constrained', nan)
     """
 
+    warnings: tuple[ResultWarning, ...] = field(default=(), init=False, repr=False, compare=False)
     _native: _hrsafety.ConstrainedHead = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -263,7 +299,7 @@ class ConstrainedHead(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Foam(Parameters):
+class Foam(_Part):
     """Foam covering of the manipulator: spring and damper, linear up to a compression.
 
     Parameters
@@ -274,31 +310,51 @@ class Foam(Parameters):
         C_c in N s/m.
     thickness : float
         Thickness T_u without load, in m.
-    linear_range : float
-        Compression lambda up to which the foam is linear, in m.
+    linear_range : float or None
+        Compression lambda up to which the foam is linear, in m, at most the thickness; the smaller of
+        0.02 m and 0.8 of the thickness when ``None``.
+
+    Attributes
+    ----------
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant; results pass them on.
 
     Raises
     ------
     InvalidParameterError
-        If stiffness or damping is negative, or thickness or linear range not positive.
+        If stiffness or damping is negative, thickness or linear range not positive, or the linear range
+        above the thickness.
 
     Examples
     --------
     >>> from hrsafety import impact
     >>> impact.FOAM_1
     Foam(stiffness=24300.0, damping=71.9, thickness=0.0254, linear_range=0.02)
+
+    Thinner foam is linear over less:
+
+    >>> impact.Foam(stiffness=24300.0, damping=71.9, thickness=0.01).linear_range
+    0.008
     """
 
     stiffness: float
     damping: float
-    thickness: float = 0.0254
-    linear_range: float = 0.02
+    thickness: float = THICKNESS
+    linear_range: float = None  # type: ignore[assignment]  # a number as soon as it is made
+    warnings: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
     _native: _hrsafety.Foam = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
+        if self.linear_range is None:
+            self._set(linear_range=default_linear_range(number("thickness", self.thickness)))
         names = ("stiffness", "damping", "thickness", "linear_range")
         self._set(_native=_hrsafety.Foam(**self._as_numbers(*names)))
+        own = {"stiffness": "foam_stiffness", "damping": "foam_damping"}
+        doubts = self._doubts("foam", **own, thickness="thickness", linear_range="linear_range")
+        if self.stiffness == 0.0:
+            doubts += implausible({"foam.stiffness": 0.0}, {"foam.stiffness": "foam_stiffness"})
+        self._set(warnings=doubts)
 
     @classmethod
     def from_damping_ratio(
@@ -307,8 +363,8 @@ class Foam(Parameters):
         stiffness: float,
         damping_ratio: float,
         moving_mass: float,
-        thickness: float = 0.0254,
-        linear_range: float = 0.02,
+        thickness: float = THICKNESS,
+        linear_range: float | None = None,
     ) -> Foam:
         """Return the foam whose damping is scaled to a moving mass, C_c = 2 xi sqrt(M K_c).
 
@@ -343,7 +399,13 @@ class Foam(Parameters):
         ratio = not_negative("damping_ratio", damping_ratio)
         product = positive("moving_mass", moving_mass) * not_negative("stiffness", stiffness)
         damping = 2.0 * ratio * math.sqrt(product)
-        return cls(stiffness=stiffness, damping=damping, thickness=thickness, linear_range=linear_range)
+        within = {} if linear_range is None else {"linear_range": linear_range}
+        return cls(stiffness=stiffness, damping=damping, thickness=thickness, **within)
+
+
+def default_linear_range(thickness: float) -> float:
+    """Return the compression up to which foam of a thickness is linear when nobody says."""
+    return min(LINEAR_RANGE, LINEAR_SHARE * thickness)
 
 
 MANIPULATOR_1 = Manipulator(mass=9.6, damping=250.0, stiffness=20_000.0)

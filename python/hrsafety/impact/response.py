@@ -11,8 +11,9 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, flag, instance, number, pair, positive, word
 from hrsafety.errors import InvalidParameterError
-from hrsafety.impact.criteria import ImpactMetrics, check_parts
+from hrsafety.impact.criteria import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.plausibility import implausible
 from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["ImpactResponse", "SetPoint", "simulate"]
@@ -164,6 +165,10 @@ class ImpactResponse(Table):
     metrics : ImpactMetrics
         Loads on the continuous solution, see `metrics`. With a moving set-point or the printed
         equations peaks and impact period over the duration; the other numbers are NaN.
+    compression_status : str
+        Whether the foam can do what the whole history shows, also after the impact period:
+        ``"linear"``, ``"beyond_linear_range"`` or ``"bottomed"`` (compressed by more than its
+        thickness, which no foam can be).
     """
 
     time: Array
@@ -177,6 +182,12 @@ class ImpactResponse(Table):
     release_times: Array
     touch_times: Array
     metrics: ImpactMetrics
+    compression_status: str = "linear"
+
+    @property
+    def warnings(self) -> Doubts:
+        """Numbers that are hardly what was meant, see `ImpactMetrics.warnings`."""
+        return self.metrics.warnings
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each instant.
@@ -197,6 +208,26 @@ class ImpactResponse(Table):
         units |= dict.fromkeys(("head_position", "manipulator_position", "compression"), "m")
         units |= dict.fromkeys(("head_velocity", "manipulator_velocity"), "m/s")
         return with_units(self, units)
+
+
+def compression_status(compression: Array, foam: Foam) -> str:
+    """Return whether a foam can be compressed like that."""
+    largest = compression.max()
+    if largest > foam.thickness:
+        return "bottomed"
+    return "beyond_linear_range" if largest > foam.linear_range else "linear"
+
+
+def check_finite(closing_speed: float, *columns: Array) -> None:
+    """Refuse an impact whose histories cannot be represented, rather than return numbers that are none."""
+    # NaN and infinity both make the sum of extremes one that is not finite.
+    if not all(np.isfinite(column.min()) and np.isfinite(column.max()) for column in columns if len(column)):
+        raise InvalidParameterError(
+            "closing_speed",
+            "give positions and forces that are finite",
+            closing_speed,
+            "it, or a mass, stiffness or damping, is wrong by many orders of magnitude",
+        )
 
 
 def simulate(
@@ -275,17 +306,26 @@ def simulate(
     steady = SetPoint() if set_point is None else instance("set_point", set_point, SetPoint)
     speed = number("closing_speed", closing_speed)
     own_speed = None if manipulator_speed is None else number("manipulator_speed", manipulator_speed)
+    check_speeds(speed, own_speed)
+    lasting = number("duration", duration)
     columns, values = _hrsafety.impact_simulate(
         manipulator._native,
         foam._native,
         head._native,
         closing_speed=speed,
         manipulator_speed=own_speed,
-        duration=number("duration", duration),
+        duration=lasting,
         step=number("step", step),
         runge_kutta=word("method", method, ("exact", "rk4")) == "rk4",
         unilateral=word("contact", contact, ("linear", "unilateral")) == "unilateral",
         as_printed=word("equations", equations, ("corrected", "as_printed")) == "as_printed",
         set_point=steady._native,
     )
-    return ImpactResponse(**columns, metrics=ImpactMetrics._make(values))
+    check_finite(speed, columns["contact_force"], columns["compression"], columns["manipulator_position"])
+    doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(speed, own_speed)
+    doubts += implausible({"duration": lasting}, {"duration": "impact_time"})
+    return ImpactResponse(
+        **columns,
+        metrics=judged(values, foam, doubts),
+        compression_status=compression_status(columns["compression"], foam),
+    )

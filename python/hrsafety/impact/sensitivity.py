@@ -8,7 +8,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
-from hrsafety.impact.criteria import ImpactMetrics, check_parts
+from hrsafety.impact.criteria import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 
 __all__ = ["ImpactGradients", "gradients"]
@@ -36,6 +36,11 @@ class ImpactGradients:
     parameter_names: tuple[str, ...]
     values: Array
     parameters: Array
+
+    @property
+    def warnings(self) -> Doubts:
+        """Numbers that are hardly what was meant, see `ImpactMetrics.warnings`."""
+        return self.metrics.warnings
 
     @property
     def relative(self) -> Array:
@@ -124,6 +129,7 @@ def gradients(
     check_parts(manipulator, foam, head)
     speed = number("closing_speed", closing_speed)
     own_speed = None if manipulator_speed is None else number("manipulator_speed", manipulator_speed)
+    check_speeds(speed, own_speed)
     values, matrix = _hrsafety.impact_gradients(
         manipulator._native,
         foam._native,
@@ -132,6 +138,7 @@ def gradients(
         own_speed,
         None if horizon is None else number("horizon", horizon),
     )
+    doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(speed, own_speed)
     metrics, parameters = _hrsafety.impact_gradient_names()
     parts = {"manipulator": manipulator, "foam": foam, "head": head}
     given = {
@@ -141,7 +148,7 @@ def gradients(
     }
     given |= {"closing_speed": speed, "manipulator_speed": speed if own_speed is None else own_speed}
     return ImpactGradients(
-        metrics=ImpactMetrics._make(values),
+        metrics=judged(values, foam, doubts),
         metric_names=tuple(metrics),
         parameter_names=tuple(parameters),
         values=matrix,

@@ -57,6 +57,7 @@ def foam_boundaries(
     accepted: Mapping[str, bool] | None = None,
     statuses: Mapping[str, str] | None = None,
     results: Sequence[object] = (),
+    fitting: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     upper_label: str = "upper: head acceleration",
     lower_label: str = "lower: compression",
     title: str | None = None,
@@ -74,6 +75,9 @@ def foam_boundaries(
         Stiffness in N/m and a status word for each point; ``None`` where nothing is limited.
     foams : mapping of str to Foam or None
         Foams to mark, by name.
+    fitting : (array_like, array_like) or None
+        Least and largest stiffness that fit at each damping, see `FoamDesign.stiffness_range`, to shade; NaN where
+        none does. What is between the boundaries when ``None``.
     accepted : mapping of str to bool or None
         Whether a foam meets all limits: a filled circle, or a cross. Foams that are not named
         here are open circles.
@@ -117,7 +121,11 @@ def foam_boundaries(
     shown = [curve[np.isfinite(curve)].max(initial=0.0) for curve in (tops, bottoms)]
     shown += [foam.stiffness / KILO for foam in (foams or {}).values()]
     height = 1.12 * max(shown) or 1.0
-    _fill(axes, grid, _edge(upper, tops, height), _edge(lower, bottoms, 0.0))
+    if fitting is None:
+        _fill(axes, grid, _edge(upper, tops, height), _edge(lower, bottoms, 0.0))
+    else:
+        least, largest = (np.asarray(each, dtype=np.float64) / KILO for each in fitting)
+        _fill(axes, grid, np.minimum(largest, height), least)
     if upper is not None:
         _curve(axes, grid, tops, _words(upper), UPPER_COLOR, upper_label)
     if lower is not None:

@@ -27,6 +27,7 @@ IMPACT_UNITS: Mapping[str, str] = MappingProxyType(
         "foam_stiffness": "N/m",
         "foam_damping": "N s/m",
         "linear_range": "m",
+        "thickness": "m",
         **{f"head_{part}": unit for part, unit in _PARTS.items()},
     }
 )
@@ -55,7 +56,7 @@ class ImpactStudy(Study):
 
     Axes are the numbers of ``metrics_batch`` by their names: ``closing_speed``,
     ``manipulator_speed``, ``manipulator_mass``, ``manipulator_damping``,
-    ``manipulator_stiffness``, ``foam_stiffness``, ``foam_damping``, ``linear_range``,
+    ``manipulator_stiffness``, ``foam_stiffness``, ``foam_damping``, ``linear_range``, ``thickness``,
     ``head_mass``, ``head_damping``, ``head_stiffness``.
 
     Parameters

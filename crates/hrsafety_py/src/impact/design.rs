@@ -14,12 +14,13 @@ use crate::impact::parameters::{Foam, Manipulator, Target};
 use crate::watch::watched_each;
 
 /// Quantities in the order of Python's limits.
-const QUANTITIES: [Quantity; 5] = [
+const QUANTITIES: [Quantity; 6] = [
     Quantity::HeadAcceleration,
     Quantity::ContactForce,
     Quantity::Injury15,
     Quantity::Injury36,
     Quantity::Compression,
+    Quantity::ContactCompression,
 ];
 
 fn requirements(given: Vec<(String, f64, Target)>) -> PyResult<Vec<Requirement>> {

@@ -176,8 +176,8 @@ fn metrics(
     let status = match peaks {
         _ if system.head == Target::Constrained => Status::Constrained,
         Some(found) if found.impact_duration.is_infinite() => Status::NoRelease,
-        Some(found) if found.compression > system.foam.linear_range => Status::BeyondLinearRange,
-        Some(_) | None => Status::Released,
+        Some(found) => Status::released(found.compression, &system.foam),
+        None => Status::Released,
     };
     let row = Metrics::none(status);
     Ok(peaks.map_or(row, |found| Metrics {

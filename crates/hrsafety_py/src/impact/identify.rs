@@ -11,6 +11,9 @@ use crate::arrays::Fields;
 use crate::errors::CoreError;
 use crate::watch::{Report, watched};
 
+/// Samples, and radians of a foam's oscillation, that take less than a look at signals.
+const SHORT: usize = 10_000;
+
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 
 fn contact(attached: bool) -> DropContact {
@@ -128,7 +131,18 @@ pub fn drop_trajectory<'py>(
         gravity,
         contact: contact(attached),
     };
-    let heights = identify::drop_trajectory(time.as_slice()?, &model).map_err(CoreError::from)?;
+    let time = time.as_slice()?;
+    let end = time
+        .last()
+        .zip(time.first())
+        .map_or(0.0, |(last, first)| last - first);
+    let heights = if time.len() < SHORT && end * (stiffness / mass).sqrt() < SHORT as f64 {
+        identify::drop_trajectory(time, &model).map_err(CoreError::from)?
+    } else {
+        watched(py, Report::none(), |control| {
+            identify::drop_trajectory_until(time, &model, &|| control.interrupted())
+        })?
+    };
     Ok(heights.into_pyarray(py).into_any())
 }
 

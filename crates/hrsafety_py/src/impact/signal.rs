@@ -1,5 +1,8 @@
 //! Injury criteria of sampled signals.
 
+use groundwork::error::Failure;
+use impact_core::batch::Interrupted;
+use impact_core::criteria::INJURY_WINDOWS;
 use impact_core::parameters::GRAVITY;
 use impact_core::signal::{self, Recording};
 use numpy::PyReadonlyArray1;
@@ -8,27 +11,45 @@ use pyo3::types::PyTuple;
 
 use crate::errors::CoreError;
 use crate::impact::single::row_tuple;
+use crate::watch::{Report, watched};
+
+/// Samples that take less than a look at signals.
+const SHORT: usize = 20_000;
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 /// Value, start, end.
 type Window = (f64, f64, f64);
 
+/// Work on samples that ends soon after Ctrl-C; only long work is worth a thread of its own.
+fn stopped<T: Send>(
+    py: Python<'_>,
+    samples: usize,
+    work: impl FnOnce(Interrupted<'_>) -> Result<T, Failure> + Send,
+) -> PyResult<T> {
+    if samples <= SHORT {
+        return Ok(py.detach(|| work(&|| false)).map_err(CoreError::from)?);
+    }
+    watched(py, Report::none(), |control| {
+        work(&|| control.interrupted())
+    })
+}
+
 /// Head injury criterion of a signal: value, start, end.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn hic(
+    py: Python<'_>,
     time: Samples<'_>,
     acceleration_g: Samples<'_>,
     window: f64,
     interpolate: bool,
 ) -> PyResult<Window> {
-    let found = signal::hic(
-        time.as_slice()?,
-        acceleration_g.as_slice()?,
-        window,
-        interpolate,
-    )
-    .map_err(CoreError::from)?;
+    let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
+    let found = stopped(py, time.len(), |interrupted| {
+        let found = signal::hic_until(time, signal, window, interpolate, interrupted)?;
+        signal::check_step(time, window, interrupted)?;
+        Ok(found)
+    })?;
     Ok((found.value, found.start, found.end))
 }
 
@@ -36,12 +57,17 @@ pub fn hic(
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn moving_average(
+    py: Python<'_>,
     time: Samples<'_>,
     acceleration_g: Samples<'_>,
     width: f64,
 ) -> PyResult<Window> {
-    let found = signal::moving_average(time.as_slice()?, acceleration_g.as_slice()?, width)
-        .map_err(CoreError::from)?;
+    let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
+    let found = stopped(py, time.len(), |interrupted| {
+        let found = signal::moving_average_until(time, signal, width, interrupted)?;
+        signal::check_step(time, width, interrupted)?;
+        Ok(found)
+    })?;
     Ok((found.value, found.start, found.end))
 }
 
@@ -49,12 +75,17 @@ pub fn moving_average(
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn contiguous_level(
+    py: Python<'_>,
     time: Samples<'_>,
     acceleration_g: Samples<'_>,
     width: f64,
 ) -> PyResult<Window> {
-    let found = signal::contiguous_level(time.as_slice()?, acceleration_g.as_slice()?, width)
-        .map_err(CoreError::from)?;
+    let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
+    let found = stopped(py, time.len(), |interrupted| {
+        let found = signal::contiguous_level_until(time, signal, width, interrupted)?;
+        signal::check_step(time, width, interrupted)?;
+        Ok(found)
+    })?;
     Ok((found.value, found.start, found.end))
 }
 
@@ -83,7 +114,7 @@ fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
 /// Numbers, status and whether the foam leaves its linear range, of a recorded impact.
 #[pyfunction]
 #[pyo3(signature = (time, acceleration_g, *, contact_force, compression, manipulator_velocity,
-    start, linear_range))]
+    start, linear_range, thickness))]
 #[allow(clippy::too_many_arguments)] // keyword-only in Python
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn recorded_metrics<'py>(
@@ -95,6 +126,7 @@ pub fn recorded_metrics<'py>(
     manipulator_velocity: Option<Samples<'py>>,
     start: Option<f64>,
     linear_range: f64,
+    thickness: f64,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let time = time.as_slice()?;
     let recording = Recording {
@@ -105,8 +137,13 @@ pub fn recorded_metrics<'py>(
         manipulator_velocity: slice(manipulator_velocity.as_ref())?,
         start: start.or(time.first().copied()).unwrap_or(f64::NAN),
         linear_range,
+        thickness,
         gravity: GRAVITY,
     };
-    let row = recording.metrics().map_err(CoreError::from)?;
+    let row = stopped(py, time.len(), |interrupted| {
+        let row = recording.metrics_until(interrupted)?;
+        signal::check_step(time, INJURY_WINDOWS[0], interrupted)?;
+        Ok(row)
+    })?;
     row_tuple(py, &row, linear_range)
 }

@@ -3,11 +3,20 @@
 //! Every stretch between two events (contact, release, turn, rest) has a closed form; only the
 //! events are searched for.
 
-use crate::error::{Result, finite, not_negative, positive};
+use crate::batch::Interrupted;
+use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::signal::check_time;
 
 /// Events after which a slide counts as resting; only bounces below rounding are that many.
 const MOST_STRETCHES: usize = 100_000;
+/// Steps of a search, and samples, between two looks whether to stop.
+const CHECK: usize = 4096;
+/// Step of a search for an event, in radians of the foam's frequency.
+const SEARCH_STEP: f64 = 0.4;
+/// Least step as a share of the record: below it times are rounded away.
+const LEAST_STEP: f64 = 1e-14;
+/// Damping ratio from which both roots of the foam are apart by more than rounding.
+const ROOTS_APART: f64 = 1.1;
 
 /// When the foam lets go of the slide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +56,22 @@ impl DropModel {
         positive("gravity", self.gravity)?;
         Ok(self)
     }
+
+    /// Also passes a foam whose oscillations are resolved by the numbers of the times.
+    fn checked_for(self, time: &[f64]) -> Result<Self> {
+        let model = self.checked()?;
+        let fastest = SEARCH_STEP / (LEAST_STEP * (time[time.len() - 1] - time[0]));
+        let most = model.mass * fastest * fastest;
+        if model.stiffness > most {
+            let rule = format!("be at most {most:.3e} N/m for this mass and duration");
+            return Err(Failure::invalid(
+                "stiffness",
+                rule,
+                Given::Number(model.stiffness),
+            ));
+        }
+        Ok(model)
+    }
 }
 
 /// Position over time, in m, up from the surface of the foam; released at the first time.
@@ -55,15 +80,43 @@ impl DropModel {
 /// slide stays where friction can hold it.
 ///
 /// # Errors
-/// A parameter out of range, times that do not rise.
+/// A parameter out of range, times that do not rise, numbers so far apart that positions overflow.
 pub fn drop_trajectory(time: &[f64], model: &DropModel) -> Result<Vec<f64>> {
+    drop_trajectory_until(time, model, &|| false)
+}
+
+/// The same unless the caller asks to stop.
+///
+/// # Errors
+/// Also that the caller asked to stop.
+pub fn drop_trajectory_until(
+    time: &[f64],
+    model: &DropModel,
+    interrupted: Interrupted<'_>,
+) -> Result<Vec<f64>> {
     check_time("time", time)?;
     finite("friction", model.friction)?;
-    Ok(trajectory(time, &model.checked()?))
+    let path = trajectory_until(time, &model.checked_for(time)?, interrupted)?;
+    let Some(place) = path.iter().position(|height| !height.is_finite()) else {
+        return Ok(path);
+    };
+    let rule = format!("give finite positions, also at {:?} s", time[place]);
+    let failure = Failure::invalid("model", rule, Given::Number(path[place]));
+    Err(failure.mended_by(
+        "mass, stiffness, damping_ratio, friction or height is too large or too small by orders of \
+         magnitude: they are in kg, N/m, 1, N and m",
+    ))
 }
 
 /// The same without checks, for the fit.
-pub(super) fn trajectory(time: &[f64], model: &DropModel) -> Vec<f64> {
+///
+/// # Errors
+/// The caller asked to stop.
+pub(super) fn trajectory_until(
+    time: &[f64],
+    model: &DropModel,
+    interrupted: Interrupted<'_>,
+) -> Result<Vec<f64>> {
     let end = time[time.len() - 1] - time[0];
     let mut state = State {
         time: 0.0,
@@ -81,14 +134,20 @@ pub(super) fn trajectory(time: &[f64], model: &DropModel) -> Vec<f64> {
             let position = state.position;
             (Motion::Rest { position }, f64::INFINITY, flying)
         } else if flying {
-            flight(model, &state, end)
+            flight(model, &state, end, interrupted)?
         } else {
-            contact(model, &state, end)
+            contact(model, &state, end, interrupted)?
         };
+        if stretch % CHECK == 0 && interrupted() {
+            return Err(Failure::Interrupted);
+        }
         let until = state.time + duration;
         while result.len() < time.len() && (time[result.len()] - time[0] <= until || until >= end) {
             let at = time[result.len()] - time[0] - state.time;
             result.push(motion.at(at).0);
+            if result.len().is_multiple_of(CHECK) && interrupted() {
+                return Err(Failure::Interrupted);
+            }
         }
         let (position, velocity) = motion.at(duration);
         state.advance(
@@ -100,7 +159,7 @@ pub(super) fn trajectory(time: &[f64], model: &DropModel) -> Vec<f64> {
         );
         flying = next_flying;
     }
-    result
+    Ok(result)
 }
 
 /// State at the start of a stretch.
@@ -173,9 +232,18 @@ impl Motion {
                 velocity,
                 decay,
                 frequency,
+            } if decay > ROOTS_APART * frequency => {
+                let (position, velocity) = creep([decay, frequency], [offset, velocity], time);
+                (center + position, velocity)
+            }
+            Self::Foam {
+                center,
+                offset,
+                velocity,
+                decay,
+                frequency,
             } => {
-                let (cosine, sine) = oscillation(frequency * frequency - decay * decay, time);
-                let envelope = (-decay * time).exp();
+                let (envelope, cosine, sine) = oscillation([decay, frequency], time);
                 let push = velocity + decay * offset;
                 let pull = frequency * frequency * offset + decay * velocity;
                 (
@@ -187,25 +255,49 @@ impl Motion {
     }
 }
 
-/// `cos(w t)` and `sin(w t) / w` for `w^2`, which is negative for an overdamped foam.
-fn oscillation(squared: f64, time: f64) -> (f64, f64) {
+/// An envelope, and what it is to be multiplied with to give `exp(-d t) cos(w t)` and
+/// `exp(-d t) sin(w t) / w` for `w^2 = f^2 - d^2`, which is negative for an overdamped foam; nothing
+/// grows, so nothing overflows.
+fn oscillation([decay, frequency]: [f64; 2], time: f64) -> (f64, f64, f64) {
+    let squared = frequency * frequency - decay * decay;
     let root = squared.abs().sqrt();
+    let envelope = (-decay * time).exp();
     if root * time < 1e-8 {
-        (1.0, time)
+        (envelope, 1.0, time)
     } else if squared > 0.0 {
-        ((root * time).cos(), (root * time).sin() / root)
+        (envelope, (root * time).cos(), (root * time).sin() / root)
     } else {
-        ((root * time).cosh(), (root * time).sinh() / root)
+        // The slower root, without the difference of two nearly equal numbers.
+        let slow = (-(frequency / (decay + root) * frequency) * time).exp();
+        let gap = (-2.0 * root * time).exp_m1();
+        (slow, 0.5 * (2.0 + gap), -0.5 * gap / root)
     }
 }
 
+/// Offset and velocity of an overdamped foam as the sum of its two exponentials.
+fn creep([decay, frequency]: [f64; 2], [offset, velocity]: [f64; 2], time: f64) -> (f64, f64) {
+    // Factored, so that squares of large numbers do not overflow.
+    let root = decay * ((1.0 - frequency / decay) * (1.0 + frequency / decay)).sqrt();
+    let fast = -(decay + root);
+    let slow = frequency * (frequency / fast);
+    let gap = 2.0 * root;
+    let slow_part = (velocity - fast * offset) / gap * (slow * time).exp();
+    let fast_part = (slow * offset - velocity) / gap * (fast * time).exp();
+    (slow_part + fast_part, slow * slow_part + fast * fast_part)
+}
+
 /// A stretch above the foam: the motion, how long it lasts and whether the next one is above too.
-fn flight(model: &DropModel, state: &State, end: f64) -> (Motion, f64, bool) {
+fn flight(
+    model: &DropModel,
+    state: &State,
+    end: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<(Motion, f64, bool)> {
     let drag = model.friction / model.mass;
     let rising = state.velocity > 0.0;
     if !rising && drag >= model.gravity {
         let position = state.position;
-        return (Motion::Rest { position }, f64::INFINITY, true);
+        return Ok((Motion::Rest { position }, f64::INFINITY, true));
     }
     let acceleration = if rising {
         -model.gravity - drag
@@ -232,7 +324,7 @@ fn flight(model: &DropModel, state: &State, end: f64) -> (Motion, f64, bool) {
             };
             let fall = (2.0 * state.position.abs() / acceleration.abs()).sqrt();
             let step = (0.25 / rate).min(0.25 * turn).min(0.25 * fall.max(1e-4));
-            first_root(above, step, turn.min(end - state.time))
+            first_root(above, step, turn.min(end - state.time), interrupted)?
         }
         _ if rising => None,
         _ => {
@@ -241,22 +333,27 @@ fn flight(model: &DropModel, state: &State, end: f64) -> (Motion, f64, bool) {
             Some((speed + state.velocity) / -acceleration)
         }
     };
-    match landing {
+    Ok(match landing {
         Some(landing) => (motion, landing, false),
         None if rising => (motion, turn, true),
         None => (motion, f64::INFINITY, true),
-    }
+    })
 }
 
 /// A stretch on the foam.
-fn contact(model: &DropModel, state: &State, end: f64) -> (Motion, f64, bool) {
+fn contact(
+    model: &DropModel,
+    state: &State,
+    end: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<(Motion, f64, bool)> {
     let weight = model.mass * model.gravity;
     let drive = -weight - model.stiffness * state.position;
     let direction = if state.velocity != 0.0 {
         state.velocity.signum()
     } else if drive.abs() <= model.friction {
         let position = state.position;
-        return (Motion::Rest { position }, f64::INFINITY, false);
+        return Ok((Motion::Rest { position }, f64::INFINITY, false));
     } else {
         drive.signum()
     };
@@ -269,27 +366,27 @@ fn contact(model: &DropModel, state: &State, end: f64) -> (Motion, f64, bool) {
         decay: model.damping_ratio * frequency,
         frequency,
     };
-    let step = 0.4 / frequency;
+    let step = SEARCH_STEP / frequency;
     let limit = end - state.time;
-    let turn = first_root(|at| direction * motion.at(at).1, step, limit);
-    let released = (direction > 0.0)
-        .then(|| {
-            let pull = match model.contact {
-                DropContact::Unilateral => 2.0 * model.damping_ratio / frequency,
-                DropContact::Attached => 0.0,
-            };
-            let push = |at: f64| {
-                let (position, velocity) = motion.at(at);
-                -position - pull * velocity
-            };
-            first_root(push, step, turn.unwrap_or(limit))
-        })
-        .flatten();
-    match (released, turn) {
+    let turn = first_root(|at| direction * motion.at(at).1, step, limit, interrupted)?;
+    let released = if direction > 0.0 {
+        let pull = match model.contact {
+            DropContact::Unilateral => 2.0 * model.damping_ratio / frequency,
+            DropContact::Attached => 0.0,
+        };
+        let push = |at: f64| {
+            let (position, velocity) = motion.at(at);
+            -position - pull * velocity
+        };
+        first_root(push, step, turn.unwrap_or(limit), interrupted)?
+    } else {
+        None
+    };
+    Ok(match (released, turn) {
         (Some(at), _) => (motion, at, true),
         (None, Some(at)) => (motion, at, false),
         (None, None) => (motion, f64::INFINITY, false),
-    }
+    })
 }
 
 impl DropModel {
@@ -301,10 +398,24 @@ impl DropModel {
 
 /// First time at which `value`, positive after the start, becomes zero: steps, then the Illinois
 /// variant of the false position.
-fn first_root(value: impl Fn(f64) -> f64, step: f64, limit: f64) -> Option<f64> {
+///
+/// # Errors
+/// The caller asked to stop.
+fn first_root(
+    value: impl Fn(f64) -> f64,
+    step: f64,
+    limit: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Option<f64>> {
     let mut low = 0.0;
     let mut at_low = value(low).max(0.0);
+    let mut steps = 0_usize;
     while low < limit {
+        steps += 1;
+        // Steps so small that they vanish in the time never end either.
+        if steps.is_multiple_of(CHECK) && interrupted() {
+            return Err(Failure::Interrupted);
+        }
         let mut high = (low + step).min(limit);
         let mut at_high = value(high);
         if at_high > 0.0 {
@@ -333,9 +444,9 @@ fn first_root(value: impl Fn(f64) -> f64, step: f64, limit: f64) -> Option<f64> 
                 kept = -1;
             }
         }
-        return Some(high);
+        return Ok(Some(high));
     }
-    None
+    Ok(None)
 }
 
 #[cfg(test)]

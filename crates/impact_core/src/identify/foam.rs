@@ -150,6 +150,7 @@ pub fn identify_foam_until(
         settings: *settings,
         force_deviation: line.residual_deviation.max(f64::EPSILON * line.slope),
         position_deviation: FIRST_DEVIATION,
+        interrupted,
     };
     let first = tests.first_bounce();
     let start = first.minimize(first.start(line.slope))?.parameters;

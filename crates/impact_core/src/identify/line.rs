@@ -67,7 +67,7 @@ pub(super) fn fit_line(name: &str, x: &[f64], y: &[f64], intercept: bool) -> Res
     let (center, level) = (mean(x), mean(y));
     let spread: f64 = x.iter().map(|x| (x - center).powi(2)).sum();
     let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    if spread <= count * (f64::EPSILON * largest).powi(2) {
+    if spread.is_finite() && spread <= count * (f64::EPSILON * largest).powi(2) {
         return Err(Failure::invalid(
             name,
             "hold different values",
@@ -92,6 +92,17 @@ pub(super) fn fit_line(name: &str, x: &[f64], y: &[f64], intercept: bool) -> Res
     let slope_variance = variance / spread;
     let mixed = -center * slope_variance;
     let offset_variance = level_variance + center * center * slope_variance;
+    if [slope, offset, slope_variance, offset_variance]
+        .iter()
+        .any(|number| !number.is_finite())
+    {
+        let largest = y.iter().fold(largest, |largest, y| largest.max(y.abs()));
+        let rule = "hold numbers whose squares and their sums can be represented";
+        let failure = Failure::invalid(name, rule, Given::Number(largest));
+        return Err(
+            failure.mended_by("this is the largest of both; give forces in N, compressions in m")
+        );
+    }
     let quantile = student_quantile(CONFIDENCE, degrees_of_freedom)?;
     let interval = |value: f64, variance: f64| {
         let half = quantile * variance.sqrt();

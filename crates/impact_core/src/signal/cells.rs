@@ -1,8 +1,10 @@
 //! Windows with free ends in a piecewise linear signal: the best one in every pair of pieces has a
 //! formula.
 
-use super::Signal;
 use super::search::{Best, Block, Leaf};
+use super::{Signal, collected};
+use crate::batch::Interrupted;
+use crate::error::Result;
 
 /// One piece of a piecewise linear signal.
 #[derive(Clone, Copy)]
@@ -27,45 +29,46 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    pub(super) fn new(signal: Signal<'_>, integral: &[f64], window: f64) -> Self {
-        let cells = (0..signal.time.len() - 1)
-            .map(|k| {
-                let length = signal.time[k + 1] - signal.time[k];
-                Cell {
-                    time: signal.time[k],
-                    length,
-                    value: signal.value[k],
-                    slope: (signal.value[k + 1] - signal.value[k]) / length,
-                    integral: integral[k],
-                }
-            })
-            .collect();
-        Self { cells, window }
+    pub(super) fn new_until(
+        signal: Signal<'_>,
+        integral: &[f64],
+        window: f64,
+        interrupted: Interrupted<'_>,
+    ) -> Result<Self> {
+        let cells = collected(signal.time.len() - 1, interrupted, |k| {
+            let length = signal.time[k + 1] - signal.time[k];
+            Cell {
+                time: signal.time[k],
+                length,
+                value: signal.value[k],
+                slope: (signal.value[k + 1] - signal.value[k]) / length,
+                integral: integral[k],
+            }
+        })?;
+        Ok(Self { cells, window })
     }
 
-    pub(super) fn blocks(&self) -> Vec<Block> {
-        self.cells
-            .iter()
-            .map(|cell| {
-                let last_integral = cell.integral_at(cell.length);
-                let last_value = cell.value + cell.slope * cell.length;
-                let turn = (-cell.value / cell.slope).clamp(0.0, cell.length);
-                let turned = if turn.is_nan() {
-                    cell.integral
-                } else {
-                    cell.integral_at(turn)
-                };
-                Block {
-                    first: cell.time,
-                    last: cell.time + cell.length,
-                    first_integral: cell.integral,
-                    last_integral,
-                    low: cell.integral.min(last_integral).min(turned),
-                    high: cell.integral.max(last_integral).max(turned),
-                    steepest: cell.value.max(last_value),
-                }
-            })
-            .collect()
+    pub(super) fn blocks_until(&self, interrupted: Interrupted<'_>) -> Result<Vec<Block>> {
+        collected(self.cells.len(), interrupted, |k| {
+            let cell = &self.cells[k];
+            let last_integral = cell.integral_at(cell.length);
+            let last_value = cell.value + cell.slope * cell.length;
+            let turn = (-cell.value / cell.slope).clamp(0.0, cell.length);
+            let turned = if turn.is_nan() {
+                cell.integral
+            } else {
+                cell.integral_at(turn)
+            };
+            Block {
+                first: cell.time,
+                last: cell.time + cell.length,
+                first_integral: cell.integral,
+                last_integral,
+                low: cell.integral.min(last_integral).min(turned),
+                high: cell.integral.max(last_integral).max(turned),
+                steepest: cell.value.max(last_value),
+            }
+        })
     }
 
     /// Offers the window with these offsets in its two cells, moved into the cells.

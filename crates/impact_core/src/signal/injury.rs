@@ -4,8 +4,10 @@
 mod tests;
 
 use super::cells::Cells;
-use super::search::{Best, Block, Leaf, higher, lower, search};
+use super::search::{Best, Block, Leaf, higher, lower, search_until};
+use super::{CHECK, collected, pause};
 use super::{Signal, WINDOW_SLACK};
+use crate::batch::Interrupted;
 use crate::error::{Result, positive};
 
 /// Samples in one undivided block.
@@ -46,9 +48,24 @@ pub fn hic(
     window: f64,
     interpolate: bool,
 ) -> Result<HeadInjury> {
-    let signal = Signal::new(time, acceleration_g)?;
+    hic_until(time, acceleration_g, window, interpolate, &|| false)
+}
+
+/// The same unless the caller asks to stop.
+///
+/// # Errors
+/// Also that the caller asked to stop.
+pub fn hic_until(
+    time: &[f64],
+    acceleration_g: &[f64],
+    window: f64,
+    interpolate: bool,
+    interrupted: Interrupted<'_>,
+) -> Result<HeadInjury> {
+    let signal = Signal::new_until(time, acceleration_g, interrupted)?;
     positive("window", window)?;
     let peak = highest(acceleration_g);
+    pause(interrupted)?;
     if peak <= 0.0 {
         return Ok(HeadInjury {
             value: 0.0,
@@ -57,25 +74,28 @@ pub fn hic(
         });
     }
     // Scaled to a peak of 1: fifth powers neither overflow nor vanish.
-    let scaled: Vec<f64> = acceleration_g.iter().map(|value| value / peak).collect();
+    let scaled = collected(time.len(), interrupted, |k| acceleration_g[k] / peak)?;
     let signal = Signal {
         value: &scaled,
         ..signal
     };
-    let integral = signal.integral();
+    let integral = signal.integral_until(interrupted)?;
     let best = if interpolate {
-        let cells = Cells::new(signal, &integral, window);
-        let known = seed(time, &integral, window);
-        search(cells.blocks(), window, &cells, known)
+        let cells = Cells::new_until(signal, &integral, window, interrupted)?;
+        let known = seed(time, &integral, window, interrupted)?;
+        let blocks = cells.blocks_until(interrupted)?;
+        search_until(blocks, window, &cells, known, interrupted)?
     } else {
-        let window = longest_window(time, window * (1.0 + WINDOW_SLACK));
+        let window = longest_window(time, window * (1.0 + WINDOW_SLACK), interrupted)?;
         let samples = Samples {
             signal,
             integral: &integral,
             window,
         };
-        let known = seed(time, &integral, window);
-        samples.summed_again(search(samples.blocks(), window, &samples, known))
+        let known = seed(time, &integral, window, interrupted)?;
+        let blocks = samples.blocks(interrupted)?;
+        let found = search_until(blocks, window, &samples, known, interrupted)?;
+        samples.summed_again(found)
     };
     if best.squared == 0.0 {
         return Ok(HeadInjury {
@@ -109,22 +129,25 @@ fn highest(values: &[f64]) -> f64 {
 
 /// The longest window of samples that is not longer than `limit`. As a limit of its own it makes the
 /// bounds sharp: the slack for rounding would leave room above every full window.
-fn longest_window(time: &[f64], limit: f64) -> f64 {
+fn longest_window(time: &[f64], limit: f64, interrupted: Interrupted<'_>) -> Result<f64> {
     let mut start = 0;
     let mut longest = 0.0_f64;
-    for &end in time {
-        while end - time[start] > limit {
-            start += 1;
-        }
-        if end - time[start] > longest {
-            longest = end - time[start];
+    for part in time.chunks(CHECK) {
+        pause(interrupted)?;
+        for &end in part {
+            while end - time[start] > limit {
+                start += 1;
+            }
+            if end - time[start] > longest {
+                longest = end - time[start];
+            }
         }
     }
-    longest
+    Ok(longest)
 }
 
 /// A good window between samples: the best of some full windows, improved end by end.
-fn seed(time: &[f64], integral: &[f64], window: f64) -> Best {
+fn seed(time: &[f64], integral: &[f64], window: f64, interrupted: Interrupted<'_>) -> Result<Best> {
     let last = time.len() - 1;
     let mut best = Best::NONE;
     let (mut start, mut end) = (0, last);
@@ -137,6 +160,7 @@ fn seed(time: &[f64], integral: &[f64], window: f64) -> Best {
     };
     let mut reach = 0;
     for from in (0..last).step_by(time.len().div_ceil(SEEDS)) {
+        pause(interrupted)?;
         while reach < last && time[reach + 1] - time[from] <= window {
             reach += 1;
         }
@@ -145,6 +169,7 @@ fn seed(time: &[f64], integral: &[f64], window: f64) -> Best {
         }
     }
     for _ in 0..ROUNDS {
+        pause(interrupted)?;
         let before = (start, end);
         for from in (0..end).rev() {
             if time[end] - time[from] > window {
@@ -166,7 +191,7 @@ fn seed(time: &[f64], integral: &[f64], window: f64) -> Best {
             break;
         }
     }
-    best
+    Ok(best)
 }
 
 /// Windows that start and end at samples.
@@ -177,34 +202,32 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    fn blocks(&self) -> Vec<Block> {
+    fn blocks(&self, interrupted: Interrupted<'_>) -> Result<Vec<Block>> {
         let last_sample = self.integral.len() - 1;
-        (0..=last_sample)
-            .step_by(BLOCK)
-            .map(|first| {
-                let last = last_sample.min(first + BLOCK - 1);
-                let mut low = self.integral[first];
-                let mut high = low;
-                let mut steepest = f64::NEG_INFINITY;
-                for &integral in &self.integral[first + 1..=last] {
-                    low = lower(low, integral);
-                    high = higher(high, integral);
-                }
-                let next = last_sample.min(last + 1);
-                for pair in self.signal.value[first..=next].windows(2) {
-                    steepest = higher(steepest, 0.5 * (pair[0] + pair[1]));
-                }
-                Block {
-                    first: self.signal.time[first],
-                    last: self.signal.time[last],
-                    first_integral: self.integral[first],
-                    last_integral: self.integral[last],
-                    low,
-                    high,
-                    steepest,
-                }
-            })
-            .collect()
+        collected(last_sample / BLOCK + 1, interrupted, |index| {
+            let first = BLOCK * index;
+            let last = last_sample.min(first + BLOCK - 1);
+            let mut low = self.integral[first];
+            let mut high = low;
+            let mut steepest = f64::NEG_INFINITY;
+            for &integral in &self.integral[first + 1..=last] {
+                low = lower(low, integral);
+                high = higher(high, integral);
+            }
+            let next = last_sample.min(last + 1);
+            for pair in self.signal.value[first..=next].windows(2) {
+                steepest = higher(steepest, 0.5 * (pair[0] + pair[1]));
+            }
+            Block {
+                first: self.signal.time[first],
+                last: self.signal.time[last],
+                first_integral: self.integral[first],
+                last_integral: self.integral[last],
+                low,
+                high,
+                steepest,
+            }
+        })
     }
 }
 

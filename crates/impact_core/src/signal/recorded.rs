@@ -1,8 +1,10 @@
 //! Loads of a recorded impact, from signals that are linear between their samples.
 
-use super::{Signal, check_finite, contiguous_level, hic, moving_average};
+use super::{Signal, check_finite, contiguous_level_until, hic_until, moving_average_until, pause};
+use crate::batch::Interrupted;
 use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS, Metrics, Status};
 use crate::error::{Failure, Given, Result, finite, positive};
+use crate::parameters::Foam;
 
 /// A recorded impact; signals that were not recorded are `None`.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +23,8 @@ pub struct Recording<'a> {
     pub start: f64,
     /// Compression up to which the foam is linear, in m.
     pub linear_range: f64,
+    /// Thickness of the foam, in m.
+    pub thickness: f64,
     /// Acceleration of gravity, in m/s^2.
     pub gravity: f64,
 }
@@ -42,7 +46,15 @@ impl Recording<'_> {
     /// # Errors
     /// Bad signals; a start outside the record or at its end.
     pub fn metrics(&self) -> Result<Metrics> {
-        let signal = Signal::new(self.time, self.acceleration_g)?;
+        self.metrics_until(&|| false)
+    }
+
+    /// The same unless the caller asks to stop.
+    ///
+    /// # Errors
+    /// Also that the caller asked to stop.
+    pub fn metrics_until(&self, interrupted: Interrupted<'_>) -> Result<Metrics> {
+        let signal = Signal::new_until(self.time, self.acceleration_g, interrupted)?;
         self.check()?;
         let found = falls_to_zero(&signal, self.start);
         let end = found.unwrap_or(self.time[self.time.len() - 1]);
@@ -55,7 +67,9 @@ impl Recording<'_> {
         let cut = |values: Option<&[f64]>| values.map(|values| part.cut(values));
         let (force, compression) = (cut(self.contact_force), cut(self.compression));
         let velocity = cut(self.manipulator_velocity);
-        let mut row = acceleration(&time, &part.cut(self.acceleration_g), self.gravity)?;
+        let own = part.cut(self.acceleration_g);
+        let mut row = acceleration(&time, &own, self.gravity, interrupted)?;
+        pause(interrupted)?;
         row.peak_contact_force = force.as_deref().map_or(f64::NAN, largest);
         row.max_compression = compression.as_deref().map_or(f64::NAN, largest);
         if let Some(force) = &force {
@@ -67,10 +81,19 @@ impl Recording<'_> {
         row.impact_duration = found.map_or(f64::INFINITY, |end| end - self.start);
         row.status = match found {
             None => Status::NoRelease,
-            Some(_) if row.max_compression > self.linear_range => Status::BeyondLinearRange,
-            Some(_) => Status::Released,
+            Some(_) => Status::released(row.max_compression, &self.foam()),
         };
         Ok(row)
+    }
+
+    /// The foam as far as its compression goes.
+    fn foam(&self) -> Foam {
+        Foam {
+            stiffness: 0.0,
+            damping: 0.0,
+            thickness: self.thickness,
+            linear_range: self.linear_range,
+        }
     }
 
     fn check(&self) -> Result<()> {
@@ -99,9 +122,14 @@ impl Recording<'_> {
 }
 
 /// The criteria that need nothing but the acceleration.
-fn acceleration(time: &[f64], value: &[f64], gravity: f64) -> Result<Metrics> {
-    let signal = Signal::new(time, value)?;
-    let integral = signal.integral();
+fn acceleration(
+    time: &[f64],
+    value: &[f64],
+    gravity: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Metrics> {
+    let signal = Signal::new_until(time, value, interrupted)?;
+    let integral = signal.integral_until(interrupted)?;
     let peak = largest(value);
     let [short, long] = INJURY_WINDOWS;
     let lasts = signal.span() >= HELD_WINDOW;
@@ -110,15 +138,20 @@ fn acceleration(time: &[f64], value: &[f64], gravity: f64) -> Result<Metrics> {
         peak_head_acceleration: peak * gravity,
         peak_head_acceleration_g: peak,
         mean_head_acceleration_g: integral[integral.len() - 1] / signal.span(),
-        hic15: hic(time, value, short, true)?.value,
-        hic36: hic(time, value, long, true)?.value,
+        hic15: hic_until(time, value, short, true, interrupted)?.value,
+        hic36: hic_until(time, value, long, true, interrupted)?.value,
         average_3ms_g: if lasts {
-            level(moving_average(time, value, HELD_WINDOW))?
+            level(moving_average_until(time, value, HELD_WINDOW, interrupted))?
         } else {
             f64::NAN
         },
         clip_3ms_g: if lasts {
-            level(contiguous_level(time, value, HELD_WINDOW))?
+            level(contiguous_level_until(
+                time,
+                value,
+                HELD_WINDOW,
+                interrupted,
+            ))?
         } else {
             f64::NAN
         },

@@ -7,6 +7,12 @@
 //! a shape (pulses, constants, ramps); noise opens more, and the worst case is every pair within one
 //! window, O(n m) with m samples per window.
 
+use crate::batch::Interrupted;
+use crate::error::{Failure, Result};
+
+/// Pairs of blocks between two looks whether to stop.
+const CHECK: usize = 1 << 14;
+
 /// Relative room that a bound must leave above the best value (squared) to be followed.
 const WORTHWHILE: f64 = 1.0 + 1e-13;
 
@@ -121,8 +127,25 @@ pub(crate) trait Leaf {
 
 /// Searches all pairs of `leaves`, given the best window that is already known.
 pub(crate) fn search(leaves: Vec<Block>, window: f64, leaf: &impl Leaf, known: Best) -> Best {
+    search_until(leaves, window, leaf, known, &|| false).unwrap_or(known)
+}
+
+/// The same unless the caller asks to stop.
+///
+/// # Errors
+/// The caller asked to stop.
+pub(crate) fn search_until(
+    leaves: Vec<Block>,
+    window: f64,
+    leaf: &impl Leaf,
+    known: Best,
+    interrupted: Interrupted<'_>,
+) -> Result<Best> {
     let mut levels = vec![leaves];
     while levels[levels.len() - 1].len() > 1 {
+        if interrupted() {
+            return Err(Failure::Interrupted);
+        }
         let below = &levels[levels.len() - 1];
         let above = below
             .chunks(2)
@@ -135,9 +158,16 @@ pub(crate) fn search(leaves: Vec<Block>, window: f64, leaf: &impl Leaf, known: B
         window,
         leaf,
         best: known,
+        interrupted,
+        pairs: 0,
+        stopped: false,
     };
     tree.inside(levels.len() - 1, 0);
-    tree.best
+    if tree.stopped {
+        Err(Failure::Interrupted)
+    } else {
+        Ok(tree.best)
+    }
 }
 
 struct Tree<'a, L> {
@@ -145,6 +175,10 @@ struct Tree<'a, L> {
     window: f64,
     leaf: &'a L,
     best: Best,
+    interrupted: Interrupted<'a>,
+    /// Pairs that were opened since the last look whether to stop.
+    pairs: usize,
+    stopped: bool,
 }
 
 impl<L: Leaf> Tree<'_, L> {
@@ -152,8 +186,21 @@ impl<L: Leaf> Tree<'_, L> {
         bound <= self.best.squared * WORTHWHILE
     }
 
+    /// Whether the search is to end; every opened pair asks.
+    fn ends(&mut self) -> bool {
+        self.pairs += 1;
+        if self.pairs == CHECK {
+            self.pairs = 0;
+            self.stopped |= (self.interrupted)();
+        }
+        self.stopped
+    }
+
     fn inside(&mut self, level: usize, node: usize) {
         if self.hopeless(self.levels[level][node].bound_inside(self.window)) {
+            return;
+        }
+        if self.ends() {
             return;
         }
         if level == 0 {
@@ -170,6 +217,9 @@ impl<L: Leaf> Tree<'_, L> {
     fn between(&mut self, level: usize, left: usize, right: usize) {
         let blocks = &self.levels[level];
         if self.hopeless(blocks[left].bound_to(&blocks[right], self.window)) {
+            return;
+        }
+        if self.ends() {
             return;
         }
         if level == 0 {

@@ -6,7 +6,8 @@
 
 use std::collections::VecDeque;
 
-use super::{Signal, WINDOW_SLACK};
+use super::{CHECK, Signal, WINDOW_SLACK, pause};
+use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, positive};
 
 /// Value of a criterion and the window it belongs to.
@@ -25,11 +26,27 @@ pub struct Level {
 /// # Errors
 /// A bad signal, a width that is not positive, a signal shorter than the width.
 pub fn moving_average(time: &[f64], acceleration_g: &[f64], width: f64) -> Result<Level> {
-    let signal = Signal::new(time, acceleration_g)?;
+    moving_average_until(time, acceleration_g, width, &|| false)
+}
+
+/// The same unless the caller asks to stop.
+///
+/// # Errors
+/// Also that the caller asked to stop.
+pub fn moving_average_until(
+    time: &[f64],
+    acceleration_g: &[f64],
+    width: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Level> {
+    let signal = Signal::new_until(time, acceleration_g, interrupted)?;
     let width = fitting_width(&signal, width)?;
-    let integral = signal.integral();
+    let integral = signal.integral_until(interrupted)?;
     let mut best = Level::at(f64::NEG_INFINITY, 0.0, width);
-    for piece in Pieces::new(signal, width) {
+    for (index, piece) in Pieces::new(signal, width).enumerate() {
+        if index % CHECK == 0 {
+            pause(interrupted)?;
+        }
         let mut starts = [piece.earliest, piece.latest, piece.earliest];
         let [from, to] = [piece.start_slope, piece.end_slope];
         if from > to {
@@ -52,13 +69,29 @@ pub fn moving_average(time: &[f64], acceleration_g: &[f64], width: f64) -> Resul
 /// # Errors
 /// A bad signal, a width that is not positive, a signal shorter than the width.
 pub fn contiguous_level(time: &[f64], acceleration_g: &[f64], width: f64) -> Result<Level> {
-    let signal = Signal::new(time, acceleration_g)?;
+    contiguous_level_until(time, acceleration_g, width, &|| false)
+}
+
+/// The same unless the caller asks to stop.
+///
+/// # Errors
+/// Also that the caller asked to stop.
+pub fn contiguous_level_until(
+    time: &[f64],
+    acceleration_g: &[f64],
+    width: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Level> {
+    let signal = Signal::new_until(time, acceleration_g, interrupted)?;
     let width = fitting_width(&signal, width)?;
     let mut best = Level::at(f64::NEG_INFINITY, 0.0, width);
     // Samples inside the window that are lower than all later ones, in order.
     let mut lowest: VecDeque<usize> = VecDeque::new();
     let mut entered = 0;
-    for piece in Pieces::new(signal, width) {
+    for (index, piece) in Pieces::new(signal, width).enumerate() {
+        if index % CHECK == 0 {
+            pause(interrupted)?;
+        }
         while entered < piece.end_cell {
             entered += 1;
             while lowest

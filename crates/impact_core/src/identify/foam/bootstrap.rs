@@ -3,7 +3,6 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::super::drop_test::trajectory;
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
 use crate::batch::Interrupted;
@@ -56,7 +55,7 @@ impl Tests<'_> {
         let grown = (measured / (measured - fitted).max(1.0)).sqrt();
         for (drop, position) in result.position.iter_mut().enumerate() {
             let left = self.positions_left(parameters, drop);
-            let path = trajectory(self.time[drop], &self.model(parameters, drop));
+            let path = self.path(parameters, drop);
             for (run, positions) in position.chunks_mut(RUN).enumerate() {
                 let from = index(left.len());
                 for (k, position) in positions.iter_mut().enumerate() {

@@ -1,9 +1,10 @@
 //! Measurements of both tests, and the parameters that fit them best.
 
-use super::super::drop_test::{DropModel, trajectory};
+use super::super::drop_test::{DropModel, trajectory_until};
 use super::super::least_squares::{Minimum, Start, minimize};
 use super::super::line::student_quantile;
 use super::FoamFitSettings;
+use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result};
 
 /// Damping ratios from which the search may start.
@@ -24,6 +25,7 @@ pub(super) struct Tests<'a> {
     pub(super) settings: FoamFitSettings,
     pub(super) force_deviation: f64,
     pub(super) position_deviation: f64,
+    pub(super) interrupted: Interrupted<'a>,
 }
 
 impl Tests<'_> {
@@ -52,8 +54,15 @@ impl Tests<'_> {
         pairs.map(move |(force, compression)| force - parameters[0] * compression)
     }
 
+    /// Positions that parameters give; NaN once the caller has asked to stop, which ends the fit.
+    pub(super) fn path(&self, parameters: &[f64], drop: usize) -> Vec<f64> {
+        let time = self.time[drop];
+        trajectory_until(time, &self.model(parameters, drop), self.interrupted)
+            .unwrap_or_else(|_| vec![f64::NAN; time.len()])
+    }
+
     pub(super) fn positions_left(&self, parameters: &[f64], drop: usize) -> Vec<f64> {
-        let path = trajectory(self.time[drop], &self.model(parameters, drop));
+        let path = self.path(parameters, drop);
         let pairs = self.position[drop].iter().zip(path);
         pairs.map(|(measured, path)| measured - path).collect()
     }
@@ -146,7 +155,11 @@ impl Tests<'_> {
             scale,
             lower,
         };
-        minimize(&start, |parameters| self.residuals(parameters)).ok_or_else(|| {
+        let found = minimize(&start, |parameters| self.residuals(parameters));
+        if (self.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        found.ok_or_else(|| {
             Failure::invalid(
                 "drop_position",
                 "determine stiffness, damping and friction",

@@ -35,7 +35,7 @@ fn all_cells(time: &[f64], value: &[f64], window: f64) -> f64 {
         time,
         value: &scaled,
     };
-    let cells = Cells::new(signal, &signal.integral(), window);
+    let cells = Cells::new_until(signal, &signal.integral(), window, &|| false).unwrap();
     let mut best = Best::NONE;
     for left in 0..time.len() - 1 {
         for right in left..time.len() - 1 {
