@@ -72,7 +72,7 @@ def number(name: str, value: object) -> float:
 
 def _check_mask(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
-    masked = np.ma.count_masked(value) if isinstance(value, np.ma.MaskedArray) else 0
+    masked = int(np.count_nonzero(np.ma.getmaskarray(value))) if isinstance(value, np.ma.MaskedArray) else 0
     if masked:
         shown = Shown(f"{masked} masked of {value.size}")  # type: ignore[attr-defined]  # a masked array
         raise InvalidParameterError(name, "have no masked values", shown, "leave them out with .compressed()")

@@ -110,27 +110,47 @@ RANGES: dict[str, Range] = {
     "measurement_scale": Range(0.0, 1.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
     "latency": Range(0.0, 5.0, "s", "immediate to very slow networks", "ms given for s"),
     # ---- impact -----------------------------------------------------------------------------
-    "manipulator_mass": Range(0.05, 1000.0, "kg", "one finger to a car-body robot, effective at a point", "grams given for kilograms"),
-    "manipulator_damping": Range(0.0, 1e5, "N s/m", "Table 3.1 of Zeng (2011) has 111 and 250", "N s/mm given for N s/m"),
+    "manipulator_mass": Range(
+        0.05, 1000.0, "kg", "one finger to a car-body robot, effective at a point", "grams given for kilograms"
+    ),
+    "manipulator_damping": Range(
+        0.0, 1e5, "N s/m", "Table 3.1 of Zeng (2011) has 111 and 250", "N s/mm given for N s/m"
+    ),
     "manipulator_stiffness": Range(
         100.0, 1e8, "N/m", "soft joint control to the links themselves", "N/mm or kN/m given for N/m"
     ),
     "foam_stiffness": Range(
-        200.0, 1e7, "N/m", "softer than any covering of Table 3.3 of Zeng (2011) to hard rubber", "N/mm or kN/m given for N/m"
+        200.0,
+        1e7,
+        "N/m",
+        "softer than any covering of Table 3.3 of Zeng (2011) to hard rubber",
+        "N/mm or kN/m given for N/m",
     ),
     "foam_damping": Range(0.0, 1e4, "N s/m", "Table 3.3 of Zeng (2011) has 44 to 114", "N s/mm given for N s/m"),
     "thickness": Range(0.0005, 0.5, "m", "skin of rubber to an airbag", "millimeters given for meters"),
     "linear_range": Range(0.0002, 0.5, "m", "a part of the thickness", "millimeters given for meters"),
-    "head_mass": Range(1.0, 12.0, "kg", "newborn to adult with helmet; 4.4 to 5.3 in Zeng (2011)", "grams given for kilograms"),
+    "head_mass": Range(
+        1.0, 12.0, "kg", "newborn to adult with helmet; 4.4 to 5.3 in Zeng (2011)", "grams given for kilograms"
+    ),
     "head_damping": Range(0.0, 1e4, "N s/m", "46 to 130 in Zeng (2011)", "N s/mm given for N s/m"),
-    "head_stiffness": Range(100.0, 1e7, "N/m", "3 to 5 kN/m in Zeng (2011), a clamped head", "N/mm or kN/m given for N/m"),
+    "head_stiffness": Range(
+        100.0, 1e7, "N/m", "3 to 5 kN/m in Zeng (2011), a clamped head", "N/mm or kN/m given for N/m"
+    ),
     "closing_speed": Range(
-        0.001, 12.0, "m/s", "creeping robots to the fastest industrial arms meeting a runner", "mm/s or cm/s given for m/s"
+        0.001,
+        12.0,
+        "m/s",
+        "creeping robots to the fastest industrial arms meeting a runner",
+        "mm/s or cm/s given for m/s",
     ),
     "manipulator_speed": Range(-12.0, 12.0, "m/s", "the fastest industrial arms", "mm/s or cm/s given for m/s"),
     "impact_time": Range(1e-4, 20.0, "s", "an impact takes milliseconds", "milliseconds given for seconds"),
     "sampling_step": Range(
-        1e-8, 0.00167, "s", "ISO 6487: ten samples per hertz of the class, CFC 60 at least", "milliseconds given for seconds"
+        1e-8,
+        0.00167,
+        "s",
+        "ISO 6487: ten samples per hertz of the class, CFC 60 at least",
+        "milliseconds given for seconds",
     ),
     "head_acceleration_g": Range(-500.0, 500.0, "g", "far above skull fracture", "m/s^2 given for g"),
     "head_velocity_gain": Range(
@@ -151,7 +171,9 @@ RANGES: dict[str, Range] = {
     "drop_step": Range(1e-7, 0.02, "s", "a bounce takes some 20 ms", "milliseconds given for seconds"),
     "static_force": Range(-1e5, 1e5, "N", "presses for foam", "mN given for N"),
     "gravity": Range(1.6, 25.0, "m/s^2", "Moon to Jupiter", "g or mm/s^2 given for m/s^2"),
-    "damping_ratio": Range(0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"),
+    "damping_ratio": Range(
+        0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"
+    ),
 }
 
 

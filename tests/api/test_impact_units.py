@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from api.interrupting import check_work_is_interrupted, needs_signals
 from hrsafety import InvalidParameterError, impact
-
-from .interrupting import check_work_is_interrupted, needs_signals
 
 ARM, FOAM, HEAD = impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum()
 GRAVITY = 9.80665
@@ -21,7 +20,9 @@ def test_milliseconds_are_refused_by_the_criteria() -> None:
     time = np.arange(0.0, 40.0, 0.1)
     pulse = 60.0 * np.sin(np.pi * time / 40.0) + 1.0
     for criterion in (impact.hic, impact.recorded_metrics, impact.clip_3ms, impact.average_3ms):
-        with pytest.raises(InvalidParameterError, match=r"time must have steps of at most .* divide milliseconds by 1000"):
+        with pytest.raises(
+            InvalidParameterError, match=r"time must have steps of at most .* divide milliseconds by 1000"
+        ):
             criterion(time, pulse)
         criterion(time / 1000.0, pulse)
 
@@ -69,13 +70,15 @@ def test_millimeters_in_foam_tests_are_doubted() -> None:
 @pytest.mark.parametrize("contact", ["unilateral", "attached"])
 def test_overdamped_drop_creeps_to_its_rest(ratio: float, contact: str) -> None:
     time = np.linspace(0.0, 1.0, 50)
-    path = impact.drop_trajectory(
-        time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=ratio, contact=contact
-    )
+    path = impact.drop_trajectory(time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=ratio, contact=contact)
     assert np.isfinite(path).all()
     rest = -1.54 * GRAVITY / 24250.0
     # In contact at the slow root: the offset from the rest shrinks by the same factor from sample to sample.
-    rate = np.sqrt(24250.0 / 1.54) * (ratio - np.sqrt(ratio**2 - 1.0)) if ratio < 1e3 else np.sqrt(24250.0 / 1.54) / ratio / 2
+    rate = (
+        np.sqrt(24250.0 / 1.54) * (ratio - np.sqrt(ratio**2 - 1.0))
+        if ratio < 1e3
+        else np.sqrt(24250.0 / 1.54) / ratio / 2
+    )
     late = path[-10:] - rest
     assert late[1:] == pytest.approx(late[:-1] * np.exp(-rate * time[1]), rel=1e-6, abs=1e-15)
 
@@ -112,8 +115,8 @@ def test_masked_values_are_refused_by_name() -> None:
         ),
         (
             "import numpy as np\nfrom hrsafety import impact\n"
-            "time = np.arange(4e5) * 1e-7\nnoise = np.random.default_rng(1).normal(size=len(time))",
-            "while True: impact.hic(time, noise)",
+            "instants = np.arange(4e5) * 1e-7\nnoise = np.random.default_rng(1).normal(size=len(instants))",
+            "while True: impact.hic(instants, noise)",
         ),
     ],
 )

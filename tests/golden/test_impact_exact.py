@@ -29,11 +29,11 @@ THICKNESS = 0.0254  # m: where the head stands at first
 NAMES = GOLDEN["parameter_names"]
 
 
-def parts(p: Parameters) -> tuple[impact.Manipulator, impact.Foam, impact.Head]:
+def parts(p: Parameters, thickness: float = LINEAR_RANGE) -> tuple[impact.Manipulator, impact.Foam, impact.Head]:
     """Return the parameter objects of one set; the linear range is far away."""
     return (
         impact.Manipulator(mass=p[0], damping=p[1], stiffness=p[2]),
-        impact.Foam(stiffness=p[6], damping=p[7], thickness=LINEAR_RANGE, linear_range=LINEAR_RANGE),
+        impact.Foam(stiffness=p[6], damping=p[7], thickness=thickness, linear_range=thickness),
         impact.Head(mass=p[3], damping=p[4], stiffness=p[5]),
     )
 
@@ -138,7 +138,7 @@ def test_trajectories_are_exact(parameters: np.ndarray) -> None:
     for i, case in enumerate(cases()):
         p = Parameters(*parameters[i])
         speeds = {"closing_speed": p.closing_speed, "manipulator_speed": p.manipulator_speed}
-        run = impact.simulate(*parts(p), **speeds, duration=0.06, step=STEP)
+        run = impact.simulate(*parts(p, THICKNESS), **speeds, duration=0.06, step=STEP)
         for k, name in enumerate(TRAJECTORIES):
             start = THICKNESS if name == "head_position" else 0.0  # the file counts from there
             found, scale = getattr(run, name)[rows], case["peaks"][k] + start
@@ -175,7 +175,7 @@ def test_trajectories_agree_with_an_adaptive_integrator() -> None:
         options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15 * p.closing_speed, "t_eval": times}
         plain = solve_ivp(right_hand_side(p), (0.0, 0.06), start, **options).y
         speeds = {"closing_speed": p.closing_speed, "manipulator_speed": p.manipulator_speed}
-        run = impact.simulate(*parts(p), **speeds, duration=0.06, step=STEP)
+        run = impact.simulate(*parts(p, THICKNESS), **speeds, duration=0.06, step=STEP)
         names = ("manipulator_position", "manipulator_velocity", "head_position", "head_velocity")
         for values, name in zip(plain, names, strict=True):
             scale = max(np.abs(values).max(), p.closing_speed * (0.06 if name.endswith("position") else 1.0))

@@ -256,9 +256,7 @@ class FoamDesign:
         given = np.array([not_negative("damping", damping)])
         return float(self._fastest(given, check_margin(margin))[0][0])
 
-    def feasibility(
-        self, damping: npt.ArrayLike = DEFAULT_DAMPING, margin: float = DEFAULT_MARGIN
-    ) -> FoamFeasibility:
+    def feasibility(self, damping: npt.ArrayLike = DEFAULT_DAMPING, margin: float = DEFAULT_MARGIN) -> FoamFeasibility:
         """Return whether some foam keeps all limits with a margin, and if not how fast the impact may be.
 
         Such a foam is stiff enough to give back within `linear_range`, whether compression is limited or
@@ -338,7 +336,9 @@ class FoamDesign:
         given, share = check_damping(damping), check_margin(margin)
         needed = self._with_linear_range(self.linear_range, share)
         impact = Impact(self.closing_speed, self.horizon)
-        soft = boundary(self.manipulator, [each for each in needed if each[0] == _OF_CONTACT], given, impact, upper=False)
+        soft = boundary(
+            self.manipulator, [each for each in needed if each[0] == _OF_CONTACT], given, impact, upper=False
+        )
         hard_limits = [each for each in needed if each[0] in _AGAINST_STIFFNESS]
         least = np.where(soft.holds_above, soft.stiffness, np.nan)
         if not hard_limits:

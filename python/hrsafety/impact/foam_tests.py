@@ -19,6 +19,8 @@ __all__ = ["FoamFit", "StaticFit", "drop_trajectory", "fit_static", "identify_fo
 
 Contact = Literal["unilateral", "attached"]
 _CONTACTS = ("unilateral", "attached")
+# Of what is fitted, in SI units; squares of more overflow.
+MOST = 1e100
 
 
 class _Line(NamedTuple):
@@ -101,9 +103,7 @@ class FoamFit:
     iterations: int
     warnings: tuple[ResultWarning, ...] = ()
 
-    def foam(
-        self, moving_mass: float, *, thickness: float = THICKNESS, linear_range: float | None = None
-    ) -> Foam:
+    def foam(self, moving_mass: float, *, thickness: float = THICKNESS, linear_range: float | None = None) -> Foam:
         """Return the foam with its damping scaled to a moving mass.
 
         Parameters
@@ -160,9 +160,18 @@ def fit_static(static_force: npt.ArrayLike, static_compression: npt.ArrayLike, *
     (24143, [23728.0, 24558.0])
     """
     force, compression = columns(static_force=static_force, static_compression=static_compression)
+    _check_squares(static_force=force, static_compression=compression)
     found = StaticFit(**_hrsafety.fit_static(force, compression, flag("offset", offset)))
     found.warnings = _static_warnings(force, compression) + _foam_warnings(found.stiffness)
     return found
+
+
+def _check_squares(**signals: Array) -> None:
+    """Refuse numbers whose squares would overflow in the sums of a fit."""
+    for name, values in signals.items():
+        largest = float(np.abs(values).max(initial=0.0))
+        if MOST < largest < np.inf:
+            raise InvalidParameterError(name, f"be at most {MOST:g}, so that squares can be summed", largest)
 
 
 def _extremes(values: Array) -> Array:
@@ -178,9 +187,7 @@ def _foam_warnings(stiffness: float) -> tuple[ResultWarning, ...]:
     return implausible({"fitted stiffness": stiffness}, {"fitted stiffness": "foam_stiffness"})
 
 
-def _drop_warnings(
-    drops: list[tuple[Array, Array]], moving_mass: float, gravity: float
-) -> tuple[ResultWarning, ...]:
+def _drop_warnings(drops: list[tuple[Array, Array]], moving_mass: float, gravity: float) -> tuple[ResultWarning, ...]:
     found = implausible({"moving_mass": moving_mass, "gravity": gravity})
     for index, (time, position) in enumerate(drops):
         if len(time) < 2:
@@ -259,6 +266,7 @@ def identify_foam(
     """
     force, compression = columns(static_force=static_force, static_compression=static_compression)
     drops = _drops(drop_time, drop_position)
+    _check_squares(static_force=force, static_compression=compression)
     mass, pull = number("moving_mass", moving_mass), number("gravity", gravity)
     doubts = _static_warnings(force, compression) if len(force) else ()
     doubts += _drop_warnings(drops, mass, pull)

@@ -57,7 +57,9 @@ class FoamLimits(Parameters):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Limits that are hardly what was meant."""
         given = self.given()
-        return implausible({f"limits.{name}": limit for name, limit in given.items()}, {f"limits.{name}": name for name in given})
+        return implausible(
+            {f"limits.{name}": limit for name, limit in given.items()}, {f"limits.{name}": name for name in given}
+        )
 
     def given(self) -> dict[str, float]:
         """Return the limits that are set.

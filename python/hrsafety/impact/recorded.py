@@ -128,7 +128,11 @@ def _warnings(time: Array, acceleration_g: Array, others: dict[str, Array | None
             "apparent_head_mass",
         ),
     }
-    ranges = {"contact_force": "contact_force", "compression": "compression", "manipulator_velocity": "manipulator_speed"}
+    ranges = {
+        "contact_force": "contact_force",
+        "compression": "compression",
+        "manipulator_velocity": "manipulator_speed",
+    }
     named |= {name: (None if values is None else _extremes(values), ranges[name]) for name, values in others.items()}
     doubts = implausible(
         {name: value for name, (value, _) in named.items()}, {name: quantity for name, (_, quantity) in named.items()}
