@@ -122,8 +122,8 @@ def test_other_force_laws_are_searched_too(law: nav.Law) -> None:
     found = nav.optimize_gains(
         SCENES[::2], law, grid=(4,) * len(law.gains), refinements=1, survivors=10, local_starts=1
     )
-    assert type(found.best) is type(law)
-    assert found.best.replaced(**dict(zip(law.GAIN_NAMES, law.gains, strict=True))) == law
+    assert type(found.nearest) is type(law)
+    assert found.nearest.replaced(**dict(zip(law.GAIN_NAMES, law.gains, strict=True))) == law
     own = nav.simulate_batch(SCENES[::2], law, stop_on_contact=True).performance_total.mean()
     assert found.best_value >= own
 
