@@ -10,9 +10,8 @@ import pytest
 
 import hrsafety
 
-NAMES = sorted(
-    module.name for module in pkgutil.iter_modules(hrsafety.__path__) if not module.name.startswith("_") and module.ispkg
-)
+MODULES = [module for module in pkgutil.iter_modules(hrsafety.__path__) if not module.name.startswith("_")]
+NAMES = sorted(module.name for module in MODULES if module.ispkg)
 
 
 @pytest.mark.parametrize("name", NAMES)

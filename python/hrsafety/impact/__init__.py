@@ -88,6 +88,7 @@ __all__ = [
     "channel_corner",
     "channel_filter",
     "clip_3ms",
+    "dashpots_in_series",
     "design_foam",
     "drop_trajectory",
     "fit_open_loop",

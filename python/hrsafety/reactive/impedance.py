@@ -13,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, flag, number, numbers, pair
 from hrsafety.errors import ShapeError
 
-__all__ = ["VirtualImpedance", "collision_vector"]
+__all__ = ["VirtualImpedance"]
 
 Form = Literal["off", "conventional", "active", "twice_scaled"]
 _NUMBERS = ("stiffness", "damping", "safe_distance", "speed_limit", "filter_time", "largest_rate")

@@ -63,7 +63,7 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
         )
     yield (
         "follower_rates",
-        f"Share of {len(study.base['static', 'active']):,} layouts with a contact, with 95 % intervals; diamonds: a second "
+        f"Share of {len(study.base['static', 'active']):,} layouts with a contact, 95 % intervals; diamonds: a second "
         "implementation of the same description in other layouts.",
         plotting.follower_rates(
             {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
