@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections import Counter
+import re
 from collections.abc import Iterator
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -20,9 +21,8 @@ from hrsafety.reproduce import (
     impact_page,
     impact_part,
     markup,
-    page,
-    published,
     reactive_follower_tables,
+    reactive_skirt_study,
     reactive_skirt_tables,
     reactive_sound_study,
     reactive_sound_tables,
@@ -33,7 +33,10 @@ from hrsafety.reproduce.cells import Cell
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
 ROWS = 203
-# Tables of the page that hold the rows of a published table.
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+# Keys that number or name a row in the file; the page has its own words for them.
+LABELS = {"manipulator", "simulation", "foam", "method", "change_percent", "note", "robot", "direction", "wheel"}
+# Tables of the page that hold the rows of a published table, where they are not of the same number.
 PLACES = {
     "avi2019:1": ("avi2019 Table 1",),
     "avi2019:2": ("avi2019 Table 2",),
@@ -43,21 +46,75 @@ PLACES = {
 
 
 def specified() -> dict[str, list[dict[str, object]]]:
-    """Return the rows of every table of the specification that a page must show."""
+    """Return the rows of every table of the specification, as this package ships them."""
     source = SHARED / "spec" / "published_tables.json"
     if not source.is_file():
         pytest.skip(f"needs the specification's tables: {source}")
-    entries = json.loads(source.read_text(encoding="utf-8"))
-    return {name: entry["rows"] for name, entry in entries.items() if isinstance(entry, dict)}
+    names = [name for name, entry in json.loads(source.read_text(encoding="utf-8")).items() if isinstance(entry, dict)]
+    return {name: reproduce.published_tables()[name]["rows"] for name in names}
 
 
 def numbers(value: object) -> Iterator[float]:
     """Yield every number in a row, however deep."""
     if isinstance(value, dict):
-        for each in value.values():
-            yield from numbers(each)
+        for key, each in value.items():
+            if key not in LABELS:
+                yield from numbers(each)
     elif isinstance(value, list):
         for each in value:
             yield from numbers(each)
-    elif isinstance(value, int | float) and not isinstance(value, bool):
+    elif isinstance(value, int | float):
         yield float(value)
+
+
+@pytest.fixture(scope="module")
+def shown() -> dict[str, set[float]]:
+    """Numbers that the page shows, by its tables."""
+    impacts = impact_part.cells()
+    cells: list[Cell] = [
+        *impacts,
+        *tables.chapter_6(),
+        *tables.chapter_7(),
+        *tables.unpredictable_human(),
+        *gain_tables.appendix_c(),
+        *wheels_tables.cells(),
+        *reactive_sound_tables.cells(reactive_sound_study.measure()),
+        *reactive_follower_tables._robots(),
+        *reactive_skirt_tables.cells_of_tests(reactive_skirt_study.run_study(layouts=20)),
+    ]
+    html = {table: markup.table_of_cells(table, own) for table, own in markup.by_table(cells).items()}
+    groups = markup.by_table(impacts)
+    html |= {table: "".join(impact_page._experiments(table, groups[table])) for table in ("4.1", "4.2")}
+    words = {table: unescape(re.sub(r"<[^>]*>", " ", text)) for table, text in html.items()}
+    return {table: {float(each) for each in NUMBER.findall(text)} for table, text in words.items()}
+
+
+def on_page(value: float, found: set[float]) -> bool:
+    """Whether a number is there; shares stand in percent, stiffness of rows in kN/m or N/m."""
+    scaled = [value * factor for factor in (1.0, 100.0, 1000.0)]
+    return any(abs(each - other) <= 1e-9 * max(1.0, abs(other)) for each in scaled for other in found)
+
+
+def test_every_published_row_is_on_the_page(shown: dict[str, set[float]]) -> None:
+    missing = []
+    count = 0
+    for name, rows in specified().items():
+        places = PLACES.get(name, (name.removeprefix("zeng2011:"),))
+        found = set().union(*(shown.get(place, set()) for place in places))
+        for row in rows:
+            count += 1
+            lost = [value for value in numbers(row) if not on_page(value, found)]
+            if lost or not found:
+                missing.append((name, row, lost))
+    assert missing == []
+    assert count == ROWS
+
+
+def test_inputs_are_marked_as_inputs() -> None:
+    cells = impact_inputs.cells()
+    assert {cell.table for cell in cells} == {"3.1", "3.2", "3.3"}
+    assert all(cell.within is None and cell.reason == impact_inputs.INPUT for cell in cells)
+    leader = [cell for cell in reactive_follower_tables._robots() if cell.table == "avi2019 Table 5"]
+    assert {cell.printed for cell in leader} == {5.3, 0.29, 0.06, 0.352, 0.326, 0.32}
+    for table, own in markup.by_table([*cells, *leader]).items():
+        assert "(inputs)" in markup.table_of_cells(table, own)

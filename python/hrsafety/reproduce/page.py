@@ -183,7 +183,8 @@ def _head(report: Report) -> Iterator[str]:
         "avoidance from sensors, beside the value measured here with the corrected equations. Nothing is tuned to the "
         "printed values; where a value differs, the reason stands beside it.</p>"
     )
-    links = " ".join(f'<a href="#{part}">{escape(_PARTS[part])}</a>' for part in _PARTS if part in report.parts)
+    parts = [part for part in _PARTS if part in report.parts and (part != "figures-6" or _others(report))]
+    links = " ".join(f'<a href="#{part}">{escape(_PARTS[part])}</a>' for part in parts)
     yield f'<nav>{links} <a href="#made">How it was made</a></nav>'
     if report.cells:
         yield markup.counts(report.cells)
@@ -248,11 +249,16 @@ def _sections(report: Report) -> Iterator[str]:
         yield markup.table_of_cells("Section D.4", tables["Section D.4"])
         yield from markup.figures(report.camera_pictures)
         yield "</section>"
-    others = placement.unplaced(report.pictures, list(tables))
+    others = _others(report)
     if others:
         yield '<section id="figures-6"><h2>Pictures</h2>'
         yield from markup.figures(others)
         yield "</section>"
+
+
+def _others(report: Report) -> list[Picture]:
+    """Return the pictures whose tables are not on the page."""
+    return placement.unplaced(report.pictures, list(markup.by_table(report.cells)))
 
 
 def _foot(report: Report) -> Iterator[str]:
