@@ -73,7 +73,7 @@ BAD_SKIRTS: list[tuple[dict[str, Any], str]] = [
     ({"chassis_radius": 0.0}, "chassis_radius"),
     ({"chassis_radius": math.nan}, "chassis_radius"),
     ({"chassis_radius": "wide"}, "chassis_radius"),
-    ({"sensor_inset": -0.1}, "sensor_inset"),
+    ({"sensor_inset": -0.4}, "sensor_inset"),
     ({"sensor_inset": 0.4}, "sensor_inset"),
     ({"sensors": 8}, "sensors"),
     ({"sensors": 3}, "sensors"),
