@@ -45,6 +45,10 @@ PLACES = {
 }
 
 
+# Settings of an experiment, which its row names in words.
+SETTINGS = {"zeng2011:4.1": {"K_c", "C_c", "K_r", "C_r", "v_r", "v_h"}}
+
+
 def specified() -> dict[str, list[dict[str, object]]]:
     """Return the rows of every table of the specification, as this package ships them."""
     source = SHARED / "spec" / "published_tables.json"
@@ -103,7 +107,8 @@ def test_every_published_row_is_on_the_page(shown: dict[str, set[float]]) -> Non
         found = set().union(*(shown.get(place, set()) for place in places))
         for row in rows:
             count += 1
-            lost = [value for value in numbers(row) if not on_page(value, found)]
+            results = {key: each for key, each in row.items() if name not in SETTINGS or key not in SETTINGS[name]}
+            lost = [value for value in numbers(results) if not on_page(value, found)]
             if lost or not found:
                 missing.append((name, row, lost))
     assert missing == []
@@ -112,9 +117,9 @@ def test_every_published_row_is_on_the_page(shown: dict[str, set[float]]) -> Non
 
 def test_inputs_are_marked_as_inputs() -> None:
     cells = impact_inputs.cells()
-    assert {cell.table for cell in cells} == {"3.1", "3.2", "3.3"}
+    assert {cell.table for cell in cells} == {"3.1", "3.2", "3.3", "A.1"}
     assert all(cell.within is None and cell.reason == impact_inputs.INPUT for cell in cells)
     leader = [cell for cell in reactive_follower_tables._robots() if cell.table == "avi2019 Table 5"]
     assert {cell.printed for cell in leader} == {5.3, 0.29, 0.06, 0.352, 0.326, 0.32}
-    for table, own in markup.by_table([*cells, *leader]).items():
+    for table, own in markup.by_table([*(cell for cell in cells if cell.table != "A.1"), *leader]).items():
         assert "(inputs)" in markup.table_of_cells(table, own)

@@ -28,4 +28,10 @@ def cells() -> list[Cell]:
                     unit = table["units"].get(column, "")
                     place = {"table": number, "row": f"{name} {row[key]}", "column": column}
                     found.append(Cell.listed(**place, printed=value, unit=unit, reason=INPUT))
+    table = published_tables()["zeng2011:A.1"]
+    for row in table["rows"]:
+        for column in ("kappa", "A"):
+            for number, value in enumerate(row[column], start=1):
+                place = {"table": "A.1", "row": f"{row['u']:g} V, test {number}", "column": column}
+                found.append(Cell.listed(**place, printed=value, unit=table["units"][column], reason=INPUT))
     return found

@@ -25,6 +25,7 @@ LATERAL = 0.5  # m, how far off the leader's line the follower may be in experim
 LEADER = (
     "Input: the leader is a source of sound that moves as it is told; its size is seen by the sonar on request only."
 )
+BODY = "Input that is not used: the body is a disc of 0.25 m radius here."
 UNEXPLAINED = "The 95 % intervals do not overlap; how the other layouts were selected is not said."
 SELECTED = "One printed run each; here random layouts that all touch without repulsion."
 
@@ -109,6 +110,9 @@ def _robots() -> Iterator[Cell]:
         if column != "robot":
             place = {"table": "avi2019 Table 5", "row": "Leader", "column": column.replace("_", " ")}
             yield Cell.listed(**place, printed=value, unit=table["units"][column], reason=LEADER)
+    for column in ("wheel_radius", "width", "length", "height"):
+        place = {"table": "avi2019 Table 6", "row": "Follower", "column": column.replace("_", " ")}
+        yield Cell.listed(**place, printed=row[column], unit=table["units"][column], reason=BODY)
     for column, printed, own in (
         ("mass", row["mass"], robot.mass),
         ("distance of the wheels", row["wheel_base"], robot.wheel_base),
