@@ -93,7 +93,10 @@ def _as_options(*names: str) -> Iterator[None]:
 
 def _reproduce(options: argparse.Namespace) -> None:
     from hrsafety import reproduce
+    from hrsafety.cli import output
 
+    output.planned_folder(options.out)
+    output.require_matplotlib("reproduce")
     with _as_options("only", "out"):
         page = reproduce.run(options.out, only=options.only, progress=_progress)
     print(f"summary page  {page}")

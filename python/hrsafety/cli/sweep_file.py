@@ -170,7 +170,8 @@ def _axis(path: str, table: dict[str, Any]) -> sweep.Axis:
         return sweep.Axis(**renamed)
     except InvalidParameterError as error:
         own = {"low": "from", "high": "to"}.get(error.argument, error.argument)
-        raise error.renamed(f"{path}.{own}") from None
+        rule = error.requirement.replace("low = ", "from = ")
+        raise InvalidParameterError(f"{path}.{own}", rule, error.value, error.remedy) from None
 
 
 def _design(table: dict[str, Any], axes: list[sweep.Axis]) -> sweep.Design:

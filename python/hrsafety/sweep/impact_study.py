@@ -11,7 +11,7 @@ import numpy as np
 
 from hrsafety import impact
 from hrsafety._arguments import Array, number, positive, with_article, word
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.batch import STATUS_WORDS
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.studies import Found, Study, chosen
@@ -144,7 +144,10 @@ class ImpactStudy(Study):
         """Return the columns for some rows, see `Study.compute`."""
         given: dict[str, Any] = {**self.fixed, **rows}
         if "closing_speed" not in given:
-            raise InvalidParameterError("closing_speed", "be an axis or among the fixed numbers", None)
+            remedy = "name it below [impact] of a file, or in fixed"
+            raise InvalidParameterError(
+                "closing_speed", "be an axis or among the fixed numbers", Shown("nothing"), remedy
+            )
         found = impact.metrics_batch(
             manipulator=self.manipulator,
             foam=self.foam,
