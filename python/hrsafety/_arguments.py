@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._words import meant
+from hrsafety._words import meant as meant  # for those who check arguments
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 Array = npt.NDArray[np.float64]

@@ -255,7 +255,7 @@ BAD_COMMANDS = {
     "not people": (["simulate", "--people", "SCENE"], "line 1 must have one column frame"),
     "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains must be 4 numbers: attractive_gain"),
     "mode of another law": (["simulate", "SCENE", "--law", "masoud", "--stabilizing", "off"], "--stabilizing must"),
-    "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: invalid float value: 'x'"),
+    "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: must be a number, got 'x'"),
     "negative gain": (["simulate", "SCENE", "--gains", "1", "2", "-3", "0.1"], "detour_gain must"),
     "nan gain": (["simulate", "SCENE", "--gains", "1", "2", "nan", "0.1"], "detour_gain must"),
     "unknown law": (["simulate", "SCENE", "--law", "astar"], "got 'astar'; did you mean \"dstar\"?"),

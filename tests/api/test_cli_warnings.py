@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -71,3 +73,40 @@ def test_help_lists_every_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     for code, meaning in exit_codes.MEANINGS.items():
         assert f"{code:>3}  {meaning}" in text
+
+
+PEOPLE = "frame,t_s,ped_id,x_m,y_m\n" + "".join(
+    # One of them changes places with somebody 40 m away.
+    f"{10 * k},{0.4 * k:.1f},{person},{0.5 * k - 10.0 + (40.0 if person == 2 and k > 30 else 0.0)},{0.3 * person}\n"
+    for k in range(60)
+    for person in range(3)
+)
+
+
+@pytest.mark.parametrize(("options", "code"), [([], 0), (["--strict"], 4), (["--strict", "--fail-on", "any"], None)])
+def test_a_recording_that_is_doubted_warns_and_fails_with_strict(
+    options: list[str], code: int | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    people, report = tmp_path / "people.csv", tmp_path / "report.json"
+    people.write_text(PEOPLE)
+    ended = main(["simulate", "--people", str(people), "--runs", "1", "--json", str(report), *options])
+    captured = capsys.readouterr()
+    assert "hrsafety: warning: speed of person 2 after 12 s is 101.25 m/s" in captured.err
+    assert "speed of person 2" in json.loads(report.read_text())["warnings"][0]
+    # A run that failed comes before a warning.
+    assert ended == (code if code is not None else 3 if captured.out.splitlines()[-1].startswith("FAILED") else 4)
+
+
+@pytest.mark.parametrize("command", ["optimize", "sweep"])
+def test_warnings_of_scenarios_reach_searches_and_sweeps(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = tmp_path / "study.toml"
+    small = "[search]\ngrid = [1, 1, 1, 1]\nrefinements = 0\nsurvivors = 1\nlocal_starts = 0\n"
+    axis = '[[axes]]\nname = "detour_gain"\nvalues = [10.0, 20.0]\n'
+    study.write_text('scenarios = ["c1"]\n' + (small if command == "optimize" else axis))
+    monkeypatch.setattr(output, "warnings_of", lambda *_: (DEGREES,))
+    out = tmp_path / "out"
+    assert main([command, str(study), "--out", str(out), "--strict"]) == 4
+    assert "hrsafety: warning: heading is 90 rad" in capsys.readouterr().err
+    assert (out / "summary.html").is_file()

@@ -32,7 +32,7 @@ def simulate_file(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety simulate``.
     """
-    fail_on = verdict.failures_of(options.fail_on)
+    verdict.failures_of(options.fail_on)  # a wrong word is told before the run
     output.check_targets(options)
     with output.located(options.scenario):
         described = scenarios.load(options.scenario)
@@ -53,13 +53,8 @@ def simulate_file(options: argparse.Namespace) -> None:
     if written:
         print()
         print("\n".join(f"wrote {path}" for path in written))
-    found = (*getattr(scenario, "warnings", ()), *getattr(score.trajectory, "warnings", ()))
-    output.report_warnings(found, strict=False)
-    counts = verdict.counted(score.trajectory)
-    print()
-    print(verdict.sentence(_how_it_ended(score.trajectory), counts, fail_on, 1))
-    verdict.leave(counts, fail_on)
-    output.leave_if_strict(found, options.strict)
+    found = output.warnings_of(scenario, score.trajectory)
+    verdict.end(_how_it_ended(score.trajectory), verdict.counted(score.trajectory), found, options, 1)
 
 
 def _how_it_ended(run: nav.Trajectory) -> str:

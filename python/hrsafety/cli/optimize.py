@@ -89,10 +89,13 @@ def optimize_file(options: argparse.Namespace) -> None:
         print(f"wrote {path}")
     for path in (*_checkpoints(study, place), place / SO_FAR):
         path.unlink(missing_ok=True)
+    found = output.warnings_of(*study.scenarios, report.search)
+    output.report_warnings(found, strict=False)
     if not report.search.valid:
         search = report.search
         print(f"hrsafety: nothing feasible: {search.shortcoming}; {search.remedy}", file=sys.stderr, flush=True)
         raise SystemExit(exit_codes.FAILED_RUN)
+    output.leave_if_strict(found, options.strict)
 
 
 def _checkpoints(study: GainStudy, place: Path) -> tuple[Path, Path]:

@@ -41,6 +41,7 @@ __all__ = [
     "require_matplotlib",
     "stepping_words",
     "target",
+    "warnings_of",
     "with_options",
     "write_csv",
     "write_picture",
@@ -146,6 +147,11 @@ def report_warnings(found: Iterable[ResultWarning], strict: bool) -> None:
     for each in different:
         print(f"{begin}hrsafety: {' '.join(str(each).split())}{end}", file=sys.stderr)
     leave_if_strict(different, strict)
+
+
+def warnings_of(*results: object) -> tuple[ResultWarning, ...]:
+    """Return the warnings that scenarios and results carry, those without any passed over."""
+    return tuple(found for result in results for found in getattr(result, "warnings", ()))
 
 
 def leave_if_strict(found: Iterable[ResultWarning], strict: bool) -> None:

@@ -18,7 +18,6 @@ from hrsafety import navigation as nav
 from hrsafety.cli import output, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -56,7 +55,7 @@ def simulate_people(options: argparse.Namespace) -> None:
         raise InvalidParameterError("--animate-run", f"be from 0 to {runs - 1}", shown)
     if shown is not None and options.animate is None:
         raise InvalidParameterError("--animate-run", "come with --animate FILE", shown)
-    fail_on = verdict.failures_of(options.fail_on)
+    verdict.failures_of(options.fail_on)  # a wrong word is told before the runs
     output.check_targets(options)
     law = output.with_options(nav.VirtualForceField(), options)
     recording = datasets.load_pedestrians(options.people)
@@ -70,10 +69,13 @@ def simulate_people(options: argparse.Namespace) -> None:
     print(_run_table(crossings, summary))
     print()
     print("\n".join(_totals(summary, met)))
+    found = output.warnings_of(recording, *(crossing.scenario for crossing in crossings), summary)
     written = []
     if options.json is not None:
-        report = json.dumps(_report(recording, crossings, law, summary, met), indent=1, allow_nan=False)
-        written.append(output.write_text(Path(options.json), report + "\n"))
+        report = _report(recording, crossings, law, summary, met)
+        report["warnings"] = [warning.message for warning in dict.fromkeys(found)]
+        text = json.dumps(report, indent=1, allow_nan=False)
+        written.append(output.write_text(Path(options.json), text + "\n"))
     if place is not None or options.animate is not None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
@@ -84,18 +86,8 @@ def simulate_people(options: argparse.Namespace) -> None:
     if written:
         print()
         print("\n".join(f"wrote {path}" for path in written))
-    found = (*recording.warnings, *_scenario_warnings(crossings))
-    output.report_warnings(found, strict=False)
     counts = verdict.counted(summary)
-    print()
-    print(verdict.sentence(_how_they_ended(summary, counts), counts, fail_on, len(summary)))
-    verdict.leave(counts, fail_on)
-    output.leave_if_strict(found, options.strict)
-
-
-def _scenario_warnings(crossings: Sequence[scenarios.Crossing]) -> Iterator[ResultWarning]:
-    for crossing in crossings:
-        yield from getattr(crossing.scenario, "warnings", ())
+    verdict.end(_how_they_ended(summary, counts), counts, found, options, len(summary))
 
 
 def _how_they_ended(summary: nav.BatchSummary, counts: verdict.Counts) -> str:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
+from hrsafety.cli import output
 from hrsafety.cli.exit_codes import FAILED_RUN
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 
-__all__ = ["FAILURES", "counted", "failures_of", "leave", "sentence"]
+__all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]
 
 Counts = Mapping[str, int]
 
@@ -90,13 +93,32 @@ def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int) -> st
     return f"NOTE    {said}; exit code 0 all the same, {note}"
 
 
-def leave(counts: Counts, fail_on: Sequence[str]) -> None:
-    """Leave with exit code 3 if a failure that counts happened.
+def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argparse.Namespace, runs: int) -> None:
+    """Print warnings and the last line, and leave with the code that the options ask for.
+
+    Parameters
+    ----------
+    said : str
+        How the runs ended.
+    counts : mapping of str to int
+        Of `counted`.
+    found : sequence of ResultWarning
+        All warnings.
+    options : argparse.Namespace
+        Of ``hrsafety simulate``.
+    runs : int
+        How many there are.
 
     Raises
     ------
     SystemExit
-        Then.
+        With code 3 if a failure that ``--fail-on`` names happened, else with code 4 if there are
+        warnings and ``--strict`` is given.
     """
+    fail_on = failures_of(options.fail_on)
+    output.report_warnings(found, strict=False)
+    print()
+    print(sentence(said, counts, fail_on, runs))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
+    output.leave_if_strict(found, options.strict)

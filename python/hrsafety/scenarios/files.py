@@ -206,8 +206,8 @@ def _not_toml(path: Path, text: str, reason: str) -> InvalidParameterError:
     lines = text.splitlines()
     line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""
     found = f"an error: {reason}" + (f", {line.strip()[:60]}" if line.strip() else "")
-    remedy = next((advice for habit, advice in _HABITS if habit.search(line)), None)
-    return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy)
+    advised = next((advice for habit, advice in _HABITS if habit.search(line)), None)
+    return InvalidParameterError(path.name, "be a TOML file", Shown(found), advised)
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:
