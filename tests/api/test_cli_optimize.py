@@ -543,7 +543,7 @@ def test_names_of_compared_gain_sets_are_unique(tmp_path: Path, capsys: pytest.C
     entry = f'[[compare]]\nname = "a"\n{gains}\n'
     path = written(tmp_path / "twice.toml", SMALL + 2 * entry)
     assert main(["optimize", path, "--out", str(tmp_path / "out")]) == 2
-    assert "compare[1].name must be a name that no other gain set has, got a" in error_line(capsys)
+    assert "compare[1].name must be a name that no other gain set has, got 'a'" in error_line(capsys)
 
 
 def test_missing_file_wrong_folder_and_bad_threads_are_clear(

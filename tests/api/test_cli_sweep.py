@@ -195,7 +195,7 @@ def test_unbalanced_sobol_design_is_told_on_terminal_and_page(
         (FAST.replace('"foam_damping"', '"foam"'), "name of an axis must be one of"),
         (FAST.replace("points = 4", "point = 4"), "axes[0].point must be one of the keys"),
         (FAST.replace("points = 4", "points = 1"), "axes[0].points must be an integer of at least 2"),
-        (FAST.replace("to = 6e4", "to = 1e3"), "axes[0].to must be above low"),
+        (FAST.replace("to = 6e4", "to = 1e3"), "axes[0].to must be above from"),
         (FAST.replace("from = 5e3, ", ""), "axes[0].from must be given"),
         (FAST.replace('"minimum"', '"small"'), "head must be a table or one of minimum"),
         (FAST.replace('"minimum"', "3"), "head must be a table"),

@@ -233,7 +233,7 @@ def test_word_that_was_not_declared_is_refused() -> None:
     study = sweep.FunctionStudy(
         function=made(a=["up"] * 5), results=[sweep.Column(name="a", kind="word", words=("down",))]
     )
-    with pytest.raises(InvalidParameterError, match="a must hold words among down, got up"):
+    with pytest.raises(InvalidParameterError, match="a must hold words among down, got 'up'"):
         sweep.run(sweep.Grid([X]), study)
 
 
@@ -299,7 +299,7 @@ def test_bad_study_is_refused(kind: type, fields: dict[str, Any], words: str) ->
         (
             [sweep.Axis(name="closing_speed", unit="km/h", values=[1.0])],
             IMPACT,
-            "must be 'm/s' in this study, got km/h",
+            "must be 'm/s' in this study, got 'km/h'",
         ),
         (
             [sweep.Axis(name="head_mass", values=[1.0]), SPEED],

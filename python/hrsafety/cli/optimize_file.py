@@ -206,13 +206,13 @@ def _objective(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _metric(path: str, word: str) -> str:
-    return kind.one_of(path, word, METRICS)
+    return kind.one_of(path, word, METRICS, listed=True)
 
 
 def _constraint(path: str, table: dict[str, Any], names: tuple[str, ...]) -> nav.GainConstraint:
     given = checked(path, table, _CONSTRAINT, required=("metric",))
     if "scenario" in given:
-        name = kind.one_of(f"{path}.scenario", given["scenario"], names)
+        name = kind.one_of(f"{path}.scenario", given["scenario"], names, listed=True)
         given["scenario"] = names.index(name)
     with located(path):
         return nav.GainConstraint(**given)

@@ -146,7 +146,7 @@ def load(path: str) -> SweepFile:
     design = _design(fields.get("design", {}), axes)
     drawn = [column.name for column in study.columns() if column.kind != "word"]
     for index, name in enumerate(fields.get("show", [])):
-        kind.one_of(f"show[{index}]", name, drawn)
+        kind.one_of(f"show[{index}]", name, drawn, listed=True)
     chosen = fields.get("show") or [name for name in drawn if name in _SHOWN] or drawn[:1]
     return SweepFile(
         title=fields.get("title", f"Sweep of {' and '.join(axis.name.replace('_', ' ') for axis in axes)}"),
@@ -177,7 +177,7 @@ def _axis(path: str, table: dict[str, Any]) -> sweep.Axis:
 def _design(table: dict[str, Any], axes: list[sweep.Axis]) -> sweep.Design:
     given = checked("design", table, _DESIGN)
     name = given.pop("kind", "grid")
-    kind.one_of("design.kind", name, _DESIGNS)
+    kind.one_of("design.kind", name, _DESIGNS, listed=True)
     unknown = [key for key in given if name == "grid" or (key == "scramble" and name != "sobol")]
     if unknown:
         raise InvalidParameterError(f"design.{unknown[0]}", f"not be given for a {name}", given[unknown[0]])

@@ -113,7 +113,7 @@ def complete_or_absent(target: Path) -> Iterator[Path]:
         yield partial
         partial.replace(target)
     except OSError as error:
-        if error.filename in (None, str(partial), partial):
+        if error.errno is not None and error.filename in (None, str(partial), partial):
             error.filename = str(target)
         raise
     finally:

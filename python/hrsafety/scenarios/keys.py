@@ -159,11 +159,12 @@ def missing(path: str, remedy: str | None = None) -> InvalidParameterError:
     return InvalidParameterError(path, "be given", Shown("nothing"), remedy)
 
 
-def one_of(path: str, value: str, words: Iterable[str]) -> str:
+def one_of(path: str, value: str, words: Iterable[str], *, listed: bool = False) -> str:
     """Check a text that must be one of a few, and say which one is near."""
     known = tuple(words)
     if value not in known:
-        raise InvalidParameterError(path, f"be {' or '.join(known)}", shown(value), meant(value, known))
+        rule = f"be one of {', '.join(known)}" if listed else f"be {' or '.join(known)}"
+        raise InvalidParameterError(path, rule, shown(value), meant(value, known))
     return value
 
 
