@@ -321,7 +321,7 @@ def _picture(report: FoamReport) -> Figure:
         accepted={judged.name: judged.accepted for judged in report.foams},
         statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},
         results=[design],
-        fitting=report.fitting,
+        fitting=design.stiffness_range(damping, 0.0),
         upper_label="upper",
         lower_label="lower",
         title=report.file.title,
