@@ -207,9 +207,8 @@ def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) ->
             continue
         least, most, unit, source, hint = RANGES[quantities.get(name, name)]
         # Most values are plausible, and most are one number: neither takes an array.
-        if type(value) is float:
-            if not (value < least or value > most):
-                continue
+        if type(value) is float and not (value < least or value > most):
+            continue
         numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
         if numbers.size and numbers.min() >= least and numbers.max() <= most:
             continue

@@ -76,7 +76,7 @@ CALLS: dict[str, Call] = {
             "stiffness": NOT_NEGATIVE,
             "damping": NOT_NEGATIVE,
             "thickness": POSITIVE,
-            "linear_range": POSITIVE,
+            "linear_range": OPTIONAL_POSITIVE,
         },
     ),
     "Foam.from_damping_ratio": (

@@ -250,6 +250,7 @@ def test_huge_and_tiny_numbers_never_fail_the_batch() -> None:
             "released",
             "no_release",
             "beyond_linear_range",
+            "bottomed",
             "too_stiff",
         }, name
 

@@ -99,8 +99,8 @@ def _answer(report: FoamReport) -> Iterator[str]:
         f"<p>Manipulator at the impact point: {arm.mass:g} kg, {arm.damping:g} N s/m, {arm.stiffness / KILO:g} kN/m. "
         f"Closing speed {file.closing_speed:g} m/s. Limits: {escape(limits_words(file.limits))}; acceleration and HIC "
         "with the lightest head on the softest neck, force and compression with the heaviest on the stiffest. Foam is "
-        f"linear up to {KILO * file.sought.linear_range:g} mm of {KILO * file.sought.thickness:g} mm; no limit counts as "
-        "kept beyond that.</p>"
+        f"linear up to {KILO * file.sought.linear_range:g} mm of {KILO * file.sought.thickness:g} mm; no limit "
+        "counts as kept beyond that.</p>"
     )
     found = report.feasibility
     fastest = f"{found.max_closing_speed:.3f} m/s, with {found.stiffness / KILO:.2f} kN/m and {found.damping:g} N s/m"
@@ -108,15 +108,15 @@ def _answer(report: FoamReport) -> Iterator[str]:
     span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
     if not found.max_closing_speed > 0.0:
         yield (
-            f'<p class="banner no"><strong>No foam with a damping of {span} fits at any speed.</strong> None gives back '
-            f"within its linear range {margin}.</p>"
+            f'<p class="banner no"><strong>No foam with a damping of {span} fits at any speed.</strong> None gives '
+            f"back within its linear range {margin}.</p>"
         )
         return
     if not found.feasible:
         yield (
             f'<p class="banner no"><strong>No foam with a damping of {span} '
-            f"fits at {file.closing_speed:g} m/s</strong> {margin}. The largest closing speed at which one would: {fastest}. "
-            f"The impact must be slower by {found.slow_down:.3f} m/s.</p>"
+            f"fits at {file.closing_speed:g} m/s</strong> {margin}. The largest closing speed at which one would: "
+            f"{fastest}. The impact must be slower by {found.slow_down:.3f} m/s.</p>"
         )
         return
     widest = ""

@@ -294,8 +294,8 @@ def hic(
     Raises
     ------
     InvalidParameterError
-        If there are less than two samples, time does not increase, a value is not finite, or a step is
-        longer than the window, as with milliseconds.
+        If there are less than two samples, time does not increase, a value is not finite, or without
+        ``interpolate`` a step is longer than the window, as with milliseconds.
     ShapeError
         If the arrays are not one-dimensional and of one length.
 
@@ -336,8 +336,8 @@ def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float
     Raises
     ------
     InvalidParameterError
-        If there are less than two samples, time does not increase, a value is not finite, the signal
-        is shorter than the window, or a step longer.
+        If there are less than two samples, time does not increase, a value is not finite, or the signal
+        is shorter than the window.
     ShapeError
         If the arrays are not one-dimensional and of one length.
 

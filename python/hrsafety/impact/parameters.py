@@ -281,6 +281,11 @@ class ConstrainedHead(_Part):
     Head fields of results are NaN, there is no impact period, and the force grows like a ramp
     until the horizon.
 
+    Attributes
+    ----------
+    warnings : tuple of ResultWarning
+        None: it has no numbers.
+
     Examples
     --------
     >>> from hrsafety import impact

@@ -47,7 +47,10 @@ pub fn hic(
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
         let found = signal::hic_until(time, signal, window, interpolate, interrupted)?;
-        signal::check_step(time, window, interrupted)?;
+        // With free ends the signal is what its straight lines say, however far apart the samples.
+        if !interpolate {
+            signal::check_step(time, window, interrupted)?;
+        }
         Ok(found)
     })?;
     Ok((found.value, found.start, found.end))
@@ -64,9 +67,7 @@ pub fn moving_average(
 ) -> PyResult<Window> {
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
-        let found = signal::moving_average_until(time, signal, width, interrupted)?;
-        signal::check_step(time, width, interrupted)?;
-        Ok(found)
+        signal::moving_average_until(time, signal, width, interrupted)
     })?;
     Ok((found.value, found.start, found.end))
 }
@@ -82,9 +83,7 @@ pub fn contiguous_level(
 ) -> PyResult<Window> {
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
-        let found = signal::contiguous_level_until(time, signal, width, interrupted)?;
-        signal::check_step(time, width, interrupted)?;
-        Ok(found)
+        signal::contiguous_level_until(time, signal, width, interrupted)
     })?;
     Ok((found.value, found.start, found.end))
 }
