@@ -93,8 +93,6 @@ def test_numbers_that_overflow_are_refused() -> None:
         impact.simulate(ARM, FOAM, HEAD, closing_speed=1e308)
     with pytest.raises(InvalidParameterError, match="closing_speed"):
         impact.metrics(ARM, FOAM, HEAD, closing_speed=1e308)
-    batch = impact.metrics_batch(manipulator=ARM, foam=FOAM, head=HEAD, closing_speed=[1.0, 1e308])
-    assert batch.status.tolist() == ["released", "invalid_closing_speed"]
     for force, compression in (([0.0, 1e200, 2e200], [0.0, 0.001, 0.002]), ([0.0, 1.0, 2.0], [0.0, 1e200, 2e200])):
         with pytest.raises(InvalidParameterError, match="squares"):
             impact.fit_static(force, compression)

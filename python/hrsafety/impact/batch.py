@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, instance, numbers, positive, word
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria import MOST_SPEED, Doubts, ImpactMetrics
+from hrsafety.impact.criteria import Doubts, ImpactMetrics
 from hrsafety.impact.parameters import (
     LINEAR_RANGE,
     LINEAR_SHARE,
@@ -317,9 +317,6 @@ def _possible(given: dict[str, Array], thickness: Array) -> dict[str, Array]:
     # A thickness that is NaN must not make a range possible.
     if not (within <= thickness).all():
         possible["linear_range"] = np.where(within <= thickness, within, np.nan)
-    for name in ("closing_speed", "manipulator_speed"):
-        if name in given and given[name].size and np.abs(given[name]).max() > MOST_SPEED:
-            possible[name] = np.where(np.abs(given[name]) > MOST_SPEED, np.nan, given[name])
     return possible
 
 
