@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._bounds import MOST_COUNT, MOST_THREADS
 from hrsafety._words import meant as meant  # for those who check arguments
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
@@ -101,22 +102,35 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def count(name: str, value: object, *, least: int = 1, most: int | None = None) -> int:
+def count(name: str, value: object, *, least: int = 1, most: int = MOST_COUNT) -> int:
     """Return ``value`` if it is an integer within the bounds, or say that it should have been."""
-    rule = f"be an integer of at least {least}" if most is None else f"be an integer from {least} to {most}"
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < least:
-        raise InvalidParameterError(name, rule, value)
-    if most is not None and value > most:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        # The largest count of all is no news to who gave a word.
+        wide = most == MOST_COUNT and not (isinstance(value, (int, np.integer)) and value > most)
+        rule = f"be an integer of at least {least}" if wide else f"be an integer from {least} to {most}"
         raise InvalidParameterError(name, rule, value)
     return int(value)
 
 
+def thread_count(value: object) -> int | None:
+    """Return the number of threads if a pool may have so many; ``None`` stands for all cores."""
+    return None if value is None else count("threads", value, most=MOST_THREADS)
+
+
+def whole_steps(name: str, duration: float, step: float, most: int) -> float:
+    """Return how many steps a duration holds, not rounded; more than the bound are refused by name."""
+    steps = duration / step if step > 0.0 else np.inf
+    if not steps <= most:
+        raise InvalidParameterError(name, f"be at most {most} steps of {step!r} s", duration)
+    return steps
+
+
 def checked_seed(name: str, value: object) -> int:
     """Return ``value`` if random numbers can start from it, or say what it should have been."""
-    given = count(name, value, least=0)
-    if given >= 2**64:
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
+    if not whole or not 0 <= value < 2**64:  # type: ignore[operator]  # it is whole
         raise InvalidParameterError(name, "be an integer from 0 to 2**64 - 1", value)
-    return given
+    return int(value)  # type: ignore[call-overload, no-any-return]  # it is whole
 
 
 def word(name: str, value: object, words: Sequence[str]) -> str:
@@ -194,7 +208,8 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
         raise InvalidParameterError(name, rule, value) from None
     if array.dtype.kind not in "fiu":
         raise InvalidParameterError(name, rule, value)
-    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    # The cores read whole floats at their places in memory: other arrays are copied.
+    return np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"]).reshape(array.shape)
 
 
 def vector(name: str, value: object) -> Array:

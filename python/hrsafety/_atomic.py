@@ -3,13 +3,31 @@
 from __future__ import annotations
 
 import os
+import struct
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+import threading
+import tokenize
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-__all__ = ["replacing", "write_file"]
+from hrsafety.errors import StorageError
+
+__all__ = ["DAMAGE", "only_writer", "replacing", "write_file"]
+
+# What reading a damaged archive raises.
+DAMAGE = (
+    *(OSError, EOFError, ValueError, TypeError, KeyError, IndexError, AttributeError, SyntaxError, MemoryError),
+    *(NotImplementedError, RuntimeError, OverflowError, struct.error, tokenize.TokenError),
+    *(zipfile.BadZipFile, zlib.error),
+)
+
+# Folders that this process is writing into.
+_WRITTEN: set[Path] = set()
+_GUARD = threading.Lock()
 
 
 def write_file(path: Path, content: bytes | str) -> Path:
@@ -79,3 +97,62 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
         if isinstance(error, OSError) and error.errno is not None and error.filename in (None, name):
             error.filename = str(path)
         raise
+
+
+@contextmanager
+def only_writer(lock: Path, error: Callable[[str], Exception]) -> Iterator[None]:
+    """Keep other runs from writing what a lock stands for; the system frees it when a process dies.
+
+    Parameters
+    ----------
+    lock : Path
+        File that is locked, and removed at the end; its folder must exist.
+    error : callable
+        Makes the exception from a sentence when another run is writing.
+
+    Yields
+    ------
+    None
+        While the file is locked.
+    """
+    own = lock.parent.resolve() / lock.name
+    with _GUARD:
+        # A lock of the system is one of the process: its own threads are told apart here.
+        if own in _WRITTEN:
+            raise error(f"another run of this process is writing into {lock.parent}")
+        _WRITTEN.add(own)
+    try:
+        with _opened(lock) as file:
+            if not _locked(file):
+                raise error(f"another process is writing into {lock.parent}")
+            try:
+                yield
+            finally:
+                with suppress(OSError):
+                    lock.unlink()
+    finally:
+        _WRITTEN.discard(own)
+
+
+def _opened(lock: Path) -> BinaryIO:
+    try:
+        return lock.open("wb")
+    except OSError as error:
+        remedy = "choose a folder that can be written"
+        raise StorageError(lock, error, kept="all that was there", remedy=remedy) from None
+
+
+def _locked(file: BinaryIO) -> bool:
+    """Lock a file until it is closed, where the system can; whether no other process holds it."""
+    try:
+        import fcntl
+    except ModuleNotFoundError:  # files are still written whole or not at all
+        return True
+    try:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        # Another run may have ended, and removed the file, since it was opened.
+        return os.fstat(file.fileno()).st_nlink > 0
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError:
+        return True  # a file system without locks

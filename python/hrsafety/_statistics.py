@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import checked_seed, vector
 from hrsafety._arguments import count as whole
-from hrsafety._arguments import vector
+from hrsafety._bounds import MOST_RESAMPLES
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Mean", "Paired", "Share", "compare_paired", "mean_interval", "wilson"]
@@ -176,11 +177,11 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
     >>> mean_interval([1.0, 1.0, 1.0])
     Mean(runs=3, value=1.0, low=1.0, high=1.0)
     """
-    whole("resamples", resamples)
+    whole("resamples", resamples, most=MOST_RESAMPLES)
     given = vector("values", values)
     if not len(given):
         return Mean(0, math.nan, math.nan, math.nan)
-    generator = np.random.Generator(np.random.PCG64(seed))
+    generator = np.random.Generator(np.random.PCG64(checked_seed("seed", seed)))
     means = np.empty(resamples)
     for index in range(resamples):
         means[index] = given[generator.integers(0, len(given), len(given))].mean()

@@ -10,12 +10,14 @@ import re
 from hrsafety._words import meant
 
 __all__ = [
+    "FolderInUseError",
     "HrsafetyError",
     "InfeasibleError",
     "InvalidParameterError",
     "MissingExtraError",
     "ShapeError",
     "SimulationError",
+    "StorageError",
 ]
 
 
@@ -67,9 +69,16 @@ class InvalidParameterError(HrsafetyError, ValueError):
 
     def __str__(self) -> str:
         """Return the sentence that names argument, rule, value and remedy."""
-        shown = self.value if isinstance(self.value, Shown) else repr(self.value)
+        shown = self.value if isinstance(self.value, Shown) else _words(self.value)
         sentence = f"{self.argument} must {self.requirement}, got {shown}"
         return sentence if self.remedy is None else f"{sentence}; {self.remedy}"
+
+
+def _words(value: object) -> str:
+    """Return a value as it is printed; Python refuses to print integers of thousands of digits."""
+    if isinstance(value, int) and abs(value) >= 10**40:
+        return f"an integer of {value.bit_length()} bits"
+    return repr(value)
 
 
 class Shown(str):
@@ -138,6 +147,43 @@ class InfeasibleError(HrsafetyError):
 
 class SimulationError(HrsafetyError):
     """A run could not be carried out, for example because its state became non-finite."""
+
+
+class FolderInUseError(HrsafetyError):
+    """Another run is writing the same files."""
+
+
+class StorageError(HrsafetyError, OSError):
+    """A file could not be written, for example because the disk is full.
+
+    Parameters
+    ----------
+    path : path-like
+        The file, or the folder that it should have gone into.
+    error : OSError
+        What the system said.
+    kept : str
+        What is on the disk and stays there.
+    remedy : str
+        How to go on.
+    """
+
+    def __init__(self, path: object, error: OSError, *, kept: str, remedy: str) -> None:
+        super().__init__(error.errno, error.strerror or str(error), str(path))
+        self.kept = kept
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        """Return the sentence that names the file, the reason, what is kept and how to go on."""
+        return f"{self.filename} cannot be written ({self.strerror}); kept: {self.kept}; {self.remedy}"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by what the sentence is made of."""
+        return _storage_error, (self.filename, self.errno, self.strerror, self.kept, self.remedy)
+
+
+def _storage_error(path: str, errno: int, reason: str, kept: str, remedy: str) -> StorageError:
+    return StorageError(path, OSError(errno, reason), kept=kept, remedy=remedy)
 
 
 class MissingExtraError(HrsafetyError, ImportError):

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hrsafety import navigation as nav
+from hrsafety._atomic import only_writer
 from hrsafety.cli import exit_codes, optimize_page, optimize_pictures, optimize_record, output, progress
 from hrsafety.cli.optimize_file import GAIN_NAMES, Gains, GainStudy, load
 from hrsafety.cli.optimize_report import (
@@ -25,11 +26,12 @@ from hrsafety.cli.optimize_report import (
     search_words,
     set_table,
 )
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown
 from hrsafety.navigation.gain_metrics import is_maximized
 
 __all__ = ["optimize_file"]
 
+LOCK = ".lock"
 CHECKPOINT = "search.checkpoint"
 FRONT_CHECKPOINT = "front.checkpoint"
 SO_FAR = "best_so_far.json"
@@ -77,18 +79,20 @@ def optimize_file(options: argparse.Namespace) -> None:
     study = _loaded(options.study)
     new = not Path(options.out).exists()
     place = output.folder(options.out)
-    try:
-        report = _searched(options, study, place)
-    except InvalidParameterError as error:
-        if new and not any(place.iterdir()):
-            place.rmdir()
-        raise _located(options.study, error) from None
-    print("\n".join(_summary(report)))
-    print()
-    for path in _write(report, place):
-        print(f"wrote {path}")
-    for path in (*_checkpoints(study, place), place / SO_FAR):
-        path.unlink(missing_ok=True)
+    with only_writer(place / LOCK, FolderInUseError):
+        try:
+            report = _searched(options, study, place)
+        except InvalidParameterError as error:
+            if new and [path.name for path in place.iterdir()] == [LOCK]:
+                (place / LOCK).unlink()
+                place.rmdir()
+            raise _located(options.study, error) from None
+        print("\n".join(_summary(report)))
+        print()
+        for path in _write(report, place):
+            print(f"wrote {path}")
+        for path in (*_checkpoints(study, place), place / SO_FAR):
+            path.unlink(missing_ok=True)
     found = output.warnings_of(*study.scenarios, report.search)
     output.report_warnings(found, strict=False)
     if not report.search.valid:

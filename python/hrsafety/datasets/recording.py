@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import with_article
+from hrsafety._arguments import number, positive, with_article
 from hrsafety.datasets.flow import Flow, flow_of
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning, implausible
@@ -185,7 +185,7 @@ class Recording:
         return self._seen(start_time, duration, for_some_time=False)
 
     def _seen(self, start_time: float, duration: float, *, for_some_time: bool) -> npt.NDArray[np.int64]:
-        _check_window(start_time, duration)
+        start_time, duration = _checked_window(start_time, duration)
         ids, index = np.unique(self.person, return_inverse=True)
         first, last = np.full(len(ids), np.inf), np.full(len(ids), -np.inf)
         np.minimum.at(first, index, self.time_s)
@@ -228,6 +228,7 @@ class Recording:
         >>> walk.humans(0.4, duration=10.0)[0].path[0]
         (0.0, 0.4)
         """
+        start_time, duration = _checked_window(start_time, duration)
         people = []
         for person in self.present(start_time, duration=duration):
             time, position = self.track(int(person))
@@ -286,8 +287,8 @@ def _check_order(time: Array, person: npt.NDArray[Any]) -> None:
         raise InvalidParameterError(f"person[{row}]", "have one row for each instant", Shown(f"two at {time[row]} s"))
 
 
-def _check_window(start_time: float, duration: float) -> None:
-    if not math.isfinite(start_time):
+def _checked_window(start_time: object, duration: object) -> tuple[float, float]:
+    begin = number("start_time", start_time)
+    if not math.isfinite(begin):
         raise InvalidParameterError("start_time", "be finite", start_time)
-    if not (math.isfinite(duration) and duration > 0.0):
-        raise InvalidParameterError("duration", "be finite and positive", duration)
+    return begin, positive("duration", duration)

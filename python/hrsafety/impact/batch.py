@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, instance, numbers, positive, word
+from hrsafety._arguments import Array, callback, count, instance, numbers, positive, thread_count, word
+from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria import Doubts, ImpactMetrics
 from hrsafety.impact.parameters import (
@@ -28,7 +29,6 @@ from hrsafety.tables import Columns, Table
 __all__ = ["ImpactMetricsBatch", "metrics_batch"]
 
 # More would only exhaust the system before it says no.
-MOST_THREADS = 1024
 
 _MANIPULATOR = ("manipulator_mass", "manipulator_damping", "manipulator_stiffness")
 _FOAM = ("foam_stiffness", "foam_damping", "linear_range")
@@ -244,7 +244,7 @@ def metrics_batch(
         horizon=None if horizon is None else positive("horizon", horizon),
         peaks_only=word("fields", fields, ("all", "peaks")) == "peaks",
         threads=_threads(threads),
-        lanes=None if lanes is None else count("lanes", lanes),
+        lanes=None if lanes is None else count("lanes", lanes, most=MOST_LANES),
         progress=callback("progress", progress),
     )
     columns = {name: values.reshape(shape) for name, values in result.items()}
@@ -347,6 +347,4 @@ def _column(array: Array, shape: tuple[int, ...]) -> Array | float:
 
 
 def _threads(threads: int | None) -> int | None:
-    if threads is not None and count("threads", threads) > MOST_THREADS:
-        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
-    return threads
+    return thread_count(threads)

@@ -49,7 +49,8 @@ def channel_corner(channel_class: int) -> float:
     >>> round(filters.channel_corner(180), 2)
     373.95
     """
-    if isinstance(channel_class, bool) or channel_class not in CHANNEL_CLASSES:
+    whole = isinstance(channel_class, (int, float, np.integer, np.floating)) and not isinstance(channel_class, bool)
+    if not whole or channel_class not in CHANNEL_CLASSES:
         raise InvalidParameterError("channel_class", "be 60, 180, 600 or 1000", channel_class)
     return _CORNER * float(channel_class)
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
+from hrsafety._bounds import MOST_RESAMPLES
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import THICKNESS, Foam
 from hrsafety.plausibility import ResultWarning, implausible
@@ -279,7 +280,7 @@ def identify_foam(
             gravity=pull,
             confidence=number("confidence", confidence),
             attached=word("contact", contact, _CONTACTS) == "attached",
-            bootstrap=count("bootstrap", bootstrap, least=0),
+            bootstrap=count("bootstrap", bootstrap, least=0, most=MOST_RESAMPLES),
             seed=checked_seed("seed", seed),
         )
     except InvalidParameterError as error:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, callback, count, instance, sequence, word
+from hrsafety._bounds import MOST_REPEATS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.laws import Law
@@ -361,7 +362,7 @@ def step_cost(law: Law, scenario: Scenario, *, repeats: int = 5) -> float:
     """
     instance("scenario", scenario, Scenario)
     best = np.inf
-    for _ in range(count("repeats", repeats)):
+    for _ in range(count("repeats", repeats, most=MOST_REPEATS)):
         start = time.process_time_ns()
         table = simulate_batch([scenario], law, threads=1)
         # The work is done by a thread of its own: the time of the process counts.

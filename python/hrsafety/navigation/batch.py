@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, flag, number, numbers, sequence
+from hrsafety._arguments import Array, callback, count, flag, number, numbers, sequence, thread_count
+from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
@@ -21,7 +22,6 @@ from hrsafety.tables import Columns, Table
 __all__ = ["BatchSummary", "simulate_batch"]
 
 # More would only exhaust the system before it says no.
-MOST_THREADS = 1024
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -204,7 +204,7 @@ def simulate_batch(
     _require("law", law, Law)
     check_threads(threads)
     if lanes is not None:
-        count("lanes", lanes)
+        count("lanes", lanes, most=MOST_LANES)
     columns = _hrsafety.simulate_batch(
         [scenario._native for scenario in scenes],
         law._native,
@@ -237,8 +237,7 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
 
 def check_threads(threads: int | None) -> None:
     """Refuse a number of threads that is not a positive integer or exhausts the system."""
-    if threads is not None and count("threads", threads) > MOST_THREADS:
-        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
+    thread_count(threads)
 
 
 def _gain_sets(law: Law, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, instance, not_negative
+from hrsafety._bounds import MOST_SEEDS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.calibration import CameraCalibration, calibrate_camera
 from hrsafety.navigation.camera import Camera, _rows
@@ -178,7 +179,7 @@ def calibration_study(
     patches = patch_places(actual) if places is None else _rows("places", places, 3)
     exact_markers, exact_patches = actual.project(markers), actual.project(patches)
     fits, errors, biases = [], [], []
-    for seed in range(count("seeds", seeds)):
+    for seed in range(count("seeds", seeds, most=MOST_SEEDS)):
         source = np.random.default_rng(seed)
         shown = exact_markers + source.normal(0.0, 1.0, exact_markers.shape) * deviation
         noisy = exact_patches + source.normal(0.0, 1.0, exact_patches.shape) * deviation

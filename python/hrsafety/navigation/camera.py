@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, count, number, numbers, pair, sequence, square
+from hrsafety._bounds import MOST_PIXELS
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Camera", "nearest_rotation"]
@@ -272,7 +273,7 @@ def _picture_size(value: object) -> tuple[int, int]:
     parts = sequence("image_size_px", "be two whole numbers", value)
     if len(parts) != 2:
         raise ShapeError("image_size_px", "(2,)", (len(parts),))
-    width, height = (count("image_size_px", part) for part in parts)
+    width, height = (count("image_size_px", part, most=MOST_PIXELS) for part in parts)
     if max(width, height) >= 2**32:
         raise InvalidParameterError("image_size_px", "be below 2^32", (width, height))
     return (width, height)

@@ -6,6 +6,7 @@ import dataclasses
 import io
 import json
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,8 @@ from typing import Any
 import numpy as np
 
 import hrsafety
-from hrsafety._atomic import write_file
-from hrsafety.errors import InvalidParameterError
+from hrsafety._atomic import DAMAGE, only_writer, write_file
+from hrsafety.errors import FolderInUseError, InvalidParameterError, StorageError
 from hrsafety.navigation.gain_settings import SearchSettings
 
 __all__ = ["Checkpoint"]
@@ -49,6 +50,10 @@ class Checkpoint:
             raise InvalidParameterError("checkpoint", "be in a folder that exists", str(path))
         self.settings = dict(described("settings", settings))
 
+    def alone(self) -> AbstractContextManager[None]:
+        """Keep other searches from writing the same file."""
+        return only_writer(self.path.with_name(f".{self.path.name}.lock"), FolderInUseError)
+
     def save(self, state: bytes) -> None:
         """Write the state of the search; an older file is replaced in one step."""
         content = io.BytesIO()
@@ -58,7 +63,13 @@ class Checkpoint:
             about=np.frombuffer(json.dumps(about).encode("utf-8"), dtype=np.uint8),
             state=np.frombuffer(state, dtype=np.uint8),
         )
-        write_file(self.path, content.getvalue())
+        try:
+            write_file(self.path, content.getvalue())
+        except OSError as error:
+            kept = f"{self.path} still holds the last state that was written" if self.path.exists() else "nothing"
+            raise StorageError(
+                self.path, error, kept=kept, remedy="make room and start the same search with the same checkpoint"
+            ) from None
 
     def load(self) -> bytes | None:
         """Return the state in the file; ``None`` without a file.
@@ -70,15 +81,20 @@ class Checkpoint:
         """
         if not self.path.exists():
             return None
-        import zipfile
-
         try:
-            with self.path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
+            content = self.path.read_bytes()
+        except OSError as error:
+            rule = f"be a readable file ({error.strerror})"
+            raise InvalidParameterError("checkpoint", rule, str(self.path)) from None
+        try:
+            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
                 about: dict[str, Any] = json.loads(archive["about"].tobytes())
                 state: bytes = archive["state"].tobytes()
-            known, version, settings = about["format"], about["version"], about["settings"]
-        except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
-            raise InvalidParameterError("checkpoint", "be a checkpoint of a gain search", str(self.path)) from None
+            known, version, settings = about["format"], about["version"], dict(about["settings"])
+        except DAMAGE:
+            rule = "be a whole checkpoint of a gain search"
+            remedy = "it is damaged or another file: remove it to start over"
+            raise InvalidParameterError("checkpoint", rule, str(self.path), remedy) from None
         if known != FORMAT or version != hrsafety.__version__:
             raise InvalidParameterError(
                 "checkpoint", f"be of version {hrsafety.__version__} of the package ({FORMAT})", f"{version} ({known})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from os import PathLike
 from typing import Any
 
@@ -140,17 +141,18 @@ def pareto_front(
     callback("progress", progress)
     file = None if checkpoint is None else Checkpoint(checkpoint, settings)
     problem = gain_problem(settings)
-    found = _hrsafety.gain_front(
-        problem,
-        settings.bounds[:, 0].tolist(),
-        settings.bounds[:, 1].tolist(),
-        shape=list(settings.grid),
-        refinements=settings.refinements,
-        threads=threads,
-        state=None if file is None else file.load(),
-        save=None if file is None else file.save,
-        progress=progress,
-    )
+    with nullcontext() if file is None else file.alone():
+        found = _hrsafety.gain_front(
+            problem,
+            settings.bounds[:, 0].tolist(),
+            settings.bounds[:, 1].tolist(),
+            shape=list(settings.grid),
+            refinements=settings.refinements,
+            threads=threads,
+            state=None if file is None else file.load(),
+            save=None if file is None else file.save,
+            progress=progress,
+        )
     return _result(settings, dict(found))
 
 

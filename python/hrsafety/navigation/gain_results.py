@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, positive
+from hrsafety._bounds import MOST_POINTS_OF_AXIS
 from hrsafety.errors import InfeasibleError, InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gain_confidence import Confidence
@@ -307,7 +308,7 @@ class GainSearch(Table):
         InvalidParameterError
             If points is below 2 or the tolerance is not positive and finite.
         """
-        count("points", points, least=2)
+        count("points", points, least=2, most=MOST_POINTS_OF_AXIS)
         check_threads(threads)
         return _flatness(self, points, positive("tolerance", tolerance), threads)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from os import PathLike
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, word
+from hrsafety._bounds import MOST_EVALUATIONS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads, simulate_batch
 from hrsafety.navigation.gain_checkpoint import Checkpoint
@@ -212,7 +214,8 @@ def optimize_gains(
     check_threads(threads)
     callback("progress", progress)
     file = None if checkpoint is None else Checkpoint(checkpoint, settings)
-    found = _search(settings, file, threads, progress)
+    with nullcontext() if file is None else file.alone():
+        found = _search(settings, file, threads, progress)
     return _result(settings, found, threads)
 
 
@@ -224,7 +227,7 @@ def _budget(settings: SearchSettings, evaluations: int | None) -> int | None:
         return None
     if evaluations is None:
         return int(np.prod(settings.grid)) * (settings.refinements + 1)
-    return count("evaluations", evaluations)
+    return count("evaluations", evaluations, most=MOST_EVALUATIONS)
 
 
 def _search(

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, Parameters, checked_seed, count, flag, numbers, positive, sequence, word
+from hrsafety._bounds import MOST_LOCAL_STARTS, MOST_POINTS, MOST_REFINEMENTS, MOST_SEEDS
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios
 from hrsafety.navigation.gain_metrics import METRICS, check_metric
@@ -32,8 +33,6 @@ Grid = Mapping[str, int] | Sequence[int]
 SOURCE_GRID = {"attractive_gain": 11, "repulsive_gain": 21, "detour_gain": 21, "gain_ratio": 16}
 # About as many points for the other laws.
 USUAL_POINTS = math.prod(SOURCE_GRID.values())
-# A grid of more points than this would not fit into memory.
-MOST_POINTS = 10**8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -207,7 +206,7 @@ def check_grid(grid: Grid | None, law: Law) -> tuple[int, ...]:
         given = sequence("grid", f"be a mapping or {len(names)} integers", grid)
         if len(given) != len(names):
             raise ShapeError("grid", f"({len(names)},)", (len(given),))
-    shape = tuple(count(f"grid[{name!r}]", value) for name, value in zip(names, given, strict=True))
+    shape = tuple(count(f"grid[{name!r}]", value, most=MOST_POINTS) for name, value in zip(names, given, strict=True))
     if math.prod(shape) > MOST_POINTS:
         raise InvalidParameterError("grid", f"have at most {MOST_POINTS} points", math.prod(shape))
     return shape
@@ -273,7 +272,7 @@ def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario
             raise InvalidParameterError("robustness", 'be "mean" without seeds', robustness)
         return 0
     # A lower bound needs a spread.
-    number = count("seeds", seeds, least=2 if robustness == "lower_bound" else 1)
+    number = count("seeds", seeds, least=2 if robustness == "lower_bound" else 1, most=MOST_SEEDS)
     if all(scene.measurement is None for scene in scenarios) and not isinstance(law, RapidlyExploringRandomTree):
         raise InvalidParameterError("seeds", "be None where nothing is measured and the law draws nothing", seeds)
     return number
@@ -314,9 +313,9 @@ def search_settings(
         law=searched,
         bounds=check_bounds(bounds, searched),
         grid=check_grid(grid, searched),
-        refinements=count("refinements", refinements, least=0),
-        survivors=count("survivors", survivors),
-        local_starts=count("local_starts", local_starts, least=0),
+        refinements=count("refinements", refinements, least=0, most=MOST_REFINEMENTS),
+        survivors=count("survivors", survivors, most=MOST_POINTS),
+        local_starts=count("local_starts", local_starts, least=0, most=MOST_LOCAL_STARTS),
         method=method,
         objectives=tuple(wanted.values()),
         weights=check_weights(weights),

@@ -10,6 +10,7 @@ from typing import ClassVar, Literal, get_args
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, not_negative, number, word
+from hrsafety._bounds import MOST_DRAWS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws import Law
 
@@ -22,7 +23,6 @@ __all__ = [
 ]
 
 # More than this per step would never end.
-MOST_DRAWS = 10**6
 
 VelocitySelection = Literal["to_goal", "fastest", "time_and_risk"]
 

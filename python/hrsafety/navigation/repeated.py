@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -11,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, checked_seed, count, flag, number, sequence
-from hrsafety.errors import InvalidParameterError
+from hrsafety._arguments import Array, callback, checked_seed, count, flag, number
+from hrsafety._bounds import MOST_SEEDS
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.built import AsBuilt, _checked
 from hrsafety.navigation.laws import Law
@@ -321,9 +323,13 @@ def repeat(
 def _seeds(seeds: int | Iterable[int]) -> list[int]:
     """Return the seeds as a list of integers, at least one."""
     if isinstance(seeds, (int, np.integer)):
-        return list(range(count("seeds", seeds)))
+        return list(range(count("seeds", seeds, most=MOST_SEEDS)))
     rule = "be a positive integer or hold integers from 0 to 2**64 - 1"
-    given = sequence("seeds", rule, seeds)
+    if isinstance(seeds, (str, bytes)) or not isinstance(seeds, Iterable):
+        raise InvalidParameterError("seeds", rule, seeds)
+    given = list(itertools.islice(seeds, MOST_SEEDS + 1))
+    if len(given) > MOST_SEEDS:
+        raise InvalidParameterError("seeds", f"hold at most {MOST_SEEDS} seeds", Shown("more"))
     checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]
     if not checked:
         raise InvalidParameterError("seeds", "hold at least one seed", "an empty list")

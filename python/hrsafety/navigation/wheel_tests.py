@@ -9,7 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, columns, count, instance, number, positive, sequence, vector
+from hrsafety._arguments import (
+    Array,
+    checked_seed,
+    columns,
+    count,
+    instance,
+    number,
+    positive,
+    sequence,
+    vector,
+    whole_steps,
+)
+from hrsafety._bounds import MOST_REPEATS, MOST_RUNS, MOST_SAMPLES
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.wheels import WheelDrive
 
@@ -188,11 +200,13 @@ def open_loop_tests(
     """
     wheel = instance("drive", drive, WheelDrive)
     wanted = vector("commands", commands)
-    times = count("repeats", repeats)
-    periods = round(positive("duration", duration) / wheel.period)
+    times = count("repeats", repeats, most=MOST_REPEATS)
+    periods = round(whole_steps("duration", positive("duration", duration), wheel.period, MOST_SAMPLES))
     if periods < 4:
         raise InvalidParameterError("duration", "hold at least 4 wheel periods", duration)
-    draws = np.random.default_rng(count("seed", seed, least=0))
+    if periods * times * len(wanted) > MOST_RUNS:
+        raise InvalidParameterError("repeats", f"give at most {MOST_RUNS} samples in all", repeats)
+    draws = np.random.default_rng(checked_seed("seed", seed))
     time = wheel.period * np.arange(periods + 1, dtype=np.float64)
     tests = []
     for command in np.repeat(wanted, times):

@@ -7,6 +7,7 @@ from typing import Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, checked_seed, count, instance, number, word
+from hrsafety._bounds import MOST_RUNS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.microphones import MicrophoneArray
 from hrsafety.reactive.recording import SoundRecording
@@ -269,5 +270,5 @@ def hearing(
         number("source_speed", source_speed),
         number("noise", noise),
         number("lead", lead),
-        None if samples is None else count("samples", samples),
+        None if samples is None else count("samples", samples, most=MOST_RUNS),
     )

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, flag, instance, positive
+from hrsafety._arguments import Array, callback, count, flag, instance, thread_count
+from hrsafety._bounds import MOST_COUNT, MOST_LAYOUTS, MOST_RESAMPLES
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.follower import Follower
@@ -21,7 +22,6 @@ from hrsafety.tables import Columns, Table, with_units
 __all__ = ["FollowerExperiment", "LawComparison", "compare_experiments", "experiment"]
 
 # More would only exhaust the system before it says no.
-MOST_THREADS = 1024
 SPEED_LIMITS = {"static": 0.6}
 """mu_0 of experiment 2 in m/s; everywhere else that of `VirtualImpedance`."""
 FOLLOWS = 0.6
@@ -200,9 +200,9 @@ def experiment(
     repulsion = _law_of(law, drawn.kind)
     robot = Follower() if follower is None else instance("follower", follower, Follower)
     only_touching = drawn.kind != "tracking" if touching is None else flag("touching", touching)
-    first, wanted = count("first_seed", first_seed, least=0), count("layouts", layouts)
-    if threads is not None and count("threads", threads) > MOST_THREADS:
-        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
+    wanted = count("layouts", layouts, most=MOST_LAYOUTS)
+    first = count("first_seed", first_seed, least=0, most=MOST_COUNT - 1001 * MOST_LAYOUTS)
+    thread_count(threads)
     seeds = list(range(first, first + wanted))
     if only_touching:
         seeds = _hrsafety.follower_touching(robot._native, drawn._native, first=first, count=wanted, threads=threads)
@@ -299,5 +299,5 @@ def compare_experiments(
         first=first,
         second=second,
         collisions=compare_paired(first.collided, second.collided),
-        difference=mean_interval(change, resamples=int(positive("resamples", resamples)), seed=seed),
+        difference=mean_interval(change, resamples=count("resamples", resamples, most=MOST_RESAMPLES), seed=seed),
     )

@@ -11,14 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, callback, count, instance, not_negative, square
+from hrsafety._arguments import Array, Pair, callback, instance, not_negative, square, thread_count
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.microphones import MicrophoneArray, same_shape
 from hrsafety.tables import Columns, Table, plane
 
 __all__ = ["Fix", "Fixes", "locate", "locate_batch"]
 
-MOST_THREADS = 1024
 STATUS_WORDS: tuple[str, ...] = tuple(_hrsafety.fix_status_words())
 # A quarter of a sample at 100 kHz, in s.
 QUARTER_SAMPLE = 2.5e-6
@@ -284,9 +283,7 @@ def locate_batch(
 
 def checked_threads(threads: int | None) -> int | None:
     """Return the number of threads, or say what it should have been."""
-    if threads is not None and count("threads", threads) > MOST_THREADS:
-        raise InvalidParameterError("threads", f"be at most {MOST_THREADS}", threads)
-    return threads
+    return thread_count(threads)
 
 
 def _located(
@@ -310,7 +307,10 @@ def _located(
 
 def _delay_covariance(arrival_deviation: float, given: npt.ArrayLike | None) -> list[float]:
     """Return variance of dt_12, covariance, variance of dt_13 in s^2."""
-    variance = not_negative("arrival_deviation", arrival_deviation) ** 2
+    deviation = not_negative("arrival_deviation", arrival_deviation)
+    variance = deviation * deviation
+    if not np.isfinite(2.0 * variance):
+        raise InvalidParameterError("arrival_deviation", "have a finite square", arrival_deviation)
     if given is None:
         return [2.0 * variance, variance, 2.0 * variance]
     matrix = square("delay_covariance", given, 2)

@@ -9,14 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import (
-    Array,
-    Parameters,
-    count,
-    flag,
-    instance,
-    numbers,
-)
+from hrsafety._arguments import Array, Parameters, checked_seed, flag, instance, numbers
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.impedance import VirtualImpedance
 from hrsafety.reactive.scenes import FollowerScene
@@ -287,7 +280,7 @@ def follow(
         leader_speed=leader.speed,
         leader_size=leader.size,
         duration=scene.duration,
-        seed=count("seed", seed, least=0),
+        seed=checked_seed("seed", seed),
     )
     for name in ("end_time", "least_clearance"):
         del found[name]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, count, number, pair, word
+from hrsafety._arguments import Pair, Parameters, checked_seed, number, pair, word
 from hrsafety.reactive.scenes import FollowerScene, MovingObstacle, SoundLeader
 from hrsafety.reactive.sonar import Box
 
@@ -99,7 +99,7 @@ class FollowerLayouts(Parameters):
         >>> reactive.FollowerLayouts(kind="static").scene(0).leader.start
         (6.0, 0.0)
         """
-        found = _hrsafety.follower_layout(self._native, count("seed", seed, least=0))
+        found = _hrsafety.follower_layout(self._native, checked_seed("seed", seed))
         rows = zip(*(found[name].tolist() for name in ("center", "size", "velocity", "start", "stop")), strict=True)
         movers = [
             MovingObstacle(

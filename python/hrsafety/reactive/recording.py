@@ -114,8 +114,9 @@ def read_recording(path: str | PathLike[str], *, channels: Sequence[int] = (0, 1
         with file.open("rb") as stream, wave.open(stream, "rb") as sound:
             parameters = sound.getparams()
             data = sound.readframes(parameters.nframes)
-    except (wave.Error, EOFError) as error:
-        reason = str(error) or "the file ends within its header"
+    except (wave.Error, EOFError, RuntimeError) as error:
+        # A chunk that says it is longer than the file makes the reader of chunks fail without a word.
+        reason = str(error) or "the file ends within its header or a chunk"
         raise InvalidParameterError(file.name, "be a WAV file of whole numbers (PCM)", reason) from None
     except OSError as error:
         raise InvalidParameterError("path", "name a readable file", f"{file} ({error.strerror})") from None

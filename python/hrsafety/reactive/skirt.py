@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, count, vector, word
+from hrsafety._bounds import MOST_RAYS
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["MOTION_DIRECTIONS", "SkirtState", "UltrasonicSkirt", "skirt_states"]
@@ -26,7 +27,6 @@ MOTION_DIRECTIONS: Mapping[str, float] = MappingProxyType(dict(_hrsafety.skirt_d
 the east, counterclockwise. North-west is 2 pi/3, the mirror of north-east; the source prints 0.833 pi."""
 
 MOST_SENSORS = 64
-MOST_RAYS = 100_000
 PUBLISHED_WHEEL_GAP = math.pi / 8.0
 PUBLISHED_SAFE_DISTANCE = 0.666
 PUBLISHED_CHASSIS_RADIUS = 0.33

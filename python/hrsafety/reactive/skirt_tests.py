@@ -22,6 +22,7 @@ from hrsafety._arguments import (
     pair,
     word,
 )
+from hrsafety._bounds import MOST_LAYOUTS, MOST_OBSTACLES, MOST_THREADS
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt import MOTION_DIRECTIONS, UltrasonicSkirt
@@ -30,9 +31,6 @@ from hrsafety.tables import Columns, Table, each, plane
 __all__ = ["SkirtMotion", "SkirtRun", "SkirtScene", "SkirtShares", "SkirtTest", "skirt_run", "skirt_test"]
 
 # More would only exhaust the system before it says no.
-MOST_THREADS = 1024
-MOST_TESTS = 10_000_000
-MOST_OBSTACLES = 10_000
 CLOSELY = 0.1
 
 
@@ -293,8 +291,8 @@ def skirt_test(
     """
     columns = _hrsafety.skirt_test(
         *_parts(skirt, scene, motion),
-        layouts=_limited("layouts", layouts, MOST_TESTS),
-        repeats=_limited("repeats", repeats, MOST_TESTS),
+        layouts=_limited("layouts", layouts, MOST_LAYOUTS),
+        repeats=_limited("repeats", repeats, MOST_LAYOUTS),
         seed=checked_seed("seed", seed),
         threads=None if threads is None else _limited("threads", threads, MOST_THREADS),
         progress=callback("progress", progress),
@@ -417,10 +415,10 @@ def skirt_run(
     """
     names = tuple(MOTION_DIRECTIONS)
     place = names.index(word("direction", direction, names))
-    times = _limited("repeats", repeats, MOST_TESTS)
+    times = _limited("repeats", repeats, MOST_LAYOUTS)
     if count("repeat", repeat, least=0) >= times:
         raise InvalidParameterError("repeat", f"be an integer from 0 to {times - 1}", repeat)
-    index = (_limited("layout", layout, MOST_TESTS, least=0) * len(names) + place) * times + repeat
+    index = (_limited("layout", layout, MOST_LAYOUTS, least=0) * len(names) + place) * times + repeat
     parts = _parts(skirt, scene, motion)
     fields = _hrsafety.skirt_run(*parts, index=index, repeats=times, seed=checked_seed("seed", seed))
     course = MOTION_DIRECTIONS[direction] + np.pi

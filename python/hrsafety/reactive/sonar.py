@@ -10,10 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, Parameters, count, flag, number, numbers, pair, sequence
+from hrsafety._arguments import Array, Pair, Parameters, checked_seed, count, flag, number, numbers, pair, sequence
+from hrsafety._bounds import MOST_RAYS
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Box", "Disc", "Sonar", "SonarMounts", "Wall", "cast_rays", "speed_of_sound"]
+
+# In degrees Celsius.
+ABSOLUTE_ZERO = -273.15
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -219,7 +223,10 @@ class Sonar(Parameters):
         )
         self._set(
             _native=_hrsafety.Sonar(
-                rays=count("rays", self.rays), firing=str(self.firing), rear=flag("rear", self.rear), **values
+                rays=count("rays", self.rays, most=MOST_RAYS),
+                firing=str(self.firing),
+                rear=flag("rear", self.rear),
+                **values,
             )
         )
 
@@ -274,7 +281,7 @@ class Sonar(Parameters):
             self._native,
             native_shapes("shapes", shapes),
             given.reshape(-1, 3),
-            seed=count("seed", seed, least=0),
+            seed=checked_seed("seed", seed),
             noise=flag("noise", noise),
         )["readings"]
         return found[0] if given.ndim == 1 else found
@@ -337,7 +344,7 @@ def speed_of_sound(temperature: float) -> float:
     Raises
     ------
     InvalidParameterError
-        If the temperature is not a number.
+        If the temperature is not a finite number above absolute zero.
 
     Examples
     --------
@@ -345,4 +352,7 @@ def speed_of_sound(temperature: float) -> float:
     >>> reactive.speed_of_sound(25.0)
     346.5
     """
-    return _hrsafety.speed_of_sound(number("temperature", temperature))
+    given = number("temperature", temperature)
+    if not ABSOLUTE_ZERO < given < np.inf:
+        raise InvalidParameterError("temperature", f"be finite and above {ABSOLUTE_ZERO} degrees Celsius", given)
+    return _hrsafety.speed_of_sound(given)

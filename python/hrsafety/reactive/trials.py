@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, callback, checked_seed, count, instance, not_negative
+from hrsafety._bounds import MOST_RUNS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.bursts import Burst, Converter, hearing
 from hrsafety.reactive.delays import DelayMethod, delay_options
@@ -15,8 +16,6 @@ from hrsafety.reactive.fixes import QUARTER_SAMPLE, Fixes, checked_threads, loca
 from hrsafety.reactive.microphones import MicrophoneArray, check_finite, same_shape
 
 __all__ = ["jittered_fixes", "localize_bursts"]
-
-MOST_RUNS = 10**8  # of all sources together: their delays fill 1.6 GB
 
 
 def jittered_fixes(
@@ -207,7 +206,7 @@ def _checked_sources(
     if (sources[0] <= 0.0).any():
         worst = float(sources[0].min())
         raise InvalidParameterError("range", "be finite and positive", worst)
-    repeats = count("runs", runs)
+    repeats = count("runs", runs, most=MOST_RUNS)
     if repeats * max(1, sources[0].size) > MOST_RUNS:
         raise InvalidParameterError("runs", f"be at most {MOST_RUNS} for all sources together", runs)
     return own, sources, repeats

@@ -8,6 +8,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count
+from hrsafety._bounds import MOST_OBSTACLES
 
 __all__ = ["random_crowd"]
 
@@ -45,7 +46,7 @@ def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = N
     Parameters
     ----------
     people : int
-        How many people, 0 or more.
+        How many people, from 0 to 10,000.
     seed : int
         Seed of the draw and of the scenario, 0 <= seed < 2**64. Person k is the same in any
         crowd of the same seed with more than k people.
@@ -69,7 +70,7 @@ def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = N
     >>> len(crowd.obstacles), crowd == scenarios.random_crowd(12, seed=3)
     (12, True)
     """
-    count("people", people, least=0)
+    count("people", people, least=0, most=MOST_OBSTACLES)
     checked = checked_seed("seed", seed)
     generator = np.random.Generator(np.random.PCG64(checked))
     crowd = tuple(_walker(generator) for _ in range(people))

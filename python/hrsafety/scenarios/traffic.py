@@ -8,6 +8,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count, instance
+from hrsafety._bounds import MOST_OBSTACLES
 
 __all__ = ["random_traffic"]
 
@@ -42,7 +43,7 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
     Parameters
     ----------
     obstacles : int
-        How many obstacles, 0 or more.
+        How many obstacles, from 0 to 10,000.
     seed : int
         Seed of the draw and of the scenario, 0 <= seed < 2**64. Obstacle k is the same in any
         traffic of the same seed with more than k obstacles.
@@ -66,7 +67,7 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
     >>> len(traffic.obstacles), traffic == scenarios.random_traffic(3, seed=1)
     (3, True)
     """
-    count("obstacles", obstacles, least=0)
+    count("obstacles", obstacles, least=0, most=MOST_OBSTACLES)
     checked = checked_seed("seed", seed)
     robot = instance("robot", nav.HolonomicRobot() if robot is None else robot, nav.HolonomicRobot)
     generator = np.random.Generator(np.random.PCG64(checked))

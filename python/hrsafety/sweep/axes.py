@@ -218,7 +218,7 @@ class Axis:
         object.__setattr__(self, "low", low)
         object.__setattr__(self, "high", high)
         if self.points is not None:
-            object.__setattr__(self, "points", count("points", self.points, least=2))
+            object.__setattr__(self, "points", count("points", self.points, least=2, most=LARGEST_INTEGER))
             if self.scale == "integer" and self.points > high - low + 1:
                 raise InvalidParameterError("points", f"be at most {high - low + 1:g}, one a number", self.points)
 

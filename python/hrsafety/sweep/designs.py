@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from hrsafety._arguments import Array, count, sequence
+from hrsafety._bounds import MOST_ROWS_AT_ONCE
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis
@@ -89,6 +90,8 @@ class Design(ABC):
         end = len(self) if stop is None else count("stop", stop, least=0)
         if not first <= end <= len(self):
             raise InvalidParameterError("stop", f"be from start = {first} to {len(self)}", end)
+        if (end - first) * len(self.axes) > MOST_ROWS_AT_ONCE:
+            raise InvalidParameterError("stop", f"ask for at most {MOST_ROWS_AT_ONCE} values at once", end - first)
         return self._block(first, end)
 
     def with_units(self, units: Mapping[str, str]) -> Self:

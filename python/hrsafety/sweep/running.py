@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from hrsafety import __version__
-from hrsafety._arguments import count, flag, instance
+from hrsafety._arguments import count, flag, instance, thread_count
+from hrsafety._bounds import MOST_TASKS
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.sweep.chunks import Plan, Task, computed, planned
 from hrsafety.sweep.designs import Design, checked_design
@@ -136,10 +137,9 @@ def run(
     if client is not None:
         _check_client(client)
     if in_flight is not None:
-        count("in_flight", in_flight)
-    count("retries", retries, least=0)
-    if threads is not None:
-        count("threads", threads)
+        count("in_flight", in_flight, most=MOST_TASKS)
+    count("retries", retries, least=0, most=MOST_TASKS)
+    thread_count(threads)
     if progress is not None and not callable(progress):
         raise InvalidParameterError("progress", "be callable or None", progress)
     flag("resume", resume)

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hrsafety._arguments import Array, count, flag
+from hrsafety._arguments import Array, checked_seed, count, flag
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.designs import MOST_ROWS, Design
@@ -52,10 +52,8 @@ class _Sampled(Design):
     def __post_init__(self) -> None:
         """Check the values."""
         Design.__post_init__(self)
-        object.__setattr__(self, "size", count("size", self.size))
-        object.__setattr__(self, "seed", count("seed", self.seed, least=0))
-        if self.size > MOST_ROWS:
-            raise InvalidParameterError("size", "be at most 2**53", self.size)
+        object.__setattr__(self, "size", count("size", self.size, most=MOST_ROWS))
+        object.__setattr__(self, "seed", checked_seed("seed", self.seed))
 
     @abstractmethod
     def _shares(self, start: int, stop: int) -> Array:

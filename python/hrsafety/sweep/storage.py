@@ -7,9 +7,7 @@ import datetime
 import json
 import os
 import platform
-import threading
 import zipfile
-import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -17,8 +15,8 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._atomic import replacing
-from hrsafety.errors import HrsafetyError, InvalidParameterError
+from hrsafety._atomic import DAMAGE, only_writer, replacing
+from hrsafety.errors import HrsafetyError, InvalidParameterError, StorageError
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.identity import differences, fingerprint
 
@@ -32,16 +30,11 @@ LOCK = ".lock"
 FORMAT = 1
 # Member of a chunk file that says which chunk of which sweep it is; no column has such a name.
 MARK = "_chunk"
-# What reading a damaged archive raises.
-DAMAGE = (OSError, EOFError, ValueError, KeyError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 PIECE = 1 << 20
+# Length of the record at the end of an archive without a comment.
+END_RECORD = 22
 # Differences that an error names at most.
 MOST_NAMED = 4
-
-
-# Folders that this process is writing into.
-_WRITTEN: set[Path] = set()
-_GUARD = threading.Lock()
 
 
 class SweepError(HrsafetyError):
@@ -162,8 +155,13 @@ class Folder:
 
     def write(self, index: int, columns: Stored) -> None:
         """Write a chunk: on the disk before it has its name."""
-        with replacing(self.file(index), durable=True) as file:
-            write_archive(file, {MARK: self._mark(index), **columns})
+        try:
+            with replacing(self.file(index), durable=True) as file:
+                write_archive(file, {MARK: self._mark(index), **columns})
+        except OSError as error:
+            kept = f"{len(self.finished())} finished chunks in {self.path}"
+            remedy = "make room and run the same sweep again: it resumes there"
+            raise StorageError(self.file(index), error, kept=kept, remedy=remedy) from None
         _settle(self.path / CHUNKS)
 
     def read(self, index: int, names: tuple[str, ...]) -> Stored:
@@ -210,32 +208,8 @@ def locked(path: Path) -> Iterator[None]:
     if path.exists() and not path.is_dir():
         raise InvalidParameterError("out", "be a folder or not exist", str(path))
     path.mkdir(parents=True, exist_ok=True)
-    own = path.resolve()
-    with _GUARD:
-        # A lock of the system is one of the process: its own threads are told apart here.
-        if own in _WRITTEN:
-            raise SweepError(f"another run of this process is writing into {path}")
-        _WRITTEN.add(own)
-    try:
-        with (path / LOCK).open("wb") as file:
-            _lock(file, path)
-            yield
-    finally:
-        _WRITTEN.discard(own)
-
-
-def _lock(file: BinaryIO, path: Path) -> None:
-    """Lock a file until it is closed, where the system can."""
-    try:
-        import fcntl
-    except ModuleNotFoundError:  # chunks are still written whole or not at all
-        return
-    try:
-        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        raise SweepError(f"another process is writing into {path}") from None
-    except OSError:
-        return  # a file system without locks
+    with only_writer(path / LOCK, SweepError):
+        yield
 
 
 def write_archive(file: BinaryIO, columns: Mapping[str, npt.NDArray[Any]]) -> None:
@@ -255,7 +229,18 @@ def read_archive(path: Path, names: tuple[str, ...]) -> Stored:
                 found[name] = np.lib.format.read_array(member, allow_pickle=False)
                 if member.read(1):
                     raise ValueError("bytes behind an array")
+        _check_end(file, archive)
     return found
+
+
+def _check_end(file: BinaryIO, archive: zipfile.ZipFile) -> None:
+    """Raise unless an archive fills its file: members at their places, nothing behind the end."""
+    size = file.seek(0, os.SEEK_END)
+    behind = len(archive.comment)
+    file.seek(max(size - END_RECORD - behind, 0))
+    first = min((member.header_offset for member in archive.infolist()), default=0)
+    if behind or first or file.read(4) != b"PK\x05\x06":
+        raise ValueError("bytes before or behind the archive")
 
 
 def _settle(folder: Path) -> None:

@@ -1,0 +1,76 @@
+"""Upper bounds of counts: the one table, checked before memory is taken.
+
+A count beyond its bound would not fit into memory, would take years, or is a slip of the keyboard.
+The cores check the bounds of what they allocate again.
+"""
+
+from __future__ import annotations
+
+__all__ = [
+    "MOST_COUNT",
+    "MOST_DRAWS",
+    "MOST_EVALUATIONS",
+    "MOST_INSTANTS",
+    "MOST_LANES",
+    "MOST_LAYOUTS",
+    "MOST_LOCAL_STARTS",
+    "MOST_OBSTACLES",
+    "MOST_PIXELS",
+    "MOST_POINTS",
+    "MOST_POINTS_OF_AXIS",
+    "MOST_RAYS",
+    "MOST_REFINEMENTS",
+    "MOST_REPEATS",
+    "MOST_RESAMPLES",
+    "MOST_ROWS_AT_ONCE",
+    "MOST_RUNS",
+    "MOST_SAMPLES",
+    "MOST_SEEDS",
+    "MOST_TASKS",
+    "MOST_THREADS",
+]
+
+# Any count at all: it has to fit into the integers of the cores.
+MOST_COUNT = 2**63 - 1
+
+# Threads of a pool, and vector lanes that may be asked for.
+MOST_THREADS = 1024
+MOST_LANES = 1024
+
+# Obstacles that are drawn for a scenario: each takes about 60 microseconds and 1 kB.
+MOST_OBSTACLES = 10_000
+# Rays of a beam.
+MOST_RAYS = 100_000
+# Points that a planner draws at one step.
+MOST_DRAWS = 10**6
+# Layouts of a study of the follower or the skirt.
+MOST_LAYOUTS = 10**7
+# Seeds of repeated runs, of noise in a search, of a calibration study.
+MOST_SEEDS = 10**6
+# Runs of all sources together: their delays fill 1.6 GB.
+MOST_RUNS = 10**8
+# Tests of one kind, timed runs, instants of a picture.
+MOST_REPEATS = 10**5
+MOST_INSTANTS = 1000
+# Samples of a record: 80 MB a column.
+MOST_SAMPLES = 10**7
+# Draws of a bootstrap.
+MOST_RESAMPLES = 10**6
+# Pixels along a side of a picture.
+MOST_PIXELS = 10**6
+
+# Points of a grid of gains: their values have to fit into memory.
+MOST_POINTS = 10**8
+# Rounds of ever finer grids: 60 halvings bring any increment below the spacing of floats.
+MOST_REFINEMENTS = 60
+# Local searches side by side, each a thread that mostly waits.
+MOST_LOCAL_STARTS = 1024
+# Gain sets of a global search.
+MOST_EVALUATIONS = 10**9
+# Values of a gain of which the surroundings are looked at.
+MOST_POINTS_OF_AXIS = 10**5
+
+# Rows of a design that are made as one array.
+MOST_ROWS_AT_ONCE = 10**8
+# Chunks that are under way, and how often one is tried again.
+MOST_TASKS = 10**5

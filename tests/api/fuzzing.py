@@ -1,0 +1,310 @@
+"""Random calls with values that break rules: whatever comes out is a result or an error of the package.
+
+Run it for as long as wanted with ``python tests/api/fuzzing.py --calls 100000 --seed 7`` from the
+root of the source tree. A call that is not answered as it should be is printed with its arguments.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import wave
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hrsafety import HrsafetyError, datasets, impact, reactive, scenarios, sweep
+from hrsafety import navigation as nav
+
+NAN, INF = float("nan"), float("inf")
+SCENE = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1)])
+SHORT = replace(SCENE, time_limit=0.6)
+FIELD = nav.VirtualForceField()
+ARRAY = reactive.MicrophoneArray()
+TIME = np.linspace(0.0, 0.02, 21)
+PULSE = 10.0 * np.sin(np.pi * TIME / 0.02)
+FLIGHT = np.arange(0.0, 0.2, 1e-3)
+DROP = impact.drop_trajectory(
+    FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
+)
+PARTS: dict[str, Any] = {
+    "manipulator": impact.MANIPULATOR_1,
+    "foam": impact.FOAM_1,
+    "head": impact.Head.minimum(),
+    "closing_speed": 1.25,
+}
+SOUND: dict[str, Any] = {"range": 1.0, "bearing": 0.2}
+BURST = reactive.Burst(duration=0.01)
+HEARD = reactive.record_burst(BURST, ARRAY, **SOUND)
+AXIS = sweep.Axis(name="foam_damping", low=0.0, high=100.0)
+WALK = {"time_s": [0.0, 0.4, 0.8], "person": [7, 7, 7], "position": [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]}
+RECORDING = datasets.Recording(**WALK)
+LEADER = reactive.FollowerLayouts(kind="static").scene(0)
+
+# Calls that are right, and cheap enough to be made thousands of times.
+CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
+    "HolonomicRobot": (nav.HolonomicRobot, {"mass": 10.0, "radius": 0.2, "max_speed": 1.0, "max_acceleration": 2.0}),
+    "Disc": (nav.Disc, {"center": (1.0, 2.0), "radius": 0.3, "active_radius": None, "critical_radius": None}),
+    "MovingDisc": (nav.MovingDisc, {"center": (1.0, 2.0), "velocity": (0.1, 0.0), "radius": 0.3}),
+    "Rectangle": (nav.Rectangle, {"center": (1.0, 2.0), "length": 1.0, "width": 0.5}),
+    "Human": (nav.Human, {"start": (1.0, 2.0), "velocity": (0.4, 0.0), "stop": None, "radius": 0.3}),
+    "Human.from_path": (nav.Human.from_path, {"time": [0.0, 1.0], "position": [[0.0, 0.0], [1.0, 0.0]]}),
+    "Measurement": (nav.Measurement, {"scale": 0.01, "distribution": "uniform", "of": "both"}),
+    "Scenario": (
+        nav.Scenario,
+        {
+            "start": (3.9, 0.6),
+            "goal": (0.0, 0.6),
+            "obstacles": [nav.Disc(center=(2.0, 0.5), radius=0.1)],
+            "control_period": 0.06,
+            "time_limit": 60.0,
+            "rest_time": 5.0,
+            "seed": 0,
+        },
+    ),
+    "VirtualForceField": (nav.VirtualForceField, {"attractive_gain": 1.0, "repulsive_gain": 2.0, "gain_ratio": 0.2}),
+    "VelocityObstacle": (nav.VelocityObstacle, {"margin": 0.1, "horizon": 5.0, "selection": "to_goal"}),
+    "FieldDStar": (nav.FieldDStar, {"resolution": 0.1, "margin": 0.1, "horizon": 0.2}),
+    "RapidlyExploringRandomTree": (
+        nav.RapidlyExploringRandomTree,
+        {"step": 0.4, "draws": 100, "waypoints": 5, "safety_draws": 3},
+    ),
+    "Reciprocal": (nav.OptimalReciprocalCollisionAvoidance, {"horizon": 5.0}),
+    "simulate": (nav.simulate, {"scenario": SHORT, "law": FIELD, "step": 0.01, "hold": True}),
+    "simulate_built": (nav.simulate_built, {"scenario": SHORT, "law": FIELD, "step": 0.01}),
+    "simulate_batch": (
+        nav.simulate_batch,
+        {
+            "scenarios": [SHORT],
+            "law": FIELD,
+            "gains": [(3.0, 20.0, 17.0, 0.25)],
+            "step": 0.01,
+            "threads": 1,
+            "lanes": None,
+        },
+    ),
+    "repeat": (nav.repeat, {"scenario": SHORT, "law": FIELD, "seeds": 2, "threads": 1}),
+    "command": (nav.command, {"law": FIELD, "scenario": SHORT, "position": (3.0, 0.7), "velocity": (0.0, 0.1)}),
+    "force_field": (nav.force_field, {"law": FIELD, "scenario": SHORT, "position": [[3.0, 0.7], [2.0, 1.5]]}),
+    "region_radii": (
+        nav.region_radii,
+        {"robot": nav.HolonomicRobot(), "obstacle": nav.Disc(center=(1.0, 0.0), radius=0.2), "control_period": 0.06},
+    ),
+    "Vision": (nav.Vision, {"period": 0.06, "delay": 0.1, "drop_probability": 0.1, "compensated": False}),
+    "observe": (
+        nav.observe,
+        {"vision": nav.Vision(), "time": TIME, "position": np.zeros((21, 2)), "seed": 0, "stream": 0},
+    ),
+    "Camera": (nav.Camera, {"focal_length": 0.005, "image_size_px": (64, 48)}),
+    "track": (
+        nav.track,
+        {
+            "reference": nav.CircleReference(center=(0.0, 0.0), radius=2.0, speed=0.5),
+            "position": (0.0, 0.0),
+            "control_period": 0.06,
+            "step": 0.01,
+            "duration": 0.6,
+        },
+    ),
+    "WheelReference.sine": (
+        nav.WheelReference.sine,
+        {"speed": 1.0, "frequency": 0.5, "duration": 0.1, "period": 1e-3},
+    ),
+    "open_loop_tests": (
+        nav.open_loop_tests,
+        {"drive": nav.HOLONOMIC_WHEELS[0], "commands": [0.3], "repeats": 1, "duration": 0.1, "seed": 0},
+    ),
+    "Foam": (impact.Foam, {"stiffness": 24e3, "damping": 50.0}),
+    "impact.simulate": (impact.simulate, {**PARTS, "duration": 0.01, "step": 1e-3, "method": "exact"}),
+    "metrics": (impact.metrics, {**PARTS, "horizon": None}),
+    "metrics_batch": (impact.metrics_batch, {**PARTS, "closing_speed": [0.5, 1.0], "threads": 1, "lanes": None}),
+    "gradients": (impact.gradients, dict(PARTS)),
+    "hic": (impact.hic, {"time": TIME, "acceleration_g": PULSE}),
+    "channel_filter": (impact.channel_filter, {"time": FLIGHT, "signal": np.sin(FLIGHT), "channel_class": 60}),
+    "hic_half_sine": (impact.hic_half_sine, {"peak_g": 50.0, "duration": 0.01}),
+    "identify_foam": (
+        impact.identify_foam,
+        {
+            "static_force": 24e3 * np.linspace(0.0, 0.008, 9),
+            "static_compression": np.linspace(0.0, 0.008, 9),
+            "drop_time": FLIGHT,
+            "drop_position": DROP,
+            "moving_mass": 1.54,
+            "bootstrap": 0,
+        },
+    ),
+    "Sonar": (reactive.Sonar, {"rays": 5, "beam_width": 0.5, "most_range": 3.0, "temperature": 20.0}),
+    "Sonar.readings": (reactive.Sonar().readings, {"shapes": [], "poses": (0.0, 0.0, 0.0), "seed": 0}),
+    "speed_of_sound": (reactive.speed_of_sound, {"temperature": 20.0}),
+    "doppler_frequency": (
+        reactive.doppler_frequency,
+        {"frequency": 1000.0, "speed_of_sound": 340.0, "observer_speed": 0.1},
+    ),
+    "skirt_safe_distance": (reactive.skirt_spacing, {"sensors": 9, "sensor_length": 0.046}),
+    "UltrasonicSkirt": (reactive.UltrasonicSkirt, {"sensors": 9, "rays": 5, "firing_period": 0.02}),
+    "skirt_test": (reactive.skirt_test, {"layouts": 1, "repeats": 1, "seed": 0, "threads": 1}),
+    "experiment": (
+        reactive.experiment,
+        {"kind": "static", "law": "active", "layouts": 1, "touching": False, "first_seed": 0, "threads": 1},
+    ),
+    "FollowerLayouts": (reactive.FollowerLayouts, {"kind": "static"}),
+    "follow": (reactive.follow, {"scene": LEADER, "law": reactive.VirtualImpedance(), "seed": 0}),
+    "Burst": (reactive.Burst, {"duration": 0.01, "seed": 0}),
+    "Converter": (reactive.Converter, {"sample_rate": 1e5, "bits": 10}),
+    "record_burst": (reactive.record_burst, {"burst": BURST, "array": ARRAY, **SOUND, "samples": 2000, "seed": 0}),
+    "estimate_delays": (reactive.estimate_delays, {"recording": HEARD, "array": ARRAY, "window": 500}),
+    "locate": (reactive.locate, {"array": ARRAY, "delay_12": 1e-4, "delay_13": 2e-4, "arrival_deviation": 1e-6}),
+    "locate_batch": (reactive.locate_batch, {"array": ARRAY, "delay_12": [1e-4], "delay_13": [2e-4], "threads": 1}),
+    "jittered_fixes": (reactive.jittered_fixes, {"array": ARRAY, **SOUND, "runs": 2, "seed": 0, "threads": 1}),
+    "random_crowd": (scenarios.random_crowd, {"people": 2, "seed": 0}),
+    "random_traffic": (scenarios.random_traffic, {"obstacles": 2, "seed": 0}),
+    "Recording": (datasets.Recording, dict(WALK)),
+    "Recording.humans": (RECORDING.humans, {"start_time": 0.2, "duration": 1.0}),
+    "Axis": (sweep.Axis, {"name": "x", "low": 0.0, "high": 1.0, "points": 4}),
+    "LatinHypercube": (sweep.LatinHypercube, {"axes": [AXIS], "size": 8, "seed": 0}),
+    "Sobol": (sweep.Sobol, {"axes": [AXIS], "size": 8, "seed": 0}),
+    "Design.rows": (sweep.LatinHypercube([AXIS], 8).rows, {"start": 0, "stop": 4}),
+}
+
+UNALIGNED = np.frombuffer(b"x" + np.linspace(0.0, 1.0, 21).tobytes(), dtype=np.uint8)[1:].view(np.float64)
+
+# Values that break the rules of most arguments.
+EVIL: tuple[Any, ...] = (
+    *(None, True, "", "to_goal", "abc", b"x", object(), (), [], {}, 1j, NAN, INF, -INF, 0, 0.0, -1, -1.0),
+    *(1e-308, 1e-12, 1e200, 1e308, -1e308, 2**31, 2**53, 2**63, 2**64, 10**400, -(2**63)),
+    *((1.0,), (NAN, 0.0), (1.0, 2.0), (1e308, -1e308), [[1.0, 2.0]], [[1.0], [2.0, 3.0]], ["a", "b"]),
+    *(np.ones(3), np.zeros((0, 2)), np.full(21, NAN), np.arange(21), np.array("x"), np.array(1.0), UNALIGNED),
+    *(np.array([1, "a"], dtype=object), np.float32(0.5), np.int8(3), np.datetime64(0, "s")),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Escape:
+    """A call that ended in something else than a result or an error of the package."""
+
+    call: str
+    arguments: dict[str, Any]
+    error: BaseException
+
+    def __str__(self) -> str:
+        """Return the call and what came out."""
+        return f"{self.call}({self.arguments!r}): {type(self.error).__name__}: {self.error}"
+
+
+def escapes(calls: int, seed: int) -> Iterator[Escape]:
+    """Make random calls and yield those that are not answered as they should be.
+
+    Parameters
+    ----------
+    calls : int
+        How many.
+    seed : int
+        Of the draws: the same calls for the same seed.
+
+    Yields
+    ------
+    Escape
+        One for each call that raises something else.
+    """
+    draws = np.random.default_rng(seed)
+    names = list(CALLS)
+    for _ in range(calls):
+        name = names[draws.integers(len(names))]
+        function, right = CALLS[name]
+        arguments = dict(right)
+        keys = list(arguments)
+        for key in draws.choice(keys, size=min(len(keys), int(draws.integers(1, 3))), replace=False):
+            arguments[str(key)] = EVIL[draws.integers(len(EVIL))]
+        try:
+            function(**arguments)
+        except HrsafetyError as error:
+            str(error)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            yield Escape(name, arguments, error)
+
+
+def right_files(folder: Path) -> dict[Path, Callable[[Path], Any]]:
+    """Write a file of each kind that the package reads, and return its readers."""
+    sound = folder / "three.wav"
+    with wave.open(str(sound), "wb") as file:
+        file.setnchannels(3)
+        file.setsampwidth(2)
+        file.setframerate(48000)
+        file.writeframes(np.arange(-60, 60, dtype="<i2").tobytes())
+    scene = folder / "scene.toml"
+    scene.write_text(
+        'start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n[[obstacles]]\ntype = "disc"\ncenter = [2.0, 0.5]\nradius = 0.1\n',
+        encoding="utf-8",
+    )
+    people = folder / "people.csv"
+    people.write_text("frame,t_s,ped_id,x_m,y_m\n0,0.0,7,0.0,1.0\n10,0.4,7,0.5,1.0\n", encoding="utf-8")
+    checkpoint = folder / "search.checkpoint"
+    options: dict[str, Any] = {"grid": (2, 1, 1, 1), "refinements": 0, "local_starts": 0, "threads": 1}
+    nav.optimize_gains([SHORT], checkpoint=checkpoint, **options)
+    return {
+        sound: reactive.read_recording,
+        scene: scenarios.load,
+        people: datasets.load_pedestrians,
+        checkpoint: lambda path: nav.optimize_gains([SHORT], checkpoint=path, **options),
+    }
+
+
+def damaged(content: bytes, draws: np.random.Generator) -> bytes:
+    """Return content that is cut off, longer, or has some bytes changed."""
+    kind = draws.integers(4)
+    if kind == 0:
+        return content[: draws.integers(len(content))]
+    if kind == 1:
+        return content + draws.bytes(int(draws.integers(1, 20)))
+    changed = bytearray(content)
+    for _ in range(int(draws.integers(1, 4))):
+        place = int(draws.integers(len(changed)))
+        changed[place] = int(draws.integers(256)) if kind == 2 else changed[place] ^ (1 << int(draws.integers(8)))
+    return bytes(changed)
+
+
+def file_escapes(files: int, seed: int) -> Iterator[Escape]:
+    """Read damaged files and yield those whose reader raises something else than an error of the package."""
+    draws = np.random.default_rng(seed)
+    with tempfile.TemporaryDirectory() as place:
+        readers = right_files(Path(place))
+        contents = {path: path.read_bytes() for path in readers}
+        paths = list(readers)
+        for _ in range(files):
+            path = paths[draws.integers(len(paths))]
+            spoiled = damaged(contents[path], draws)
+            path.write_bytes(spoiled)
+            try:
+                readers[path](path)
+            except HrsafetyError as error:
+                str(error)
+            except BaseException as error:
+                if isinstance(error, KeyboardInterrupt):
+                    raise
+                yield Escape(path.name, {"content": spoiled}, error)
+
+
+def main() -> int:
+    """Make many calls and print what escapes; 1 if anything does."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--calls", type=int, default=100_000)
+    parser.add_argument("--files", type=int, default=20_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    found = 0
+    for source in (escapes(options.calls, options.seed), file_escapes(options.files, options.seed)):
+        for escape in source:
+            found += 1
+            print(escape, flush=True)
+    print(f"{found} of {options.calls} calls and {options.files} files were not answered as they should be")
+    return min(found, 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
