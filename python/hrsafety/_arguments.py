@@ -193,7 +193,10 @@ def sequence(name: str, rule: str, value: object) -> list[Any]:
     """Return the elements of ``value``, or say what it should have been."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise InvalidParameterError(name, rule, value)
-    return list(value)
+    try:
+        return list(value)
+    except TypeError:  # an array without an axis
+        raise InvalidParameterError(name, rule, value) from None
 
 
 def numbers(name: str, value: object, rule: str = "be a number or an array of numbers") -> Array:

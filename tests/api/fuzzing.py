@@ -28,9 +28,7 @@ ARRAY = reactive.MicrophoneArray()
 TIME = np.linspace(0.0, 0.02, 21)
 PULSE = 10.0 * np.sin(np.pi * TIME / 0.02)
 FLIGHT = np.arange(0.0, 0.2, 1e-3)
-DROP = impact.drop_trajectory(
-    FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
-)
+DROP = impact.drop_trajectory(FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0)
 PARTS: dict[str, Any] = {
     "manipulator": impact.MANIPULATOR_1,
     "foam": impact.FOAM_1,

@@ -102,6 +102,49 @@ def test_core_forbids_unsafe_code(crate: str) -> None:
     assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)
 
 
+WORD_ARM = re.compile(r'"[^"]*"(?:\s*\|\s*"[^"]*")*(?:\s+if [^=]*)?\s*=>')
+OTHER_ARM = re.compile(r"\n(?P<indent> *)(?:_|[a-z_]+) =>\s*(?P<answer>.{0,200})", re.DOTALL)
+
+
+def silent_defaults(text: str) -> list[str]:
+    """Return the arms that turn any other word into a choice, of matches that have an arm for a word."""
+    found = []
+    for arm in OTHER_ARM.finditer(text):
+        # The arms of one match stand at one indent; it begins where the indent falls.
+        before = text[: arm.start() + 1].split("\n")[:-1]
+        indent, words = len(arm["indent"]), False
+        for line in reversed(before):
+            if line.strip() and len(line) - len(line.lstrip()) < indent:
+                break
+            words = words or bool(WORD_ARM.match(line.lstrip()) and len(line) - len(line.lstrip()) == indent)
+        if words and "Err(" not in arm["answer"] and "Failure" not in arm["answer"]:
+            found.append(arm.group().strip().split("\n")[0])
+    return found
+
+
+def test_the_search_for_silent_defaults_finds_one() -> None:
+    text = 'match word {\n    "a" => One,\n    "b" if near => Two,\n    _ => Three,\n}\n'
+    assert silent_defaults(text) == ["_ => Three,"]
+    assert silent_defaults(text.replace("_ => Three", "_ => return Err(refused())")) == []
+
+
+@pytest.mark.parametrize("path", sorted((REPOSITORY / "crates").glob("*/src/**/*.rs")), ids=lambda path: path.name)
+def test_no_unknown_word_selects_a_branch(path: Path) -> None:
+    assert silent_defaults(path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("name", ["gains/problem.rs", "impact/history.rs", "laws.rs"])
+def test_selections_of_the_binding_name_every_case(name: str) -> None:
+    text = (REPOSITORY / "crates/hrsafety_py/src" / name).read_text(encoding="utf-8")
+    assert not re.search(r"^\s*_ =>", text, re.MULTILINE)
+
+
+def test_threads_come_from_one_place() -> None:
+    sources = (REPOSITORY / "crates").glob("*/src/**/*.rs")
+    users = [path for path in sources if re.search(r"\brayon\b|\bpar_\w+\(", path.read_text(encoding="utf-8"))]
+    assert [path.relative_to(REPOSITORY).as_posix() for path in users] == ["crates/groundwork/src/threads.rs"]
+
+
 # ---- imports --------------------------------------------------------------------------------
 
 

@@ -56,7 +56,10 @@ class Recording:
     def __post_init__(self) -> None:
         """Check the rows and freeze the arrays."""
         time, position = _finite("time_s", self.time_s), _finite("position", self.position)
-        person = np.array(self.person)
+        try:
+            person = np.array(self.person)
+        except (TypeError, ValueError, OverflowError):
+            raise InvalidParameterError("person", "hold integers", self.person) from None
         if time.ndim != 1:
             raise ShapeError("time_s", "(n,)", time.shape)
         if len(time) == 0:
@@ -268,7 +271,7 @@ def _finite(name: str, value: npt.ArrayLike) -> Array:
     """Return a copy of ``value`` as float64, or say why not."""
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidParameterError(name, "be an array of numbers", Shown(with_article(type(value).__name__))) from None
     if not np.isfinite(array).all():
         raise InvalidParameterError(name, "be finite", float(array[~np.isfinite(array)][0]))

@@ -306,7 +306,8 @@ def _drops(drop_time: object, drop_position: object) -> list[tuple[Array, Array]
 
 def _signals(name: str, value: object) -> list[Array]:
     """Return one signal, or a sequence of signals, as a list of arrays."""
-    if isinstance(value, (str, bytes)) or not isinstance(value, (Sequence, np.ndarray)) or len(value) == 0:
+    several = value.ndim > 0 if isinstance(value, np.ndarray) else isinstance(value, Sequence)
+    if isinstance(value, (str, bytes)) or not several or len(value) == 0:  # type: ignore[arg-type]  # it has a length
         raise InvalidParameterError(name, "be a signal or a sequence of signals", value)
     if np.ndim(value[0]) == 0:
         return [vector(name, value)]

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, checked_seed, count, flag, number
+from hrsafety._arguments import Array, callback, checked_seed, count, flag, number, sequence
 from hrsafety._bounds import MOST_SEEDS
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import check_threads
@@ -325,9 +325,8 @@ def _seeds(seeds: int | Iterable[int]) -> list[int]:
     if isinstance(seeds, (int, np.integer)):
         return list(range(count("seeds", seeds, most=MOST_SEEDS)))
     rule = "be a positive integer or hold integers from 0 to 2**64 - 1"
-    if isinstance(seeds, (str, bytes)) or not isinstance(seeds, Iterable):
-        raise InvalidParameterError("seeds", rule, seeds)
-    given = list(itertools.islice(seeds, MOST_SEEDS + 1))
+    # A range may be longer than memory.
+    given = sequence("seeds", rule, itertools.islice(seeds, MOST_SEEDS + 1) if isinstance(seeds, range) else seeds)
     if len(given) > MOST_SEEDS:
         raise InvalidParameterError("seeds", f"hold at most {MOST_SEEDS} seeds", Shown("more"))
     checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]

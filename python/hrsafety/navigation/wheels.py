@@ -9,7 +9,20 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, Parameters, columns, instance, number, pair, positive, sequence, vector
+from hrsafety._arguments import (
+    Array,
+    Pair,
+    Parameters,
+    columns,
+    instance,
+    number,
+    pair,
+    positive,
+    sequence,
+    vector,
+    whole_steps,
+)
+from hrsafety._bounds import MOST_SAMPLES
 from hrsafety.errors import InvalidParameterError
 from hrsafety.tables import Columns, Table, with_units
 
@@ -214,7 +227,10 @@ class WheelReference:
         (1.0, 1000)
         """
         rate = 2.0 * np.pi * positive("frequency", frequency)
-        rows = round(positive("duration", duration) / positive("period", period))
+        length = positive("duration", duration)
+        rows = round(whole_steps("duration", length, positive("period", period), MOST_SAMPLES))
+        if not np.isfinite(rate * length) or not np.isfinite(number("speed", speed) * rate):
+            raise InvalidParameterError("frequency", "give a finite phase and a finite acceleration", frequency)
         phase = rate * period * np.arange(rows)
         peak = number("speed", speed)
         return cls(

@@ -224,6 +224,9 @@ def experiment(
 def _law_of(law: object, kind: str) -> VirtualImpedance:
     if isinstance(law, VirtualImpedance):
         return law
+    rule = 'be a VirtualImpedance or one of "conventional", "active", "off"'
+    if not isinstance(law, str):
+        raise InvalidParameterError("law", rule, law)
     limit = SPEED_LIMITS.get(kind)
     options: dict[str, Any] = {} if limit is None else {"speed_limit": limit}
     if law == "conventional":
@@ -232,7 +235,6 @@ def _law_of(law: object, kind: str) -> VirtualImpedance:
         return VirtualImpedance(**options)
     if law == "off":
         return VirtualImpedance(form="off")
-    rule = 'be a VirtualImpedance or one of "conventional", "active", "off"'
     raise InvalidParameterError("law", rule, law)
 
 
