@@ -196,7 +196,7 @@ def test_arrays_that_are_not_aligned_are_copied() -> None:
     table = [nav.simulate_batch([SCENE], FIELD, make(gains)).energy for make in (np.array, unaligned)]
     np.testing.assert_array_equal(*table)
     places = [[3.0, 0.7], [2.0, 1.5]]
-    fields = [nav.force_field(FIELD, SCENE, make(places)).total for make in (np.array, unaligned)]
+    fields = [nav.force_field(FIELD, SCENE, position=make(places)).total for make in (np.array, unaligned)]
     np.testing.assert_array_equal(*fields)
     pulse = np.sin(np.linspace(0.0, np.pi, 41))
     time_ = np.linspace(0.0, 0.02, 41)

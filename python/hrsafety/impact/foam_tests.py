@@ -306,9 +306,11 @@ def _drops(drop_time: object, drop_position: object) -> list[tuple[Array, Array]
 
 def _signals(name: str, value: object) -> list[Array]:
     """Return one signal, or a sequence of signals, as a list of arrays."""
-    several = value.ndim > 0 if isinstance(value, np.ndarray) else isinstance(value, Sequence)
-    if isinstance(value, (str, bytes)) or not several or len(value) == 0:  # type: ignore[arg-type]  # it has a length
-        raise InvalidParameterError(name, "be a signal or a sequence of signals", value)
+    rule = "be a signal or a sequence of signals"
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        raise InvalidParameterError(name, rule, value)
+    if isinstance(value, (str, bytes)) or not isinstance(value, (Sequence, np.ndarray)) or len(value) == 0:
+        raise InvalidParameterError(name, rule, value)
     if np.ndim(value[0]) == 0:
         return [vector(name, value)]
     return [vector(f"{name}[{index}]", each) for index, each in enumerate(value)]
