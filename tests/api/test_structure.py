@@ -117,7 +117,7 @@ def silent_defaults(text: str) -> list[str]:
             if line.strip() and len(line) - len(line.lstrip()) < indent:
                 break
             words = words or bool(WORD_ARM.match(line.lstrip()) and len(line) - len(line.lstrip()) == indent)
-        if words and "Err(" not in arm["answer"] and "Failure" not in arm["answer"]:
+        if words and not re.search(r"\bErr\(|Failure|\bunknown\(", arm["answer"]):
             found.append(arm.group().strip().split("\n")[0])
     return found
 
