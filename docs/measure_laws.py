@@ -1,13 +1,15 @@
 """Print the comparison of all laws, or write it into the page on validation.
 
-``python docs/measure_laws.py`` prints, ``--write`` replaces what stands between the two marks of
-docs/validation.md. Everything is computed anew, an hour on two cores, most of it for the tuned random
-tree; only the cost of a control step depends on the machine. What is under way is told on the standard
-error.
+``python docs/measure_laws.py`` prints, ``--write`` replaces what stands between the marks of
+docs/validation.md. ``--only arena`` is the comparison with exact sensing, an hour on two cores, most of
+it for the tuned random tree; ``--only shares``, which takes the tuned parameters from the page, is what
+noise and delay make of the shares of contacts (measure_shares.py). Only the cost of a control step
+depends on the machine. What is under way is told on the standard error.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import time
@@ -297,12 +299,26 @@ def written(text: str) -> str:
     return text.split(MARKS[0])[1].split(MARKS[1])[0]
 
 
+def main() -> None:
+    """Print the tables or write them into the page."""
+    import measure_shares  # beside this file, where a script finds it
+
+    parts = {
+        "arena": (MARKS, page),
+        "shares": (measure_shares.MARKS, lambda: measure_shares.tables(LAWS, ABLATIONS, say)),
+    }
+    parser = argparse.ArgumentParser(description="Tables of all laws in docs/validation.md.")
+    parser.add_argument("--only", choices=parts, help="one part instead of both")
+    parser.add_argument("--write", action="store_true", help="replace the tables of the page")
+    options = parser.parse_args()
+    for (begin, end), made in parts.values() if options.only is None else [parts[options.only]]:
+        tables = made()
+        if not options.write:
+            print(tables)
+            continue
+        before, _, rest = PAGE.read_text(encoding="utf-8").partition(begin)
+        PAGE.write_text(before + begin + tables + end + rest.partition(end)[2], encoding="utf-8")
+
+
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--write"]):
-        sys.exit("usage: python docs/measure_laws.py [--write]")
-    tables = page()
-    if sys.argv[1:]:
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(MARKS[0])
-        PAGE.write_text(before + MARKS[0] + tables + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
-    else:
-        print(tables)
+    main()

@@ -1,0 +1,87 @@
+"""What README and guides say of shares of contacts is what the tables beside them hold."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+from hrsafety import navigation as nav
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+VALIDATION = (REPOSITORY / "docs" / "validation.md").read_text(encoding="utf-8")
+README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+FIRST_RUN = (REPOSITORY / "docs" / "guides" / "first_run.md").read_text(encoding="utf-8")
+SCRIPT = runpy.run_path(str(REPOSITORY / "docs" / "measure_shares.py"))
+LAWS = runpy.run_path(str(REPOSITORY / "docs" / "measure_laws.py"))["LAWS"]
+TABLES = VALIDATION.split(SCRIPT["MARKS"][0])[1].split(SCRIPT["MARKS"][1])[0]
+GUIDES = sorted((REPOSITORY / "docs" / "guides").glob("*.md"))
+
+
+def table(title: str) -> dict[str, list[str]]:
+    """Return the cells of the table below a title, by law."""
+    rows = TABLES.split(f"{title}\n\n")[1].split("\n\n")[0].splitlines()[2:]
+    return {cells[0]: cells[1:] for cells in (row.strip("| ").split(" | ") for row in rows)}
+
+
+def moving(cell: str) -> str:
+    """Return the percentage of runs with a contact while the robot moves."""
+    return cell.split("; ")[0].split()[0]
+
+
+def standing(cell: str) -> str:
+    """Return the percentage of runs with a contact only while the robot stands."""
+    return cell.split("; ")[1].split()[0]
+
+
+CONDITIONS = {each: table(each.title) for each in SCRIPT["CONDITIONS"]}
+
+
+@pytest.mark.parametrize("condition", SCRIPT["CONDITIONS"], ids=lambda each: each.title)
+def test_table_of_encounters_has_every_law_and_sensing(condition: object) -> None:
+    rows = CONDITIONS[condition]
+    by_regions = condition in SCRIPT["CONDITIONS"][2:]
+    assert set(rows) == set(SCRIPT["FIELD_LAWS"] if by_regions else LAWS)
+    assert all(len(cells) == 1 + 2 * len(SCRIPT["SENSINGS"]) for cells in rows.values())
+
+
+@pytest.mark.parametrize("name", ["New field", "Velocity obstacle", "ORCA"])
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_shares_of_encounters_are_what_is_computed(name: str, column: int) -> None:
+    condition = SCRIPT["CONDITIONS"][1]
+    measurement = list(SCRIPT["SENSINGS"].values())[column]
+    ways = SCRIPT["crossings"](SCRIPT["ENCOUNTERS"], condition.fastest)
+    scenes = [SCRIPT["encounter"](way, condition, measurement, seed) for seed, way in enumerate(ways)]
+    assert SCRIPT["shares"](nav.simulate_batch(scenes, LAWS[name])) == CONDITIONS[condition][name][1 + 2 * column]
+
+
+def test_readme_prints_the_shares_of_all_sensings() -> None:
+    condition = SCRIPT["CONDITIONS"][1]
+    (line,) = [line for line in README.splitlines() if line.startswith("| moves into a person of up to 1.6 m/s")]
+    names = ("New field", "ORCA", "Velocity obstacle")
+    expected = [", ".join(moving(CONDITIONS[condition][name][1 + 2 * k]) for name in names) for k in range(3)]
+    assert line.endswith(f" | {' %; '.join(expected)} % |")
+
+
+def test_readme_prints_the_crowds_of_all_sensings() -> None:
+    (line,) = [line for line in README.splitlines() if line.startswith("| moves into somebody in 1,000 crowds")]
+    names = ("New field", "ORCA", "Velocity obstacle")
+    crowds = [table(SCRIPT["crowd_title"](number)) for number in (3, 12)]
+    groups = [", ".join(moving(rows[name][1 + k]) for name in names) for rows in crowds for k in range(3)]
+    assert re.findall(r"[\d.]+, [\d.]+, [\d.]+", line.split(" | ")[1]) == groups
+
+
+def test_first_run_says_what_the_speed_of_a_person_costs() -> None:
+    small, large = (CONDITIONS[SCRIPT["CONDITIONS"][k]]["New field"] for k in (1, 2))
+    assert f"walk into the standing robot in {standing(small[1])} % of 1,500" in " ".join(FIRST_RUN.split())
+    assert f"in {standing(large[1])} % when they are sized for 1.6 m/s" in " ".join(FIRST_RUN.split())
+
+
+@pytest.mark.parametrize("guide", GUIDES, ids=lambda path: path.name)
+def test_every_person_of_a_guide_has_a_chosen_speed(guide: Path) -> None:
+    text = guide.read_text(encoding="utf-8")
+    for block in re.findall(r"^```(?:python|toml)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        people = len(re.findall(r"nav\.Human[.(]|type = \"human\"", block))
+        assert block.count("max_speed") >= people
