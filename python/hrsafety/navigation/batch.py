@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, flag, number, numbers, sequence, thread_count
 from hrsafety._bounds import MOST_LANES
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
@@ -231,7 +231,7 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
             rule = "be a HolonomicRobot, since batches move point masses; `simulate` and `repeat` run the other kind"
             raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)
     if not scenes:
-        raise InvalidParameterError("scenarios", "hold at least one scenario", "an empty list")
+        raise InvalidParameterError("scenarios", "hold at least one scenario", Shown("an empty list"))
     return scenes
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, vector
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
@@ -220,7 +220,7 @@ def gain_sensitivity(
 def _changes(changes: npt.ArrayLike) -> Array:
     percent = vector("changes", changes)
     if not percent.size:
-        raise InvalidParameterError("changes", "hold at least one change", "an empty list")
+        raise InvalidParameterError("changes", "hold at least one change", Shown("an empty list"))
     for index, change in enumerate(percent.tolist()):
         if not -100.0 <= change < np.inf:
             raise InvalidParameterError(f"changes[{index}]", "be finite and at least -100", change)

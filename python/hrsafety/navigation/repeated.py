@@ -331,5 +331,5 @@ def _seeds(seeds: int | Iterable[int]) -> list[int]:
         raise InvalidParameterError("seeds", f"hold at most {MOST_SEEDS} seeds", Shown("more"))
     checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]
     if not checked:
-        raise InvalidParameterError("seeds", "hold at least one seed", "an empty list")
+        raise InvalidParameterError("seeds", "hold at least one seed", Shown("an empty list"))
     return checked

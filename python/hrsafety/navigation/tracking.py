@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, callback, instance, number, numbers, pair, sequence, vector
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.references import CircleReference, LineReference, PathReference, Reference
 from hrsafety.navigation.robots import DifferentialDriveRobot
@@ -335,7 +335,7 @@ def _starts(starts: npt.ArrayLike) -> Array:
     if array.ndim != 2 or array.shape[1] not in (3, 5):
         raise ShapeError("starts", "(n, 3) or (n, 5)", array.shape)
     if not len(array):
-        raise InvalidParameterError("starts", "hold at least one start", "an empty array")
+        raise InvalidParameterError("starts", "hold at least one start", Shown("an empty array"))
     moving = np.zeros((len(array), 5))
     moving[:, : array.shape[1]] = array
     return moving

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from hrsafety._arguments import Array, count, numbers, positive, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["SoundRecording", "read_recording"]
 
@@ -126,7 +126,7 @@ def read_recording(path: str | PathLike[str], *, channels: Sequence[int] = (0, 1
     width = parameters.sampwidth
     frames = len(data) // (width * parameters.nchannels)
     if parameters.nframes == 0 or frames == 0:
-        raise InvalidParameterError(file.name, "hold samples", "none")
+        raise InvalidParameterError(file.name, "hold samples", Shown("none"))
     if frames != parameters.nframes or len(data) % (width * parameters.nchannels):
         raise InvalidParameterError(file.name, f"hold the {parameters.nframes} frames of its header", f"{frames}")
     if parameters.framerate <= 0:

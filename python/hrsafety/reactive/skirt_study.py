@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import callback, count, number, positive, sequence, word
 from hrsafety._statistics import Share
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.reactive.skirt import PUBLISHED_CHASSIS_RADIUS, PUBLISHED_SAFE_DISTANCE, Layout, Policy, UltrasonicSkirt
 from hrsafety.reactive.skirt_tests import SkirtMotion, SkirtScene, skirt_test
 from hrsafety.tables import Columns, Table
@@ -201,7 +201,7 @@ def _counts(counts: Sequence[int] | None, usual: tuple[int, ...]) -> tuple[int, 
         for index, each in enumerate(sequence("counts", "be a sequence of integers", counts))
     )
     if not given:
-        raise InvalidParameterError("counts", "hold at least one number", "an empty list")
+        raise InvalidParameterError("counts", "hold at least one number", Shown("an empty list"))
     return given
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, count, sequence
 from hrsafety._bounds import MOST_ROWS_AT_ONCE
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis
 
@@ -42,7 +42,7 @@ class Design(ABC):
                 raise InvalidParameterError(f"axes[{index}]", "be an Axis", axis)
         names = [axis.name for axis in axes]
         if not axes:
-            raise InvalidParameterError("axes", "hold at least one Axis", "an empty sequence")
+            raise InvalidParameterError("axes", "hold at least one Axis", Shown("an empty sequence"))
         for name in names:
             if names.count(name) > 1:
                 raise InvalidParameterError("axes", "have different names", name)
