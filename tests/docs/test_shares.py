@@ -75,8 +75,25 @@ def test_readme_prints_the_crowds_of_all_sensings() -> None:
 
 def test_first_run_says_what_the_speed_of_a_person_costs() -> None:
     small, large = (CONDITIONS[SCRIPT["CONDITIONS"][k]]["New field"] for k in (1, 2))
-    assert f"walk into the standing robot in {standing(small[1])} % of 1,500" in " ".join(FIRST_RUN.split())
-    assert f"in {standing(large[1])} % when they are sized for 1.6 m/s" in " ".join(FIRST_RUN.split())
+    known = CONDITIONS[SCRIPT["CONDITIONS"][3]]["New field"]
+    words = " ".join(FIRST_RUN.split())
+    assert f"walk into the standing robot in {standing(small[1])} % of 1,500" in words
+    assert f"in {standing(large[1])} % when they are sized for 1.6 m/s" in words
+    assert f"moves into {moving(small[5])} % with regions for 1.0 m/s" in words
+    assert f"its regions are sized for it: {moving(known[5])} %" in words
+
+
+def test_validation_quotes_its_tables() -> None:
+    slow, fast, sized, known = (CONDITIONS[each] for each in SCRIPT["CONDITIONS"])
+    words = " ".join(VALIDATION.split())
+    assert f"with regions for 1.0 m/s it moves into {moving(fast['New field'][5])} %" in words
+    assert f"know nothing of the sensing into {moving(sized['New field'][5])} %" in words
+    assert f"as well into {moving(known['New field'][5])} %, where the adversary finds it standing" in words
+    assert known["New field"][6] == "stands"
+    noisy = [moving(rows["Velocity obstacle"][3]) for rows in (fast, slow)]
+    assert f"moves into {' to '.join(noisy)} % with noise alone" in words
+    ends = [moving(rows["ORCA"][k]) for rows in (slow, fast) for k in (1, 5)]
+    assert "goes from {} to {} % with people of up to 1.0 m/s and from {} to {} %".format(*ends) in words
 
 
 @pytest.mark.parametrize("guide", GUIDES, ids=lambda path: path.name)
