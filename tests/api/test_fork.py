@@ -16,23 +16,23 @@ from hrsafety import impact, navigation as nav, reactive, scenarios
 scenes = [scenarios.configuration(name) for name in ("c1", "c2")]
 """
 
-# Expressions whose value has bytes; `threads` is set around them.
+# Expressions whose values are equal only bit for bit; `threads` is set around them.
 JOBS = {
     "simulate_batch": (
-        "nav.simulate_batch(scenes, np.tile((3.0, 20.0, 17.0, 0.25), (40, 1)), threads=threads).energy.tobytes()"
+        "nav.simulate_batch(scenes, nav.VirtualForceField(), np.tile((3.0, 20.0, 17.0, 0.25), (40, 1)), threads=threads).energy.tobytes()"
     ),
     "metrics_batch": (
         "impact.metrics_batch(manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum(),"
         " closing_speed=np.linspace(0.1, 2.0, 20_000), threads=threads).hic15.tobytes()"
     ),
-    "skirt_test": "reactive.skirt_test(reactive.UltrasonicSkirt(), threads=threads).least_distance.tobytes()",
+    "skirt_test": "reactive.skirt_test(reactive.UltrasonicSkirt(), threads=threads).contact_time.tobytes()",
     "optimize_gains": (
         "nav.optimize_gains(scenes, grid=(3, 3, 3, 3), refinements=1, local_starts=2, survivors=9,"
-        " threads=threads).best.as_array().tobytes()"
+        " threads=threads).best.gains"
     ),
     "locate_batch": (
-        "reactive.locate_batch(np.linspace(-1e-4, 1e-4, 5_000), np.linspace(-2e-4, 2e-4, 5_000),"
-        " threads=threads).position.tobytes()"
+        "reactive.locate_batch(reactive.MicrophoneArray(), delay_12=np.linspace(-1e-4, 1e-4, 5_000),"
+        " delay_13=np.linspace(-2e-4, 2e-4, 5_000), threads=threads).range.tobytes()"
     ),
 }
 
@@ -69,7 +69,7 @@ def test_process_pool_of_forks_ends(tmp_path_factory: pytest.TempPathFactory) ->
     program = IMPORTS + (
         "import multiprocessing\n"
         "def work(count):\n"
-        "    return nav.simulate_batch(scenes, np.tile((3.0, 20.0, 17.0, 0.25), (count, 1))).energy.sum()\n"
+        "    return nav.simulate_batch(scenes, nav.VirtualForceField(), np.tile((3.0, 20.0, 17.0, 0.25), (count, 1))).energy.sum()\n"
         "own = [work(count) for count in (1, 2, 3)]\n"
         "with multiprocessing.get_context('fork').Pool(2) as pool:\n"
         "    assert pool.map_async(work, (1, 2, 3)).get(60) == own\n"

@@ -143,7 +143,12 @@ impl<'a> Session<'a> {
             self.report(stage, size as u64, count as u64);
             Ok(true)
         })?;
-        Ok(done.into_iter().all(|done| done))
+        let complete = done.into_iter().all(|done| done);
+        if !complete {
+            // The observer is told after the last block, so that it can keep the state.
+            self.report(stage, 0, count as u64);
+        }
+        Ok(complete)
     }
 
     /// Values of points that a problem computes; none when stopped meanwhile.
@@ -198,6 +203,9 @@ impl<'a> Session<'a> {
                 }
             }
         });
+        if self.stopped() {
+            self.report(stage, 0, total);
+        }
         failure.map_or(Ok(results), Err)
     }
 
