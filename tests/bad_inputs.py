@@ -113,6 +113,12 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "seed of 65 bits": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), seed=2**64)",
         "negative noise": "nav.Measurement(scale=-0.025)",
         "noise of unknown kind": 'nav.Measurement(distribution="normal")',
+        "noise that comes early": "nav.Measurement(latency=-0.1)",
+        "noise that comes never": 'nav.Measurement(latency=float("inf"))',
+        "regions for a negative delay": "nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), "
+        "velocity=(1, 0)), latency=-0.1)",
+        "regions for a negative error": "nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), "
+        "velocity=(1, 0)), position_error=-0.025)",
         "side of a round obstacle": "nav.region_radii(nav.HolonomicRobot(), nav.Disc(center=(2, 0), radius=0.1), "
         "faced_side=1.0)",
         "unknown configuration": 'scenarios.configuration("c9")',
@@ -268,12 +274,6 @@ PENDING: Mapping[str, Mapping[str, str]] = {
         "critical clearance below zero": "nav.Disc(center=(2.0, 0.0), radius=0.3, critical_clearance=-0.1)",
         "radius and clearance at once": "nav.Disc(center=(2.0, 0.0), radius=0.3, active_radius=0.9, "
         "critical_radius=0.6, critical_clearance=0.1)",
-        "noise that comes early": "nav.Measurement(latency=-0.1)",
-        "noise that comes never": 'nav.Measurement(latency=float("inf"))',
-        "regions for a negative delay": "nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), "
-        "velocity=(1, 0)), latency=-0.1)",
-        "regions for a negative error": "nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), "
-        "velocity=(1, 0)), position_error=-0.025)",
         "crowd of a million thousands": "scenarios.random_crowd(2**31, seed=0)",
         "traffic without end": "scenarios.random_traffic(10**400, seed=0)",
         "people by fractions": "people.humans([1.0, 2.0], duration=1.0)",
