@@ -14,12 +14,13 @@ import os, sys
 import numpy as np
 from hrsafety import impact, navigation as nav, reactive, scenarios
 scenes = [scenarios.configuration(name) for name in ("c1", "c2")]
+law = nav.VirtualForceField()
 """
 
 # Expressions whose values are equal only bit for bit; `threads` is set around them.
 JOBS = {
     "simulate_batch": (
-        "nav.simulate_batch(scenes, nav.VirtualForceField(), np.tile((3.0, 20.0, 17.0, 0.25), (40, 1)), threads=threads).energy.tobytes()"
+        "nav.simulate_batch(scenes, law, np.tile((3.0, 20.0, 17.0, 0.25), (40, 1)), threads=threads).energy.tobytes()"
     ),
     "metrics_batch": (
         "impact.metrics_batch(manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum(),"
@@ -69,7 +70,7 @@ def test_process_pool_of_forks_ends(tmp_path_factory: pytest.TempPathFactory) ->
     program = IMPORTS + (
         "import multiprocessing\n"
         "def work(count):\n"
-        "    return nav.simulate_batch(scenes, nav.VirtualForceField(), np.tile((3.0, 20.0, 17.0, 0.25), (count, 1))).energy.sum()\n"
+        "    return nav.simulate_batch(scenes, law, np.tile((3.0, 20.0, 17.0, 0.25), (count, 1))).energy.sum()\n"
         "own = [work(count) for count in (1, 2, 3)]\n"
         "with multiprocessing.get_context('fork').Pool(2) as pool:\n"
         "    assert pool.map_async(work, (1, 2, 3)).get(60) == own\n"

@@ -92,7 +92,7 @@ class Checkpoint:
                 state: bytes = archive["state"].tobytes()
             known, version, settings = about["format"], about["version"], dict(about["settings"])
         except DAMAGE:
-            rule = "be a whole checkpoint of a gain search"
+            rule = "be a checkpoint of a gain search"
             remedy = "it is damaged or another file: remove it to start over"
             raise InvalidParameterError("checkpoint", rule, str(self.path), remedy) from None
         if known != FORMAT or version != hrsafety.__version__:
