@@ -99,7 +99,7 @@ def test_robot_obstacle_and_goal_in_line_agree_in_every_term() -> None:
 def test_detour_forces_that_cancel_decide_nothing() -> None:
     worst = Worst()
     for turn in np.linspace(-3.0, 3.0, 25):
-        others = [pf.Round(pf.turned((0.3, y), turn), 0.2, 0.9) for y in (-0.6, 0.6)]
+        others = [pf.Round(pf.turned((0.3, y), turn), 0.23, 0.9) for y in (-0.6, 0.6)]
         obstacles = [pf.Round(pf.turned((-1.0, 0.0), turn), 0.4, 1.5), *others]
         state = State((0.0, 0.0), pf.turned((-0.5, 0.0), turn), pf.turned((-4.0, 0.0), turn), obstacles)
         assert compare(worst, pf.Law(NEW), state).side == [1, 1, -1]
@@ -111,7 +111,7 @@ def test_centroid_in_line_leaves_the_side_to_the_others() -> None:
     for turn in np.linspace(-3.0, 3.0, 25):
         box = pf.Box((0.0, 0.0), 1.0, 0.6, float(turn), 0.3, 1.2)
         for y in (None, -0.7, 0.7):
-            crowd = [] if y is None else [pf.Round(pf.turned((1.4, y), turn), 0.2, 1.2)]
+            crowd = [] if y is None else [pf.Round(pf.turned((1.4, y), turn), 0.23, 1.2)]
             position, goal = pf.turned((1.1, 0.0), turn), pf.turned((-4.0, 0.0), turn)
             state = State(position, pf.turned((-0.5, 0.0), turn), goal, [box, *crowd])
             sides.add((y, compare(worst, pf.Law(NEW), state).side[0]))

@@ -135,7 +135,7 @@ def test_forces_do_not_depend_on_the_units(seed: int, metre: float, second: floa
     )
     plain = pf.evaluate(law, pf.ROBOT, state.position, state.velocity, state.goal, state.obstacles)
     scale, here, worst = scales(law, state, plain), terms_at(law, state), Worst()
-    there = terms_at(other_law, other, pf.ROBOT._replace(mass=kilogram * pf.ROBOT.mass))
+    there = terms_at(other_law, other, pf.ROBOT._replace(mass=kilogram * pf.ROBOT.mass, radius=metre * pf.ROBOT.radius))
     worst.see("total", np.divide(there.total, newton), here.total, scale.total)
     worst.see("omega", there.omega * second / newton**2, here.omega, scale.omega)
     assert worst.largest() <= SYMMETRY, str(worst)

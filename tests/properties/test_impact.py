@@ -42,8 +42,8 @@ foams = st.builds(
     impact.Foam,
     stiffness=st.floats(2e3, 1.5e5),
     damping=st.floats(0.0, 350.0),
-    thickness=st.just(1e6),
-    linear_range=st.just(1e6),
+    thickness=st.just(10.0),  # never bottomed; much thicker foams round the energy of the springs
+    linear_range=st.just(10.0),
 )
 speeds = st.floats(0.05, 2.0)
 shares = st.floats(0.0, 1.0)

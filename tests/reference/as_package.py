@@ -44,7 +44,9 @@ def law(plain: pf.Law) -> nav.VirtualForceField:
 
 def scenario(goal: pf.Vector, obstacles: Sequence[pf.Round | pf.Box], limits: pf.Limits = pf.ROBOT) -> nav.Scenario:
     """Return a scenario with the same goal and obstacles."""
-    robot = nav.HolonomicRobot(mass=limits.mass, max_speed=limits.max_speed, max_acceleration=limits.max_acceleration)
+    robot = nav.HolonomicRobot(
+        mass=limits.mass, radius=limits.radius, max_speed=limits.max_speed, max_acceleration=limits.max_acceleration
+    )
     return nav.Scenario(
         start=FAR_AWAY,
         goal=goal,

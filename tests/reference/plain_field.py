@@ -69,6 +69,7 @@ class Limits(NamedTuple):
     """What the robot and its controller can do."""
 
     mass: float = 4.4
+    radius: float = 0.2
     max_speed: float = 0.7
     max_acceleration: float = 10.0
     control_period: float = 0.06

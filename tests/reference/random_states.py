@@ -10,6 +10,7 @@ from reference import plain_field as pf
 from reference.plain_settings import NEW, NEW_STAR
 
 LEAST_GAP = 1e-3  # m: d - r3 and |r2 - d|, below it the terms are dominated by the rounding of d
+LEAST_RADIUS = 0.23  # m: r3 of the smallest critical region, in which a robot of 0.2 m does not touch the body yet
 
 
 class State(NamedTuple):
@@ -30,7 +31,7 @@ def vector(source: random.Random, longest: float) -> pf.Vector:
 
 def gap_and_radii(source: random.Random, least_gap: float) -> tuple[float, float, float]:
     """Return d, r3, r2: mostly inside the active region, sometimes close to r3, sometimes outside."""
-    r3 = source.uniform(0.2, 0.9)
+    r3 = source.uniform(LEAST_RADIUS, 0.9)
     width = source.uniform(max(0.15, 1.5 * least_gap), 1.5)
     kind, deepest = source.random(), 1.000001 * least_gap
     if kind < 0.15:
