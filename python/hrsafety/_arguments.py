@@ -166,8 +166,9 @@ def _neighbour(path: Path) -> str:
         names = [each.name for each in itertools.islice(folder.iterdir(), 1000)]
     except (OSError, ValueError):
         return "it cannot be looked for"
-    near = meant(path.name, names)
-    return near or f"no such file in {folder.absolute()}"
+    # Endings alone make names alike, and are no reason to ask.
+    alike = [each for each in names if meant(path.stem, [Path(each).stem])]
+    return meant(path.name, alike) or f"no such file in {folder.absolute()}"
 
 
 def callback(name: str, value: Call | None) -> Call | None:

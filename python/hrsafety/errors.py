@@ -25,6 +25,12 @@ __all__ = [
 _CHOICE = re.compile(r'be (one of )?"')
 _QUOTED = re.compile(r'"([^"]+)"')
 
+# A value that prints longer than this is cut: objects of many parameters would bury the rule.
+LONGEST_SHOWN = 200
+
+# A number at the end of a cut text, which may be half of one.
+_HALF = re.compile(r"(?<![\w.])[+-]?[\d.][\d.e+-]*$")
+
 
 class HrsafetyError(Exception):
     """Base class of every error this package raises on purpose."""
@@ -75,10 +81,13 @@ class InvalidParameterError(HrsafetyError, ValueError):
 
 
 def _words(value: object) -> str:
-    """Return a value as it is printed; Python refuses to print integers of thousands of digits."""
+    """Return a value as it is printed, cut when long; Python refuses to print integers of thousands of digits."""
     if isinstance(value, int) and abs(value) >= 10**40:
         return f"an integer of {value.bit_length()} bits"
-    return repr(value)
+    shown = repr(value)
+    if len(shown) <= LONGEST_SHOWN:
+        return shown
+    return f"{_HALF.sub('', shown[:LONGEST_SHOWN])}..."
 
 
 class Shown(str):

@@ -12,8 +12,10 @@ pub enum Given {
     Pair([f64; 2]),
     /// A count or an index.
     Count(u64),
-    /// A word.
+    /// A word that was given.
     Word(String),
+    /// What was found, in words of ours: it is shown without quotes.
+    Found(Cow<'static, str>),
 }
 
 impl fmt::Display for Given {
@@ -23,6 +25,7 @@ impl fmt::Display for Given {
             Self::Pair([x, y]) => write!(formatter, "({x:?}, {y:?})"),
             Self::Count(count) => write!(formatter, "{count}"),
             Self::Word(word) => formatter.write_str(word),
+            Self::Found(words) => formatter.write_str(words),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The one map from core errors to Python exceptions.
 
+use std::borrow::Cow;
+
 use groundwork::error::{Failure, Given};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -40,9 +42,31 @@ impl From<CoreError> for PyErr {
                 Given::Word(word) => {
                     InvalidParameterError::new_err((name, requirement, word, remedy))
                 }
+                Given::Found(words) => found(name, requirement, &words, remedy),
             },
             Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
             other => SimulationError::new_err(other.to_string()),
         }
     }
+}
+
+/// An error whose value are words of ours, which Python prints without quotes.
+fn found(
+    name: String,
+    requirement: Cow<'static, str>,
+    words: &str,
+    remedy: Option<String>,
+) -> PyErr {
+    Python::attach(|py| {
+        let shown = py
+            .import("hrsafety.errors")
+            .and_then(|errors| errors.getattr("Shown"))
+            .and_then(|kind| kind.call1((words,)));
+        match shown {
+            Ok(shown) => {
+                InvalidParameterError::new_err((name, requirement, shown.unbind(), remedy))
+            }
+            Err(error) => error,
+        }
+    })
 }

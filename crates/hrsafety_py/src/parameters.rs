@@ -252,21 +252,22 @@ impl Measurement {
     }
 }
 
-/// The meaning of a word among a few, or an error that quotes what was given.
+/// The meaning of a word among a few, or an error that shows what was given.
 pub fn word<T: Copy>(
     name: &str,
     given: &Bound<'_, PyAny>,
     requirement: &'static str,
     meanings: &[(&str, T)],
 ) -> PyResult<T> {
-    let text = given
-        .extract::<String>()
-        .or_else(|_| given.repr().map(|shown| shown.to_string()))?;
-    let known = meanings.iter().find(|(key, _)| *key == text);
-    known.map(|(_, meaning)| *meaning).ok_or_else(|| {
-        let error = Failure::invalid(name, requirement, Given::Word(text));
-        crate::errors::CoreError::from(error).into()
-    })
+    let shown = match given.extract::<String>() {
+        Ok(text) => match meanings.iter().find(|(key, _)| *key == text) {
+            Some((_, meaning)) => return Ok(*meaning),
+            None => Given::Word(text),
+        },
+        Err(_) => Given::Found(given.repr()?.to_string().into()),
+    };
+    let error = Failure::invalid(name, requirement, shown);
+    Err(crate::errors::CoreError::from(error).into())
 }
 
 /// Scenario.

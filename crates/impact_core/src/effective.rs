@@ -175,7 +175,7 @@ impl TwoJoints {
         let determinant = m11 * m22 - m12 * m21;
         if m12 != m21 || m11 <= 0.0 || determinant <= 0.0 {
             let rule = "be symmetric and positive definite";
-            let given = Given::Word(format!("{:?}", self.mass_matrix));
+            let given = Given::Found(format!("{:?}", self.mass_matrix).into());
             return Err(Failure::invalid("mass_matrix", rule, given));
         }
         for (damping, stiffness) in self.damping.into_iter().zip(self.stiffness) {

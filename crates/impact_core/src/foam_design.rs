@@ -276,7 +276,7 @@ fn check(problem: &DesignProblem, requirements: &[Requirement]) -> Result<()> {
         return Err(Failure::invalid("range", "increase", given));
     }
     if requirements.is_empty() {
-        let given = Given::Word("no limit".into());
+        let given = Given::Found("no limit".into());
         return Err(Failure::invalid("limits", "hold at least one", given));
     }
     for requirement in requirements {

@@ -127,7 +127,7 @@ impl Motion {
     pub fn piecewise(start: [f64; 2], segments: &[Segment]) -> Result<Self> {
         finite_pair("start", start)?;
         if segments.is_empty() {
-            let none = Given::Word("an empty list".into());
+            let none = Given::Found("an empty list".into());
             return Err(Failure::invalid(
                 "segments",
                 "hold at least one segment",
@@ -181,7 +181,7 @@ impl Motion {
     /// It is empty, not finite or not strictly increasing in time.
     pub fn recorded(time: &[f64], position: &[[f64; 2]]) -> Result<Self> {
         let (Some(first), Some(last)) = (time.first(), time.last()) else {
-            let none = Given::Word("an empty recording".into());
+            let none = Given::Found("an empty recording".into());
             return Err(Failure::invalid("time", "hold at least one sample", none));
         };
         if time.len() != position.len() {

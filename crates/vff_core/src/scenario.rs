@@ -234,7 +234,7 @@ impl Scenario {
             return Ok(());
         }
         let rule = "be a HolonomicRobot here, where robots move as point masses";
-        let given = Given::Word("a DifferentialDriveRobot".into());
+        let given = Given::Found("a DifferentialDriveRobot".into());
         Err(Failure::invalid("robot", rule, given))
     }
 

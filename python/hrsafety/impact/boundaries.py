@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, numbers, positive
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.parameters import ConstrainedHead, Head, Manipulator
 
 __all__ = ["FoamBoundary", "foam_stiffness_lower", "foam_stiffness_upper"]
@@ -208,7 +208,7 @@ def boundary(
     upper: bool,
 ) -> FoamBoundary:
     if not requirements:
-        raise InvalidParameterError("limits", "hold a limit for this boundary", "none")
+        raise InvalidParameterError("limits", "hold a limit for this boundary", Shown("none"))
     given = check_damping(damping)
     found = _hrsafety.foam_boundary(
         instance("manipulator", manipulator, Manipulator)._native,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -102,6 +102,14 @@ class ImpactMetrics(_Loads):
 
     bottomed: bool = False
     warnings: Doubts = ()
+
+    def _replace(self, /, **kwargs: object) -> Self:  # type: ignore[override]  # any field by its name
+        """Return the same loads with other fields; what is no item of the tuple is kept, or given, too."""
+        kept = {name: kwargs.pop(name, getattr(self, name)) for name in ("bottomed", "warnings")}
+        found = super()._replace(**kwargs)  # type: ignore[arg-type]  # checked by the tuple
+        for name, value in kept.items():
+            setattr(found, name, value)
+        return found
 
     def __repr__(self) -> str:
         """Return the fields, and the warnings if there are any."""

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, columns
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 
 __all__ = ["CHANNEL_CLASSES", "channel_corner", "channel_filter"]
 
@@ -110,7 +110,7 @@ def channel_filter(time: npt.ArrayLike, signal: npt.ArrayLike, channel_class: in
     rate = _sampling_rate(instants)
     if corner >= 0.5 * rate:
         requirement = f"be sampled at more than {2.0 * corner:g} Hz for class {channel_class}"
-        raise InvalidParameterError("time", requirement, f"{rate:g} Hz")
+        raise InvalidParameterError("time", requirement, Shown(f"{rate:g} Hz"))
     scipy_signal = _scipy_signal()
     # The bilinear transform with the frequency bent back, as the tangent of the standard's formula does.
     numerator, denominator = scipy_signal.butter(2, corner / (0.5 * rate))

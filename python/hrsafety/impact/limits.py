@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from hrsafety._arguments import Parameters, positive
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["FoamFeasibility", "FoamLimits", "FoamMargin"]
@@ -51,7 +51,7 @@ class FoamLimits(Parameters):
             value = getattr(self, name)
             self._set(**{name: None if value is None else positive(name, value)})
         if not self.given():
-            raise InvalidParameterError("limits", "hold at least one limit", "none")
+            raise InvalidParameterError("limits", "hold at least one limit", Shown("none"))
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:

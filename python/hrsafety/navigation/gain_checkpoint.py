@@ -15,7 +15,7 @@ import numpy as np
 
 import hrsafety
 from hrsafety._atomic import DAMAGE, only_writer, write_file
-from hrsafety.errors import FolderInUseError, InvalidParameterError, StorageError
+from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown, StorageError
 from hrsafety.navigation.gain_settings import SearchSettings
 
 __all__ = ["Checkpoint"]
@@ -97,7 +97,9 @@ class Checkpoint:
             raise InvalidParameterError("checkpoint", rule, str(self.path), remedy) from None
         if known != FORMAT or version != hrsafety.__version__:
             raise InvalidParameterError(
-                "checkpoint", f"be of version {hrsafety.__version__} of the package ({FORMAT})", f"{version} ({known})"
+                "checkpoint",
+                f"be of version {hrsafety.__version__} of the package ({FORMAT})",
+                Shown(f"{version} ({known})"),
             )
         self._compare(settings)
         return state

@@ -10,7 +10,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, numbers
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import BatchSummary
 from hrsafety.navigation.gain_confidence import student_quantile
 from hrsafety.navigation.gain_settings import GainConstraint, Judge, SearchSettings
@@ -87,7 +87,7 @@ def judged(name: str, judge: Judge, batches: Sequence[BatchSummary], rows: int) 
     for batch in batches:
         values = numbers(name, judge(batch), "return numbers, one for each gain set")
         if values.shape != (rows,):
-            raise InvalidParameterError(name, f"return an array of shape ({rows},)", f"shape {values.shape}")
+            raise InvalidParameterError(name, f"return an array of shape ({rows},)", Shown(f"shape {values.shape}"))
         found.append(values)
     return np.stack(found)
 

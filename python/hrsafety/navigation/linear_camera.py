@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hrsafety._arguments import Array, Pair
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.camera import Camera, _as_matrix, _as_triple, nearest_rotation
 
 __all__ = ["linear_camera"]
@@ -24,7 +24,9 @@ def linear_camera(points: Array, pixels: Array, pixel_size: Pair, image_size_px:
     world = np.column_stack([points, np.ones(len(points))]) @ to_points.T
     spread = np.linalg.svd(world[:, :3], compute_uv=False)
     if spread[-1] < _FLAT * spread[0]:
-        raise InvalidParameterError("points", "not lie in one plane unless initial is given", "points of one plane")
+        raise InvalidParameterError(
+            "points", "not lie in one plane unless initial is given", Shown("points of one plane")
+        )
     picture = np.column_stack([pixels, np.ones(len(pixels))]) @ to_pixels.T
     nothing = np.zeros_like(world)
     rows = [np.hstack([world, nothing, -picture[:, :1] * world]), np.hstack([nothing, world, -picture[:, 1:2] * world])]
@@ -34,7 +36,7 @@ def linear_camera(points: Array, pixels: Array, pixel_size: Pair, image_size_px:
     projection *= np.sign(depth) / np.linalg.norm(projection[2, :3])
     inner, rotation = _upper_times_rotation(projection[:, :3])
     if np.linalg.det(rotation) < 0.0:
-        raise InvalidParameterError("points", "be in a right-handed frame, as their pixels", "a mirror image")
+        raise InvalidParameterError("points", "be in a right-handed frame, as their pixels", Shown("a mirror image"))
     focal = inner[1, 1] * pixel_size[1]
     return Camera(
         focal_length=focal,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, not_negative, number, numbers, pair, points, positive, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["Disc", "Human", "MovingDisc", "Obstacle", "Rectangle"]
 
@@ -295,7 +295,7 @@ def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
     if len(places) != len(instants):
         raise ShapeError("position", f"({len(instants)}, 2)", places.shape)
     if len(instants) == 0:
-        raise InvalidParameterError("time", "hold at least one sample", "an empty array")
+        raise InvalidParameterError("time", "hold at least one sample", Shown("an empty array"))
     return tuple(instants.tolist()), tuple((x, y) for x, y in places.tolist())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import vector
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.simulation import Trajectory
 from hrsafety.plotting import inputs, labels, law_looks, notes, shapes, style
 from hrsafety.plotting.law_looks import Runs
@@ -264,7 +264,7 @@ def _checked_obstacle(runs: Runs, obstacle: int | None) -> list[int]:
     """Return the indices of the obstacles that count."""
     number = len(law_looks.longest(runs).scenario.obstacles)
     if number == 0:
-        raise InvalidParameterError("runs", "be runs among obstacles", "a scenario without obstacles")
+        raise InvalidParameterError("runs", "be runs among obstacles", Shown("a scenario without obstacles"))
     if obstacle is None:
         return list(range(number))
     whole = isinstance(obstacle, (int, np.integer)) and not isinstance(obstacle, bool)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import inputs, labels, notes, style
 
 if TYPE_CHECKING:
@@ -263,7 +263,7 @@ def _rising(values: npt.ArrayLike, name: str = "damping") -> inputs.Array:
     if array.ndim != 1 or len(array) < 2:
         raise ShapeError(name, "(n,) with n >= 2", array.shape)
     if not (np.diff(array) > 0.0).all():
-        raise InvalidParameterError(name, "rise from point to point", "an array that does not")
+        raise InvalidParameterError(name, "rise from point to point", Shown("an array that does not"))
     return array
 
 

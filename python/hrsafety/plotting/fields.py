@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.forces import ForceField
 from hrsafety.plotting import inputs, shapes, style
 
@@ -70,9 +70,9 @@ def checked_grid(field: ForceField) -> Grid:
 def checked_field(field: object) -> ForceField:
     """Return ``field`` if it is a force field with points."""
     if not isinstance(field, ForceField):
-        raise InvalidParameterError("field", "be a ForceField", type(field).__name__)
+        raise InvalidParameterError("field", "be a ForceField", Shown(type(field).__name__))
     if len(field.position) == 0:
-        raise InvalidParameterError("field", "hold at least one point", "an empty field")
+        raise InvalidParameterError("field", "hold at least one point", Shown("an empty field"))
     return field
 
 
@@ -144,7 +144,7 @@ def force_field(
     magnitude = np.hypot(*force.T)
     shown = np.isfinite(magnitude) & (magnitude > 0.0)
     if not shown.any():
-        raise InvalidParameterError("field", f"hold a {term} force somewhere", "zero or NaN everywhere")
+        raise InvalidParameterError("field", f"hold a {term} force somewhere", Shown("zero or NaN everywhere"))
     spacing = stride * min(float(np.diff(grid.x).min()), float(np.diff(grid.y).min()))
     limits = _limits(grid, spacing / 2.0)
     figure = style.new_figure(
@@ -295,7 +295,7 @@ def potential_valley(
     values = grid.arrange(field.potential if term == "potential" else np.hypot(*field.repulsive.T))
     positive = values[np.isfinite(values) & (values > 0.0)]
     if len(positive) == 0:
-        raise InvalidParameterError("field", f"hold a {term} term somewhere", "zero or NaN everywhere")
+        raise InvalidParameterError("field", f"hold a {term} term somewhere", Shown("zero or NaN everywhere"))
     low, high = _color_limits(positive, _rim(values))
     levels = np.geomspace(low, high, LEVELS)
     label = "Lyapunov function V (N²)" if term == "potential" else "repulsive force (N)"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import labels, style
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def follower_runs(
     >>> figure = plotting.follower_runs({"active": reactive.follow(scene)}, times=[5.0, 10.0])
     """
     if not runs:
-        raise InvalidParameterError("runs", "hold at least one run", "none")
+        raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
     columns = min(MOST_COLUMNS, len(runs))
     rows = math.ceil(len(runs) / columns)
     limits = view_of(list(runs.values()))
@@ -247,7 +247,7 @@ def follower_rates(
     """
     laws = list(dict.fromkeys(law for each in rates.values() for law in each))
     if not laws:
-        raise InvalidParameterError("rates", "hold at least one rate", "none")
+        raise InvalidParameterError("rates", "hold at least one rate", Shown("none"))
     figure = style.new_figure(4.2, title=title)
     axes = figure.subplots()
     width = 0.8 / len(laws)
@@ -322,7 +322,7 @@ def impedance_forces(laws: Mapping[str, VirtualImpedance], *, title: str | None 
     >>> figure = plotting.impedance_forces({"active": reactive.VirtualImpedance()})
     """
     if not laws:
-        raise InvalidParameterError("laws", "hold at least one law", "none")
+        raise InvalidParameterError("laws", "hold at least one law", Shown("none"))
     figure = style.new_figure(3.6, title=title)
     left, right = figure.subplots(1, 2)
     for rank, (name, law) in enumerate(laws.items()):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting import labels as placing
 from hrsafety.plotting.boundaries import BEYOND_MARKS, STATUS_WORDS
@@ -175,7 +175,7 @@ def measured_impact(
     for axes, quantity, found in ((left, "head_acceleration", peaks), (right, "compression", MILLI * depths)):
         values = _values(run, quantity)
         if values is None:
-            raise InvalidParameterError("response", "have a head that moves", "a constrained impact")
+            raise InvalidParameterError("response", "have a head that moves", Shown("a constrained impact"))
         axes.plot(MILLI * run.time, values, label="simulated", **style.run_look(0))
         instant = float(run.time[_peak_row(run, values)])
         axes.plot(np.full(len(found), MILLI * instant), found, marker="o", label="measured peak", **look)
@@ -248,7 +248,7 @@ def impact_study(
     grid = _measured("values", values)
     lines = {name: _measured(f"curves[{name!r}]", curve) for name, curve in curves.items()}
     if not lines:
-        raise InvalidParameterError("curves", "hold at least one curve", "none")
+        raise InvalidParameterError("curves", "hold at least one curve", Shown("none"))
     for name, line in lines.items():
         if line.shape != grid.shape:
             raise ShapeError(f"curves[{name!r}]", f"({len(grid)},)", line.shape)
@@ -281,10 +281,10 @@ def _checked_responses(responses: Any) -> list[Any]:
     """Return one or several responses as a list."""
     runs = list(responses) if isinstance(responses, (list, tuple)) else [responses]
     if not runs:
-        raise InvalidParameterError("responses", "hold at least one ImpactResponse", "an empty sequence")
+        raise InvalidParameterError("responses", "hold at least one ImpactResponse", Shown("an empty sequence"))
     for index, run in enumerate(runs):
         if not all(hasattr(run, name) for name in ("time", "contact_force", "compression")):
-            raise InvalidParameterError(f"responses[{index}]", "be an ImpactResponse", type(run).__name__)
+            raise InvalidParameterError(f"responses[{index}]", "be an ImpactResponse", Shown(type(run).__name__))
     return runs
 
 

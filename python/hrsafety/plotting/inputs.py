@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import word
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import Trajectory
 from hrsafety.plotting.style import Limits
@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 def checked_trajectory(name: str, value: object) -> Trajectory:
     """Return ``value`` if it is a trajectory."""
     if not isinstance(value, Trajectory):
-        raise InvalidParameterError(name, "be a Trajectory", type(value).__name__)
+        raise InvalidParameterError(name, "be a Trajectory", Shown(type(value).__name__))
     return value
 
 
@@ -30,16 +30,16 @@ def checked_runs(trajectories: Trajectory | Sequence[Trajectory]) -> list[Trajec
         return [trajectories]
     if isinstance(trajectories, (str, bytes)) or not isinstance(trajectories, Sequence):
         requirement = "be a Trajectory or a sequence of them"
-        raise InvalidParameterError("trajectories", requirement, type(trajectories).__name__)
+        raise InvalidParameterError("trajectories", requirement, Shown(type(trajectories).__name__))
     if len(trajectories) == 0:
-        raise InvalidParameterError("trajectories", "hold at least one Trajectory", "an empty sequence")
+        raise InvalidParameterError("trajectories", "hold at least one Trajectory", Shown("an empty sequence"))
     return [checked_trajectory(f"trajectories[{i}]", run) for i, run in enumerate(trajectories)]
 
 
 def checked_scenario(value: object) -> Scenario:
     """Return ``value`` if it is a scenario."""
     if not isinstance(value, Scenario):
-        raise InvalidParameterError("scenario", "be a Scenario", type(value).__name__)
+        raise InvalidParameterError("scenario", "be a Scenario", Shown(type(value).__name__))
     return value
 
 

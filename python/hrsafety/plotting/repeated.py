@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.repeated import Band, Repeated
 from hrsafety.plotting import inputs, shapes, style
 
@@ -30,7 +30,7 @@ LEGEND_COLUMNS = 4
 
 def _checked(repeated: Repeated, exact: Trajectory | None) -> None:
     if not isinstance(repeated, Repeated):
-        raise InvalidParameterError("repeated", "be a Repeated", type(repeated).__name__)
+        raise InvalidParameterError("repeated", "be a Repeated", Shown(type(repeated).__name__))
     if exact is not None:
         inputs.checked_trajectory("exact", exact)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import instance
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.gain_results import GainSearch, ParetoFront
 from hrsafety.plotting import inputs, style
 from hrsafety.plotting.gains import gain_label, mark_look
@@ -244,7 +244,7 @@ def _checked_front(front: Any, knee: int | None, marks: Any) -> dict[str, inputs
     if count < 2:
         raise InvalidParameterError("front", "have at least two objectives", count)
     if len(front) == 0:
-        raise InvalidParameterError("front", "hold at least one gain set", "none")
+        raise InvalidParameterError("front", "hold at least one gain set", Shown("none"))
     if knee is not None and not 0 <= knee < len(front):
         raise InvalidParameterError("knee", f"be None or an index from 0 to {len(front) - 1}", knee)
     checked: dict[str, inputs.Array] = {}

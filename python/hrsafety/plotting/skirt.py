@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def skirt_runs(runs: Mapping[str, SkirtRun], *, title: str | None = None) -> Fig
     >>> figure = plotting.skirt_runs({"escape to the north": reactive.skirt_run(direction="N")})
     """
     if not runs:
-        raise InvalidParameterError("runs", "hold at least one run", "none")
+        raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
     columns = min(MOST_COLUMNS, len(runs))
     rows = math.ceil(len(runs) / columns)
     size = max(_extent(run) for run in runs.values())
@@ -265,7 +265,7 @@ def skirt_clearances(
     >>> figure = plotting.skirt_clearances({"ideal": reactive.skirt_test(layouts=2)}, printed=0.775)
     """
     if not tests:
-        raise InvalidParameterError("tests", "hold at least one test", "none")
+        raise InvalidParameterError("tests", "hold at least one test", Shown("none"))
     if not 0.0 < most < math.inf:
         raise InvalidParameterError("most", "be finite and positive", most)
     figure = style.new_figure(4.9 + (0.3 if title is not None else 0.0), title=title)
@@ -320,7 +320,7 @@ def skirt_sensor_counts(studies: Sequence[SmallestSkirt], *, title: str | None =
     from matplotlib.lines import Line2D
 
     if not studies:
-        raise InvalidParameterError("studies", "hold at least one study", "none")
+        raise InvalidParameterError("studies", "hold at least one study", Shown("none"))
     figure = style.new_figure(4.9 + (0.3 if title is not None else 0.0), title=title)
     axes = figure.subplots()
     for index, study in enumerate(studies):

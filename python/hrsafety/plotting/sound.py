@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import inputs, style
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def sound_burst(
     3
     """
     if not hasattr(recording, "samples") or not hasattr(recording, "sample_rate"):
-        raise InvalidParameterError("recording", "be a SoundRecording", type(recording).__name__)
+        raise InvalidParameterError("recording", "be a SoundRecording", Shown(type(recording).__name__))
     if arrivals is not None and len(arrivals) != 3:
         raise InvalidParameterError("arrivals", "be three times", arrivals)
     if span is not None and not span[0] < span[1]:
@@ -135,7 +135,7 @@ def sound_likeness(
     >>> figure = plotting.sound_likeness({"similarity": reactive.likeness(heard, row, method="mean_square")})
     """
     if not curves:
-        raise InvalidParameterError("curves", "hold at least one Likeness", "nothing")
+        raise InvalidParameterError("curves", "hold at least one Likeness", Shown("nothing"))
     figure = style.new_figure(5.8, title=title)
     for index, (axes, pair) in enumerate(zip(figure.subplots(2, 1), ("12", "13"), strict=True)):
         for place, (name, curve) in enumerate(curves.items()):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.arena import ArenaResult
 from hrsafety.plotting import style
 from hrsafety.plotting.law_looks import handle
@@ -60,7 +60,7 @@ def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Fi
     ['field', 'Masoud']
     """
     if not isinstance(result, ArenaResult):
-        raise InvalidParameterError("result", "be an ArenaResult", type(result).__name__)
+        raise InvalidParameterError("result", "be an ArenaResult", Shown(type(result).__name__))
     standings = result.standings()
     figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
     left, right = figure.subplots(1, 2, sharey=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.batch import BatchSummary
 from hrsafety.plotting import style
 
@@ -77,7 +77,7 @@ def clearances(
     groups = {name: _checked_clearances(name, values) for name, values in _checked_groups("clearances", clearances)}
     finite = np.concatenate([values[np.isfinite(values)] for values in groups.values()])
     if len(finite) == 0:
-        raise InvalidParameterError("clearances", "hold at least one finite value", "only infinite values")
+        raise InvalidParameterError("clearances", "hold at least one finite value", Shown("only infinite values"))
     figure = style.new_figure(3.8, title=title)
     axes = figure.subplots()
     low, high = min(0.0, float(finite.min())), float(finite.max())
@@ -119,7 +119,7 @@ def _checked_clearances(name: str, values: object) -> Array:
     try:
         array: Array = np.asarray(raw, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InvalidParameterError(argument, "be an array of numbers", type(values).__name__) from None
+        raise InvalidParameterError(argument, "be an array of numbers", Shown(type(values).__name__)) from None
     if array.ndim != 1:
         raise ShapeError(argument, "(n,)", array.shape)
     if len(array) == 0 or np.isnan(array).any():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety._arguments import instance, word
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import style
 from hrsafety.plotting.inputs import Array
 from hrsafety.sweep import Axis, Column, Grid, SweepResult
@@ -163,7 +163,9 @@ def varying_axes(result: SweepResult, number: int | None = None) -> list[Axis]:
     varying = [axis for axis in result.axes if axis.values is None or len(axis.values) > 1]
     if not varying or number not in (None, len(varying)):
         least = "at least one axis" if number is None else ("one axis" if number == 1 else f"{number} axes")
-        raise InvalidParameterError("result", f"vary {least}", ", ".join(axis.name for axis in varying) or "none")
+        raise InvalidParameterError(
+            "result", f"vary {least}", Shown(", ".join(axis.name for axis in varying) or "none")
+        )
     return varying
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.tracking import TrackingRun
 from hrsafety.plotting import inputs, style
 
@@ -169,16 +169,16 @@ def _groups(runs: object, labels: Sequence[str] | None) -> Groups:
     rule = "be a TrackingRun, a sequence of them or of such sequences"
     given = [runs] if isinstance(runs, TrackingRun) else runs
     if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
-        raise InvalidParameterError("runs", rule, type(runs).__name__)
+        raise InvalidParameterError("runs", rule, Shown(type(runs).__name__))
     groups = [[member] if isinstance(member, TrackingRun) else member for member in given]
     for index, group in enumerate(groups):
         if isinstance(group, (str, bytes)) or not isinstance(group, Sequence) or len(group) == 0:
             raise InvalidParameterError(f"runs[{index}]", "be a TrackingRun or hold at least one", group)
         for member in group:
             if not isinstance(member, TrackingRun):
-                raise InvalidParameterError(f"runs[{index}]", rule, type(member).__name__)
+                raise InvalidParameterError(f"runs[{index}]", rule, Shown(type(member).__name__))
     if not groups:
-        raise InvalidParameterError("runs", "hold at least one TrackingRun", "an empty sequence")
+        raise InvalidParameterError("runs", "hold at least one TrackingRun", Shown("an empty sequence"))
     names = inputs.checked_labels(labels, len(groups))
     return [(name, list(group)) for name, group in zip(names, groups, strict=True)]
 

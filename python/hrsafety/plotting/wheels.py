@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety._arguments import sequence
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import inputs, style
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def wheel_identification(tests: Sequence[OpenLoopTest], fit: WheelFit, *, title:
     """
     each = sequence("tests", "be the tests of the fit", tests)
     if [test.command for test in each] != fit.command.tolist():
-        raise InvalidParameterError("tests", "be the tests of the fit", f"{len(each)} tests")
+        raise InvalidParameterError("tests", "be the tests of the fit", Shown(f"{len(each)} tests"))
     figure = style.new_figure(4.8, title=title)
     grid = figure.add_gridspec(2, 2, height_ratios=(2.0, 1.0), width_ratios=(1.25, 1.0))
     angle = figure.add_subplot(grid[0, 0])

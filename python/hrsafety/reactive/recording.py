@@ -117,20 +117,22 @@ def read_recording(path: str | PathLike[str], *, channels: Sequence[int] = (0, 1
     except (wave.Error, EOFError, RuntimeError) as error:
         # A chunk that says it is longer than the file makes the reader of chunks fail without a word.
         reason = str(error) or "the file ends within its header or a chunk"
-        raise InvalidParameterError(file.name, "be a WAV file of whole numbers (PCM)", reason) from None
+        raise InvalidParameterError(file.name, "be a WAV file of whole numbers (PCM)", Shown(reason)) from None
     except OSError as error:
-        raise InvalidParameterError("path", "name a readable file", f"{file} ({error.strerror})") from None
+        raise InvalidParameterError("path", "name a readable file", Shown(f"{file} ({error.strerror})")) from None
     if max(chosen) >= parameters.nchannels:
         rule = f"have {max(chosen) + 1} channels or more"
-        raise InvalidParameterError(file.name, rule, f"{parameters.nchannels}")
+        raise InvalidParameterError(file.name, rule, Shown(f"{parameters.nchannels}"))
     width = parameters.sampwidth
     frames = len(data) // (width * parameters.nchannels)
     if parameters.nframes == 0 or frames == 0:
         raise InvalidParameterError(file.name, "hold samples", Shown("none"))
     if frames != parameters.nframes or len(data) % (width * parameters.nchannels):
-        raise InvalidParameterError(file.name, f"hold the {parameters.nframes} frames of its header", f"{frames}")
+        raise InvalidParameterError(
+            file.name, f"hold the {parameters.nframes} frames of its header", Shown(f"{frames}")
+        )
     if parameters.framerate <= 0:
-        raise InvalidParameterError(file.name, "have a positive sample rate", f"{parameters.framerate}")
+        raise InvalidParameterError(file.name, "have a positive sample rate", Shown(f"{parameters.framerate}"))
     levels = _levels(data, width, file.name).reshape(frames, parameters.nchannels).T[chosen]
     steps = float(2 ** (8 * width - 1))
     ends = ((levels <= -steps) | (levels >= steps - 1.0)).sum(axis=1)
@@ -168,7 +170,7 @@ def _levels(data: bytes, width: int, name: str) -> Array:
     if width == 1:
         return raw.astype(np.float64) - 128.0
     if width not in (2, 3, 4):
-        raise InvalidParameterError(name, "have 8, 16, 24 or 32 bits", f"{8 * width}")
+        raise InvalidParameterError(name, "have 8, 16, 24 or 32 bits", Shown(f"{8 * width}"))
     # The bytes become the upper ones of 32 bits, which keeps the sign.
     padded = np.zeros((len(raw) // width, 4), dtype=np.uint8)
     padded[:, 4 - width :] = raw.reshape(-1, width)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, number, numbers, sequence, word
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["Axis", "Column"]
 
@@ -120,7 +120,9 @@ class Column:
             raise ShapeError(self.name, f"({rows},)", array.shape)
         allowed = {"number": "fiu", "integer": "iu", "flag": "b", "word": "U"}[self.kind]
         if array.dtype.kind not in allowed:
-            raise InvalidParameterError(self.name, f"hold values of the kind {self.kind!r}", f"dtype {array.dtype}")
+            raise InvalidParameterError(
+                self.name, f"hold values of the kind {self.kind!r}", Shown(f"dtype {array.dtype}")
+            )
         if self.kind != "word":
             return np.ascontiguousarray(array, dtype=self.stored)
         codes = np.zeros(rows, dtype=self.stored)

@@ -33,7 +33,7 @@ fn word<T: Copy>(
     let known = kinds.iter().find(|(kind, _)| *kind == given);
     known
         .map(|(_, meaning)| *meaning)
-        .ok_or_else(|| Failure::invalid(name, rule, Given::Word(format!("\"{given}\""))).into())
+        .ok_or_else(|| Failure::invalid(name, rule, Given::Word(given.to_owned())).into())
 }
 
 /// Pairs of a contiguous array of two columns.

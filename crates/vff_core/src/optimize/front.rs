@@ -94,30 +94,31 @@ fn rounds(
     options: &FrontOptions,
 ) -> Result<Front> {
     let dimension = problem.dimension();
-    let grid = Grid::new(bounds, &options.shape, problem.slowest_first());
+    let mut grid = Grid::new(bounds, &options.shape, problem.slowest_first());
     let mut increments = grid.increments();
-    let mut seen = HashSet::new();
+    let mut seen = Seen::of(&mut grid);
     let mut front = Front::default();
     let mut archive = Archive::new(dimension, problem.objectives());
     for round in 0..=options.refinements {
-        let wanted = if round == 0 {
-            whole(&grid, session)
+        let stage = Stage::Front { round };
+        let fresh = if round == 0 {
+            None
         } else {
             for increment in &mut increments {
                 *increment *= 0.5;
             }
-            Some(neighbours(bounds, &front.points, &increments))
+            let near = neighbours(bounds, &front.points, &increments);
+            let Some(fresh) = seen.unseen(&near, dimension, session) else {
+                front.interrupted = true;
+                break;
+            };
+            Some(fresh)
         };
-        let fresh = wanted.and_then(|points| unseen(&mut seen, &points, dimension, session));
-        let Some(points) = fresh else {
-            front.interrupted = true;
-            break;
+        let count = fresh.as_ref().map_or(grid.len(), |it| it.len() / dimension);
+        let rows = |range: std::ops::Range<usize>| match &fresh {
+            None => grid.points(range),
+            Some(points) => points[range.start * dimension..range.end * dimension].to_vec(),
         };
-        let stage = Stage::Front { round };
-        let rows = |range: std::ops::Range<usize>| {
-            points[range.start * dimension..range.end * dimension].to_vec()
-        };
-        let count = points.len() / dimension;
         let taken = Mutex::new(archive.renewed());
         let take = |first: usize, points: &[f64], part: &Evaluated| {
             let best = Archive::best_of(first, points, part, problem);
@@ -149,38 +150,51 @@ fn rounds(
 /// Points that are handled between two looks at whether to stop.
 const POINTS_PER_LOOK: usize = 4096;
 
-/// All points of a grid; none when stopped meanwhile.
-fn whole(grid: &Grid, session: &Session<'_>) -> Option<Vec<f64>> {
-    let mut points = Vec::with_capacity(grid.len() * grid.axes.len());
-    for first in (0..grid.len()).step_by(POINTS_PER_LOOK) {
-        if session.stopped() {
-            return None;
-        }
-        points.extend(grid.points(first..grid.len().min(first + POINTS_PER_LOOK)));
-    }
-    Some(points)
+/// Points that were met: all of the grid, known by the values along its axes, and those after it.
+///
+/// Millions of grid points are not stored one by one: to fill such a set, to let it grow and to
+/// free it takes longer than an answer to a signal may.
+struct Seen {
+    axes: Vec<HashSet<u64>>,
+    points: HashSet<Vec<u64>>,
 }
 
-/// Points that were not met before, each once; none when stopped meanwhile.
-fn unseen(
-    seen: &mut HashSet<Vec<u64>>,
-    points: &[f64],
-    dimension: usize,
-    session: &Session<'_>,
-) -> Option<Vec<f64>> {
-    let bits = |point: &[f64]| point.iter().map(|value| value.to_bits()).collect();
-    let mut fresh = Vec::with_capacity(points.len());
-    for part in points.chunks(POINTS_PER_LOOK * dimension) {
-        if session.stopped() {
-            return None;
+impl Seen {
+    /// All points of a grid, of which equal ones are taken out first.
+    fn of(grid: &mut Grid) -> Self {
+        for axis in &mut grid.axes {
+            // They rise: equal ones stand side by side.
+            axis.dedup_by_key(|value| value.to_bits());
         }
-        for point in part.chunks_exact(dimension) {
-            if seen.insert(bits(point)) {
-                fresh.extend_from_slice(point);
-            }
+        let bits = |axis: &Vec<f64>| axis.iter().map(|value| value.to_bits()).collect();
+        Self {
+            axes: grid.axes.iter().map(bits).collect(),
+            points: HashSet::new(),
         }
     }
-    Some(fresh)
+
+    /// Points that were not met before, each once; none when stopped meanwhile.
+    fn unseen(
+        &mut self,
+        points: &[f64],
+        dimension: usize,
+        session: &Session<'_>,
+    ) -> Option<Vec<f64>> {
+        let mut fresh = Vec::new();
+        for part in points.chunks(POINTS_PER_LOOK * dimension) {
+            if session.stopped() {
+                return None;
+            }
+            for point in part.chunks_exact(dimension) {
+                let bits: Vec<u64> = point.iter().map(|value| value.to_bits()).collect();
+                let on_grid = bits.iter().zip(&self.axes).all(|(bit, axis)| axis.contains(bit));
+                if !on_grid && self.points.insert(bits) {
+                    fresh.extend_from_slice(point);
+                }
+            }
+        }
+        Some(fresh)
+    }
 }
 
 /// Points one increment away along each axis, inside the box.

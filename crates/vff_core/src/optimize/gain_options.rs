@@ -40,7 +40,7 @@ impl GainOptions {
     /// Refuses what the scenarios cannot give.
     pub(crate) fn check(&self, scenarios: &[Scenario]) -> Result<()> {
         let empty = |name: &str, rule| {
-            let given = Given::Word("an empty list".into());
+            let given = Given::Found("an empty list".into());
             Err(Failure::invalid(name, rule, given))
         };
         if scenarios.is_empty() {

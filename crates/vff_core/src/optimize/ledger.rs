@@ -127,7 +127,7 @@ impl SearchState {
 }
 
 fn refused(requirement: &'static str) -> Failure {
-    let given = Given::Word("another one".into());
+    let given = Given::Found("another one".into());
     Failure::invalid("checkpoint", requirement, given)
 }
 

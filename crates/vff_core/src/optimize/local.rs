@@ -169,7 +169,7 @@ pub fn local_search(
         if !bounds.contains(start) {
             let name = format!("starts[{index}]");
             let rule = "lie inside the bounds";
-            let outside = Given::Word("a point outside".into());
+            let outside = Given::Found("a point outside".into());
             return Err(Failure::invalid(name, rule, outside));
         }
         sum = sum.numbers(start);

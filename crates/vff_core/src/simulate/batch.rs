@@ -121,7 +121,7 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
         Err(Failure::invalid(
             name,
             rule,
-            Given::Word("an empty list".into()),
+            Given::Found("an empty list".into()),
         ))
     };
     if scenarios.is_empty() {

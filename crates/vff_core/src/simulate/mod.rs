@@ -110,6 +110,10 @@ pub fn terms_at(
     })?;
     terms.ok_or_else(|| {
         let rule = "be a sum of attraction and repulsion, such as VirtualForceField or Masoud";
-        Failure::invalid("law", rule, Given::Word(law.gain_names().join(", ")))
+        Failure::invalid(
+            "law",
+            rule,
+            Given::Found(format!("one with the gains {}", law.gain_names().join(", ")).into()),
+        )
     })
 }

@@ -84,7 +84,7 @@ impl Options {
             (steps_per_sample, interval) = (count_of(whole), period);
         } else if scenario.measurement.is_some() {
             let rule = "be true with a measurement, which is taken every control period";
-            return Err(Failure::invalid("hold", rule, Given::Word("False".into())));
+            return Err(Failure::invalid("hold", rule, Given::Found("False".into())));
         }
         Ok(Clock {
             step,

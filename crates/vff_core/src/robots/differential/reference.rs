@@ -92,7 +92,7 @@ impl ReferencePath {
         velocity: Vec<[f64; 2]>,
     ) -> Result<Self> {
         if time.is_empty() {
-            let none = Given::Word("an empty path".into());
+            let none = Given::Found("an empty path".into());
             let rule = "hold at least one sample";
             return Err(Failure::invalid("time", rule, none));
         }

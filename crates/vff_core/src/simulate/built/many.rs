@@ -84,7 +84,7 @@ pub fn repeat_built(
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<(RunSummary, Histories)>> {
     if seeds.is_empty() {
-        let none = Given::Word("an empty list".into());
+        let none = Given::Found("an empty list".into());
         let rule = "hold at least one seed";
         return Err(Failure::invalid("seeds", rule, none));
     }

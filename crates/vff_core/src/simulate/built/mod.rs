@@ -85,7 +85,7 @@ impl Built {
         let sees = self.robot_vision.is_some() || self.obstacle_vision.is_some();
         if sees && scenario.measurement.is_some() {
             let rule = "be None where a camera measures";
-            let given = Given::Word("a Measurement".into());
+            let given = Given::Found("a Measurement".into());
             return Err(Failure::invalid("measurement", rule, given));
         }
         Ok(self)
