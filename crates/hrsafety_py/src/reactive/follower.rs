@@ -236,6 +236,9 @@ pub fn impedance_forces<'py>(
     Ok(fields.finish())
 }
 
+/// Point of a line, or segment, between two points that counts as nearest to the origin.
+type Foot = fn([f64; 2], [f64; 2]) -> [f64; 2];
+
 /// Feet of perpendiculars from the origin on the lines, or segments, between points.
 #[pyfunction]
 #[pyo3(signature = (one, other, *, form))]
@@ -246,7 +249,7 @@ pub fn collision_feet<'py>(
     other: Rows<'py>,
     form: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let forms: [(&str, fn([f64; 2], [f64; 2]) -> [f64; 2]); 3] = [
+    let forms: [(&str, Foot); 3] = [
         ("segment", clamped_foot),
         ("line", foot),
         ("printed", printed_foot),
