@@ -83,10 +83,16 @@ def warning_codes() -> list[str]:
     """Return the codes of all warnings that results carry, as the sources of the package build them."""
     codes = set()
     for path in Path(hrsafety.__file__).parent.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        source = ast.parse(path.read_text(encoding="utf-8"))
+        constants = {}
+        for node in source.body:
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+                constants |= {each.id: node.value.value for each in node.targets if isinstance(each, ast.Name)}
+        for node in ast.walk(source):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "ResultWarning":
                 given = [*node.args[:1], *(each.value for each in node.keywords if each.arg == "code")]
                 codes |= {each.value for each in given if isinstance(each, ast.Constant)}
+                codes |= {constants[each.id] for each in given if isinstance(each, ast.Name) and each.id in constants}
     return sorted(codes)
 
 

@@ -311,7 +311,12 @@ def message(call: str, folder: Path) -> str:
     """Return what the package answers to a bad input in a folder that holds `FILES`."""
     with _inside(folder):
         shown = _command(call) if call.split()[0] == "hrsafety" else _raised(call)
-    return " ".join(re.sub(r"0x[0-9a-f]{6,}", "0x...", shown.replace(f"{folder}{os.sep}", "")).split())
+    return " ".join(re.sub(r"0x[0-9a-f]{6,}", "0x...", _without(folder, shown)).split())
+
+
+def _without(folder: Path, shown: str) -> str:
+    """Return a message in which the folder of the files is that of a reader."""
+    return shown.replace(f"{folder}{os.sep}", "").replace(str(folder), "/home/reader")
 
 
 def _raised(call: str) -> str:
