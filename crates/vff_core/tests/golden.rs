@@ -77,7 +77,7 @@ fn terms(state: &Value) -> FieldTerms {
     let bodies = bodies.iter().map(obstacle).collect();
     let goal = pair(&state["goal"]);
     let scenario = Scenario::new(robot, position, goal, bodies, Rules::default()).unwrap();
-    terms_at(&scenario, &law, position, pair(&state["velocity"]), 0.0).unwrap()
+    terms_at(&scenario, law, position, pair(&state["velocity"]), 0.0).unwrap()
 }
 
 fn assert_vector(actual: [f64; 2], expected: [f64; 2], what: &str) {
