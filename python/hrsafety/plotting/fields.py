@@ -170,17 +170,19 @@ def force_field(
     bar = figure.colorbar(arrows, ax=axes, extend="both", pad=0.02, shrink=0.9)
     style.set_log_ticks(bar, low, high)
     bar.set_label(f"{term} force (N)")
-    style.legend_below(figure, _scene_handles(scenario), columns=5)
+    style.legend_below(figure, _scene_handles(scenario, places, limits), columns=5)
     return figure
 
 
-def _scene_handles(scenario: Scenario) -> list[Artist]:
-    """Return the legend of goal and obstacles."""
+def _scene_handles(scenario: Scenario, places: Array, limits: style.Limits) -> list[Artist]:
+    """Return the legend of the obstacles that are present and, where it is in view, the goal."""
     from matplotlib.lines import Line2D
 
     star: style.Properties = {"marker": "*", "color": style.GOAL_COLOR, "markersize": 12, "linestyle": "none"}
-    regions = len(scenario.obstacles) > 0
-    return [Line2D([], [], label="goal", **star), *shapes.obstacle_handles(scenario.obstacles, regions=regions)]
+    present = np.flatnonzero(np.isfinite(places).all(axis=1)).tolist()
+    goal_in_view = all(low <= x <= high for x, (low, high) in zip(scenario.goal, limits, strict=True))
+    goals = [Line2D([], [], label="goal", **star)] if goal_in_view else []
+    return [*goals, *shapes.obstacle_handles(scenario.obstacles, regions=len(present) > 0, shown=present)]
 
 
 def _checked_places(scenario: Scenario, obstacle_position: npt.ArrayLike | None) -> Array:
