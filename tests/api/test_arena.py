@@ -223,7 +223,7 @@ BAD_CALLS: list[tuple[dict[str, Any], str]] = [
     ({"seeds": [0, -1]}, "seeds[1]"),
     ({"seeds": [1.0]}, "seeds[0]"),
     ({"seeds": [True]}, "seeds[0]"),
-    ({"seeds": [2**64]}, "seed"),
+    ({"seeds": [2**64]}, "seeds[0]"),
     ({"weights": (1, 1, 1)}, "weights"),
     ({"integrator": "euler"}, "integrator"),
     ({"step": 0.0}, "scenarios[0].step"),

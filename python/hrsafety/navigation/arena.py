@@ -10,7 +10,7 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, callback, count, instance, sequence, word
+from hrsafety._arguments import Array, callback, checked_seed, count, instance, sequence, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
@@ -324,7 +324,7 @@ def _episodes(
     if seeds is None:
         return tuple(named), list(named.values()), np.arange(len(named))
     given = sequence("seeds", "be a sequence of integers or None", seeds)
-    drawn = [count(f"seeds[{k}]", seed, least=0) for k, seed in enumerate(given)]
+    drawn = [checked_seed(f"seeds[{k}]", seed) for k, seed in enumerate(given)]
     if not drawn:
         raise InvalidParameterError("seeds", "hold at least one seed, or be None", seeds)
     episodes = [replace(scenario, seed=seed) for scenario in named.values() for seed in drawn]
