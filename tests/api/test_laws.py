@@ -204,17 +204,36 @@ def test_bad_gain_set_is_named(law: nav.Law) -> None:
     assert names(caught.value) == "gains"
 
 
+PLANNERS = (
+    "VelocityObstacle",
+    "OptimalReciprocalCollisionAvoidance",
+    "RapidlyExploringRandomTree",
+    "FieldDStar",
+    "VirtualImpedanceLaw",
+)
+
+
+@pytest.mark.parametrize("kind", LAWS)
+def test_force_terms_are_those_of_sums_of_attraction_and_repulsion(kind: str) -> None:
+    if kind not in PLANNERS:
+        assert np.isfinite(nav.force_terms(LAWS[kind], C1, **PLACE).total).all()
+        return
+    rule = "law must be a sum of attraction and repulsion, such as VirtualForceField or Masoud, got one with the gains"
+    with pytest.raises(InvalidParameterError, match=rule) as caught:
+        nav.force_terms(LAWS[kind], C1, **PLACE)
+    assert names(caught.value) == "law"
+
+
 @pytest.mark.parametrize(
     "call",
     [
-        lambda law: nav.force_terms(law, C1, **PLACE),
         lambda law: nav.lyapunov(law, C1, **PLACE),
         lambda law: nav.force_field(law, C1, position=[PLACE["position"]]),
     ],
-    ids=["force_terms", "lyapunov", "force_field"],
+    ids=["lyapunov", "force_field"],
 )
 @pytest.mark.parametrize("kind", RULES)
-def test_terms_are_those_of_the_field_only(call: Any, kind: str) -> None:
+def test_lyapunov_function_is_that_of_the_field_only(call: Any, kind: str) -> None:
     with pytest.raises(InvalidParameterError, match="law must be a VirtualForceField") as caught:
         call(LAWS[kind])
     assert names(caught.value) == "law"

@@ -388,13 +388,19 @@ def test_foam_beyond_the_model_is_marked_unlike_kept_limits(status: str) -> None
     assert_readable(figure)
 
 
-def test_response_beyond_the_linear_range_says_that_no_limit_is_kept() -> None:
+@pytest.mark.parametrize(
+    ("stiffness", "status", "words", "marker"),
+    [(12e3, "beyond_linear_range", "beyond the linear range", "^"), (5e3, "bottomed", "bottomed", "v")],
+)
+def test_response_beyond_the_linear_range_says_that_no_limit_is_kept(
+    stiffness: float, status: str, words: str, marker: str
+) -> None:
     soft = impact.simulate(
-        impact.MANIPULATOR_2, impact.Foam(stiffness=5e3, damping=20.0), impact.Head.minimum(), closing_speed=1.25
+        impact.MANIPULATOR_2, impact.Foam(stiffness=stiffness, damping=20.0), impact.Head.minimum(), closing_speed=1.25
     )
     figure = plotting.impact_histories(soft)
-    assert soft.metrics.status == "beyond_linear_range"
+    assert soft.metrics.status == status
     names = [text.get_text() for text in legends_of(figure)[0].get_texts()]
-    assert names == ["deepest, beyond the linear range: no limit counts as kept"]
-    assert all(any(line.get_marker() == "^" for line in axes.lines) for axes in figure.axes)
+    assert names == [f"deepest, {words}: no limit counts as kept"]
+    assert all(any(line.get_marker() == marker for line in axes.lines) for axes in figure.axes)
     assert_readable(figure)

@@ -307,7 +307,7 @@ def test_lyapunov_function_has_gaps_in_critical_regions():
     axes = plotting.lyapunov(dataclasses.replace(made_up, lyapunov=values)).axes[0]
     assert np.isnan(axes.get_lines()[0].get_ydata()).sum() == 60
     assert axes.get_yscale() == "log"
-    assert "in a critical region" in [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "in a critical region" in [text.get_text() for text in axes.figure.legends[0].get_texts()]
 
 
 def test_runs_with_nothing_to_show_are_drawn(tmp_path):
@@ -438,7 +438,7 @@ def test_wrong_groups_are_named():
         plotting.clearances({"a": [np.inf]})
     with pytest.raises(ShapeError, match=r"clearances\['a'\]"):
         plotting.clearances({"a": [[0.1]]})
-    with pytest.raises(InvalidParameterError, match=r"outcomes\['a'\] must hold only .*, got lost"):
+    with pytest.raises(InvalidParameterError, match=r"outcomes\['a'\] must hold only .*, got 'lost'"):
         plotting.outcomes({"a": ["arrived", "lost"]})
     with pytest.raises(InvalidParameterError, match="contacts_standing must be given together"):
         plotting.outcomes({"a": ["arrived"]}, contacts_moving={"a": [0]})

@@ -165,8 +165,8 @@ def test_sensitivity_shows_the_mean_performance_and_the_magnitude_in_percent(
         assert np.array_equal(upper.lines[index].get_ydata(), sensitivity.mean_performance[index])
         shown, expected = lower.lines[index].get_ydata(), 100.0 * np.abs(sensitivity.relative_sensitivity[index])
         assert np.array_equal(shown, expected, equal_nan=True)
-    assert lower.get_xlabel() == "change of one gain (%)"
-    assert lower.get_ylabel().endswith("(%)")
+    assert lower.get_xlabel() == "change of one gain (%); axis linear up to ±2 %, logarithmic beyond"
+    assert lower.get_ylabel() == "relative sensitivity of mean H (%),\naxis logarithmic beyond 1 %"
 
 
 def test_sensitivity_names_average_and_largest_of_each_gain(sensitivity: nav.GainSensitivity) -> None:

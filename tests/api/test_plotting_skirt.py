@@ -33,7 +33,9 @@ def test_ring_shows_every_sensor_its_beam_and_both_safe_distances() -> None:
 
 def test_ring_without_a_meeting_distance_draws_the_one_in_use() -> None:
     figure = plotting.skirt_ring(reactive.UltrasonicSkirt(sensors=4, layout="even"), title="four")
-    assert len(figure.legends[0].get_texts()) == 1
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert [name for name in names if name.startswith("safe distance")] == ["safe distance in use, 0.666 m"]
+    assert len(names) == 3, "the sensors and the beams have a name, too"
 
 
 def test_runs_show_path_discs_and_the_ending() -> None:

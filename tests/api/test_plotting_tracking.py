@@ -48,7 +48,7 @@ def test_a_reference_that_stands_is_a_cross(parked: list[nav.TrackingRun]) -> No
     figure = plotting.tracking_paths(parked, labels=["one", "two", "three"])
     assert [line.get_marker() for line in figure.axes[0].lines].count("x") == 3
     names = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert names == ["one", "two", "three", "reference"]
+    assert names == ["one", "two", "three", "reference", "start"]
 
 
 def test_groups_share_a_color(run: nav.TrackingRun, parked: list[nav.TrackingRun]) -> None:
