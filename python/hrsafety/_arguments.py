@@ -62,6 +62,8 @@ def _rebuild(kind: type, fields: dict[str, object]) -> object:
 
 def number(name: str, value: object) -> float:
     """Return ``value`` as a float, or say what it should have been."""
+    if type(value) is float:  # nearly always
+        return value
     if isinstance(value, (bool, np.bool_, str, bytes)):
         raise InvalidParameterError(name, "be a number", value)
     _check_mask(name, value)
@@ -213,7 +215,8 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
     if array.dtype.kind not in "fiu":
         raise InvalidParameterError(name, rule, value)
     # The cores read whole floats at their places in memory: other arrays are copied.
-    return np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"]).reshape(array.shape)
+    whole = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    return whole if whole.flags.aligned else whole.copy()
 
 
 def vector(name: str, value: object) -> Array:
@@ -226,6 +229,8 @@ def vector(name: str, value: object) -> Array:
 
 def pair(name: str, value: object) -> Pair:
     """Return ``value`` as two floats, or say what it should have been."""
+    if type(value) is tuple and len(value) == 2 and type(value[0]) is type(value[1]) is float:  # nearly always
+        return value
     array = numbers(name, value, "be a pair (x, y) of numbers")
     if array.shape != (2,):
         raise ShapeError(name, "(2,)", array.shape)

@@ -404,11 +404,12 @@ def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doub
     """Return what is doubtful about a sampled acceleration, from its mean step, its peaks and its strongest window."""
     first, last = np.searchsorted(time, (window.start, window.end))
     # The whole push around the window: back and on to where the acceleration changes its sign.
-    before, after = acceleration_g[:first][::-1] <= 0.0, acceleration_g[last:] <= 0.0
-    first -= int(np.argmax(before)) if before.any() else first
-    last += int(np.argmax(after)) if after.any() else len(after)
-    with np.errstate(over="ignore"):
-        gain = STANDARD_GRAVITY * float(np.trapezoid(acceleration_g[first:last], time[first:last]))
+    ends = np.flatnonzero(acceleration_g <= 0.0)
+    before, after = ends.searchsorted((first, last))
+    push = slice(ends[before - 1] + 1 if before else 0, ends[after] if after < len(ends) else None)
+    acceleration, instants = acceleration_g[push], time[push]
+    with np.errstate(over="ignore", invalid="ignore"):
+        gain = 0.5 * STANDARD_GRAVITY * float((acceleration[1:] + acceleration[:-1]).dot(instants[1:] - instants[:-1]))
     return implausible(
         {
             "time": float(time[-1] - time[0]) / (len(time) - 1),
