@@ -395,6 +395,16 @@ CALLS |= {
         {"rates": (0.2, 0.1), "second_link": 0.43, "lever_arm": 0.4},
         {"rates": RATES, "second_link": NOT_NEGATIVE, "lever_arm": POSITIVE, "elbow": NUMBER},
     ),
+    "dashpots_in_series": (
+        impact.dashpots_in_series,
+        {"damping": (40.0, 10.0), "second_link": 0.43, "lever_arm": 0.4},
+        {
+            "damping": (*RATES, (0.0, 1.0), (1.0, -1.0)),
+            "second_link": POSITIVE,
+            "lever_arm": POSITIVE,
+            "elbow": NUMBER,
+        },
+    ),
     "uniform_links": (
         impact.uniform_links,
         {"mass": (3.0, 2.0), "length": (0.43, 0.4)},

@@ -171,18 +171,21 @@ _LOADS = {
 }
 
 
-def _report(file: FoamDesignFile) -> FoamReport:
+def _design(file: FoamDesignFile) -> impact.FoamDesign:
     # Beyond its linear range no foam keeps a limit: the range is one, whether the file names it or not.
     most = min(file.limits.max_compression or math.inf, file.sought.linear_range)
-    limits = replace(file.limits, max_compression=most)
-    design = impact.design_foam(
+    return impact.design_foam(
         file.manipulator,
-        limits,
+        replace(file.limits, max_compression=most),
         closing_speed=file.closing_speed,
         thickness=file.sought.thickness,
         linear_range=file.sought.linear_range,
     )
-    upper = design.upper(file.damping) if limits.given().keys() - {"max_compression"} else None
+
+
+def _report(file: FoamDesignFile) -> FoamReport:
+    design = _design(file)
+    upper = design.upper(file.damping) if design.limits.given().keys() - {"max_compression"} else None
     return FoamReport(
         file=file,
         upper=upper,
@@ -310,7 +313,7 @@ def _picture(report: FoamReport) -> Figure:
     from hrsafety.plotting.boundaries import refined
 
     file = report.file
-    design = impact.design_foam(file.manipulator, file.limits, closing_speed=file.closing_speed)
+    design = _design(file)
     curves = [curve for curve, found in ((design.upper, report.upper), (design.lower, report.lower)) if found]
     damping = refined(file.damping, curves)
     return plotting.foam_boundaries(

@@ -217,6 +217,7 @@ def _boundaries() -> Iterator[Drawing]:
                 accepted={name: design.accepts(each) for name, each in foams.items()},
                 statuses={name: getattr(design.margin(each), "status", "") for name, each in foams.items()},
                 results=[design],
+                fitting=design.stiffness_range(damping, 0.0),
                 upper_label="upper: 10 g",
                 lower_label="lower: 20 mm",
             ),

@@ -31,7 +31,7 @@ def cells() -> list[Cell]:
     table = published_tables()["zeng2011:A.1"]
     for row in table["rows"]:
         for column in ("kappa", "A"):
-            for number, value in enumerate(row[column], start=1):
-                place = {"table": "A.1", "row": f"{row['u']:g} V, test {number}", "column": column}
+            for test, value in enumerate(row[column], start=1):
+                place = {"table": "A.1", "row": f"{row['u']:g} V, test {test}", "column": column}
                 found.append(Cell.listed(**place, printed=value, unit=table["units"][column], reason=INPUT))
     return found
