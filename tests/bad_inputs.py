@@ -316,7 +316,7 @@ def message(call: str, folder: Path) -> str:
 
 def _without(folder: Path, shown: str) -> str:
     """Return a message in which the folder of the files is that of a reader."""
-    return shown.replace(f"{folder}{os.sep}", "").replace(str(folder), "/home/reader")
+    return shown.replace(f"{folder}{os.sep}", "").replace(str(folder), "/data/project")
 
 
 def _raised(call: str) -> str:
