@@ -302,3 +302,21 @@ def test_ctrl_c_ends_the_search_with_a_result_and_a_checkpoint(function: str, op
     program = PROGRAM.format(function=function, options=options, grid=grid)
     assert answer_to_ctrl_c(program, str(file), word="True") < LIMIT
     assert file.exists()
+
+
+@needs_signals
+def test_front_of_millions_of_points_stops_soon() -> None:
+    """No set of all points of the grid is filled before the first one is run, nor freed after a stop."""
+    program = PROGRAM.format(function="pareto_front", options="", grid="(40, 40, 40, 30)").replace(
+        "sys.argv[1]", "None"
+    )
+    # The best of some tries: other work on the machine delays single ones.
+    assert min(answer_to_ctrl_c(program, word="True") for _ in range(4)) < 0.4
+
+
+def test_equal_points_of_a_front_are_run_once() -> None:
+    above = np.nextafter(20.0, 21.0)
+    found = nav.pareto_front(
+        SCENES, grid=(5, 2, 2, 2), refinements=0, bounds={"attractive_gain": (20.0, above)}, threads=1
+    )
+    assert found.evaluations == 2 * 2 * 2 * 2

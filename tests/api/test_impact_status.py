@@ -142,3 +142,15 @@ def test_margin_of_a_file_is_a_share(tmp_path: Path, capsys: pytest.CaptureFixtu
     path.write_text("margin = 1.5\n" + PARTS, encoding="utf-8")
     assert main(["foam", str(path), "--out", str(tmp_path / "out")]) == 2
     assert "margin must be from 0 to below 1" in capsys.readouterr().err
+
+
+def test_replaced_loads_keep_what_is_no_item_of_the_tuple() -> None:
+    thin = impact.Foam(stiffness=24300.0, damping=71.9, thickness=0.01, linear_range=0.008)
+    found = impact.metrics(ARM, thin, impact.Head.maximum(), closing_speed=12.5)
+    assert found.bottomed
+    other = found._replace(hic15=1.0)
+    assert type(other) is impact.ImpactMetrics
+    assert (other.hic15, other.bottomed, other.warnings) == (1.0, True, found.warnings)
+    assert found._replace(warnings=("doubt",)).warnings == ("doubt",)
+    with pytest.raises((TypeError, ValueError)):
+        found._replace(hic=1.0)
