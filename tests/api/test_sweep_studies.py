@@ -348,7 +348,7 @@ OPTIONS: list[tuple[dict[str, Any], str]] = [
     ({"in_flight": 0}, "in_flight must be an integer"),
     ({"retries": -1}, "retries must be an integer"),
     ({"threads": 0}, "threads must be an integer"),
-    ({"threads": 10**6}, "threads must be at most"),
+    ({"threads": 10**6}, "threads must be an integer from 1 to 1024"),
     ({"resume": 1}, "resume must be True or False"),
     ({"progress": 3}, "progress must be callable"),
 ]

@@ -204,7 +204,7 @@ def dashpots_in_series(damping: npt.ArrayLike, *, second_link: float, lever_arm:
     --------
     >>> from hrsafety import impact
     >>> round(impact.dashpots_in_series((40.0, 10.0), second_link=0.432, lever_arm=0.4), 3)
-    30.066
+    30.025
     """
     return _hrsafety.dashpots_in_series(
         pair("damping", damping),

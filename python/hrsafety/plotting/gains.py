@@ -41,7 +41,7 @@ ROOM = 0.06  # free share of the axis at both ends
 
 @style.styled
 def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) -> Figure:
-    """Draw the mean performance and the relative sensitivity over the change of each gain.
+    r"""Draw the mean performance and the relative sensitivity over the change of each gain.
 
     The change has a logarithmic axis on both sides of a linear part up to 2 %, so that every
     row of a published table can be told apart. A change that costs more than a tenth of the
@@ -73,7 +73,7 @@ def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) 
     >>> places = [scenarios.configuration(name) for name in ("c1", "c3")]
     >>> table = nav.gain_sensitivity(places, nav.VirtualForceField(), (-10, 0, 10))
     >>> [axes.get_ylabel() for axes in plotting.gain_sensitivity(table).axes]
-    ['mean H', 'relative sensitivity of mean H (%)']
+    ['mean H', 'relative sensitivity of mean H (%),\naxis logarithmic beyond 1 %']
     """
     found = instance("sensitivity", sensitivity, GainSensitivity)
     changes = np.asarray(found.changes_percent, dtype=np.float64)
