@@ -103,7 +103,7 @@ class ImpactMetrics(_Loads):
     bottomed: bool = False
     warnings: Doubts = ()
 
-    def _replace(self, /, **kwargs: object) -> Self:  # type: ignore[override]  # any field by its name
+    def _replace(self, /, **kwargs: object) -> Self:
         """Return the same loads with other fields; what is no item of the tuple is kept, or given, too."""
         kept = {name: kwargs.pop(name, getattr(self, name)) for name in ("bottomed", "warnings")}
         found = super()._replace(**kwargs)  # type: ignore[arg-type]  # checked by the tuple
@@ -409,7 +409,8 @@ def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doub
     push = slice(ends[before - 1] + 1 if before else 0, ends[after] if after < len(ends) else None)
     acceleration, instants = acceleration_g[push], time[push]
     with np.errstate(over="ignore", invalid="ignore"):
-        gain = 0.5 * STANDARD_GRAVITY * float((acceleration[1:] + acceleration[:-1]).dot(instants[1:] - instants[:-1]))
+        areas = (acceleration[1:] + acceleration[:-1]) * (instants[1:] - instants[:-1])
+        gain = 0.5 * STANDARD_GRAVITY * float(areas.sum())
     return implausible(
         {
             "time": float(time[-1] - time[0]) / (len(time) - 1),

@@ -13,8 +13,8 @@ use crate::errors::CoreError;
 use crate::impact::single::row_tuple;
 use crate::watch::{Report, watched};
 
-/// Samples that take less than a look at signals.
-const SHORT: usize = 20_000;
+/// Samples whose work ends within a tenth of the time that Ctrl-C may take.
+const SHORT: usize = 1_000_000;
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 /// Value, start, end.
