@@ -1234,9 +1234,7 @@ class _SoundRangeFields(TypedDict):
 class _FixFields(TypedDict):
     range: _Array
     bearing: _Array
-    range_variance: _Array
     covariance: _Array
-    bearing_variance: _Array
     curvature: _Array
     status_code: npt.NDArray[np.uint8]
 

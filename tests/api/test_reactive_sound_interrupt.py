@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from api.interrupting import check_work_is_interrupted, needs_signals
+from hrsafety import reactive
 
 ARRAY = """
 import numpy as np
@@ -36,3 +38,20 @@ JOBS = {
 def test_running_work_answers_ctrl_c(job: str, capsys: pytest.CaptureFixture[str]) -> None:
     preparation, work = JOBS[job]
     check_work_is_interrupted(ARRAY + preparation, work, capsys)
+
+
+def test_fixes_are_moved_and_not_copied() -> None:
+    """Copies of columns of many rows would keep a signal waiting."""
+    row = reactive.MicrophoneArray()
+    delay_12, delay_13 = row.delays(range=np.linspace(1.0, 3.0, 9000), bearing=0.3)
+    fixes = reactive.locate_batch(row, delay_12=delay_12, delay_13=delay_13, threads=2)
+    for column in (fixes.range, fixes.bearing, fixes.covariance, fixes.curvature):
+        owner: object = column
+        while isinstance(owner, np.ndarray) and owner.base is not None:
+            owner = owner.base
+        assert not isinstance(owner, np.ndarray)
+    for place in (0, 4095, 4096, 8999):
+        one = reactive.locate(row, delay_12=delay_12[place], delay_13=delay_13[place])
+        assert np.array_equal(one.covariance, fixes.covariance[place])
+        assert one.covariance[0, 1] == one.covariance[1, 0] != 0.0
+        assert (one.range, one.curvature) == (fixes.range[place], fixes.curvature[place])

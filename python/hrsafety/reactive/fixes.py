@@ -209,7 +209,7 @@ def locate(
     return Fix(
         range=float(found["range"][0]),
         bearing=float(found["bearing"][0]),
-        covariance=_matrices(found)[0],
+        covariance=found["covariance"][0],
         curvature=float(found["curvature"][0]),
         status=STATUS_WORDS[found["status_code"][0]],
     )
@@ -275,7 +275,7 @@ def locate_batch(
     return Fixes(
         range=found["range"].reshape(shape),
         bearing=found["bearing"].reshape(shape),
-        covariance=_matrices(found).reshape(*shape, 2, 2),
+        covariance=found["covariance"].reshape(*shape, 2, 2),
         curvature=found["curvature"].reshape(shape),
         _status_code=found["status_code"].reshape(shape),
     )
@@ -318,8 +318,3 @@ def _delay_covariance(arrival_deviation: float, given: npt.ArrayLike | None) -> 
     if not symmetric or np.linalg.eigvalsh(matrix)[0] < -1e-12 * abs(np.trace(matrix)):
         raise InvalidParameterError("delay_covariance", "be symmetric and not negative", matrix.tolist())
     return [float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])]
-
-
-def _matrices(found: Any) -> Array:
-    rows = [[found["range_variance"], found["covariance"]], [found["covariance"], found["bearing_variance"]]]
-    return np.ascontiguousarray(np.moveaxis(np.asarray(rows), -1, 0))

@@ -154,11 +154,10 @@ pub fn locate_sounds<'py>(
 
 fn fix_columns(py: Python<'_>, found: FixColumns) -> PyResult<Bound<'_, PyDict>> {
     let fields = Fields::new(py);
+    let rows = found.range.len();
     fields.vector("range", found.range)?;
     fields.vector("bearing", found.bearing)?;
-    fields.vector("range_variance", found.range_variance)?;
-    fields.vector("covariance", found.covariance)?;
-    fields.vector("bearing_variance", found.bearing_variance)?;
+    fields.cube("covariance", found.covariance, [rows, 2, 2])?;
     fields.vector("curvature", found.curvature)?;
     fields.vector("status_code", found.status)?;
     Ok(fields.finish())

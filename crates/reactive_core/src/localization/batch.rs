@@ -15,16 +15,46 @@ pub struct FixColumns {
     pub range: Vec<f64>,
     /// Bearings, in rad.
     pub bearing: Vec<f64>,
-    /// Variances of range, in m^2.
-    pub range_variance: Vec<f64>,
-    /// Covariances of range and bearing, in m rad.
+    /// Covariances of range (m) and bearing (rad): four numbers of a matrix for every fix.
     pub covariance: Vec<f64>,
-    /// Variances of bearing, in rad^2.
-    pub bearing_variance: Vec<f64>,
     /// Curvatures `c (t_1 - 2 t_2 + t_3)`, in m.
     pub curvature: Vec<f64>,
     /// Places of the statuses in [`FixStatus::ALL`].
     pub status: Vec<u8>,
+}
+
+impl FixColumns {
+    fn with_capacity(rows: usize) -> Self {
+        Self {
+            range: Vec::with_capacity(rows),
+            bearing: Vec::with_capacity(rows),
+            covariance: Vec::with_capacity(4 * rows),
+            curvature: Vec::with_capacity(rows),
+            status: Vec::with_capacity(rows),
+        }
+    }
+
+    fn push(&mut self, fix: &Fix) {
+        let Covariance {
+            first,
+            mixed,
+            second,
+        } = fix.covariance;
+        self.range.push(fix.range);
+        self.bearing.push(fix.bearing);
+        self.covariance
+            .extend_from_slice(&[first, mixed, mixed, second]);
+        self.curvature.push(fix.curvature);
+        self.status.push(code(fix.status));
+    }
+
+    fn extend(&mut self, part: &Self) {
+        self.range.extend_from_slice(&part.range);
+        self.bearing.extend_from_slice(&part.bearing);
+        self.covariance.extend_from_slice(&part.covariance);
+        self.curvature.extend_from_slice(&part.curvature);
+        self.status.extend_from_slice(&part.status);
+    }
 }
 
 /// A fix for every pair of delays of M2 and M3 against M1 (s).
@@ -56,36 +86,22 @@ pub fn locate_many(
     let blocks = each_run(rows.div_ceil(BLOCK), silent, |block| {
         let part = block * BLOCK..rows.min((block + 1) * BLOCK);
         let pairs = delay_12[part.clone()].iter().zip(&delay_13[part.clone()]);
-        let fixes: Vec<Fix> = pairs
-            .map(|(a, b)| locate(array, [*a, *b], delays_covariance))
-            .collect();
+        let mut fixes = FixColumns::with_capacity(part.len());
+        for (a, b) in pairs {
+            fixes.push(&locate(array, [*a, *b], delays_covariance));
+        }
         (work.progress)(part.len());
         Ok(fixes)
     })?;
-    Ok(columns(blocks.iter().flatten(), rows))
-}
-
-fn columns<'a>(fixes: impl Iterator<Item = &'a Fix>, rows: usize) -> FixColumns {
-    let column = || Vec::with_capacity(rows);
-    let mut all = FixColumns {
-        range: column(),
-        bearing: column(),
-        range_variance: column(),
-        covariance: column(),
-        bearing_variance: column(),
-        curvature: column(),
-        status: Vec::with_capacity(rows),
-    };
-    for fix in fixes {
-        all.range.push(fix.range);
-        all.bearing.push(fix.bearing);
-        all.range_variance.push(fix.covariance.first);
-        all.covariance.push(fix.covariance.mixed);
-        all.bearing_variance.push(fix.covariance.second);
-        all.curvature.push(fix.curvature);
-        all.status.push(code(fix.status));
+    let mut all = FixColumns::with_capacity(rows);
+    // Each block is freed when it has been taken over, so that a stop has little left to free.
+    for part in blocks {
+        if (work.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        all.extend(&part);
     }
-    all
+    Ok(all)
 }
 
 fn code(status: FixStatus) -> u8 {
