@@ -98,6 +98,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "recording without samples": "nav.Human.from_path([], np.empty((0, 2)))",
         "recording of unequal length": "nav.Human.from_path([0.0, 0.4], [[0.0, 0.0]])",
         "recording that goes back in time": "nav.Human.from_path([0.4, 0.0], [[0.0, 0.0], [0.5, 0.0]])",
+        "person without segments": "nav.Human.from_segments((0.0, 0.0), [])",
         "segment of two parts": "nav.Human.from_segments((0.0, 0.0), [(1.0, (1.0, 0.0))])",
         "segment of no duration": "nav.Human.from_segments((0.0, 0.0), [(0.0, (1.0, 0.0), (0.0, 0.0))])",
         "start at the goal": "nav.Scenario(start=(0.0, 0.0), goal=(0.1, 0.0))",
