@@ -75,6 +75,9 @@ def _run(options: argparse.Namespace, described: SweepFile) -> sweep.SweepResult
                 progress=None if shown is None else lambda done, total: shown("rows", done, total, None),
                 **where,
             )
+        except InvalidParameterError as error:
+            # The only argument of the call that an option gives, and no key of the file.
+            raise error.renamed("--threads") if error.argument == "threads" else error from None
         except sweep.SweepInterrupted as stop:
             print(f"hrsafety: {stop}", file=sys.stderr, flush=True)
             raise
