@@ -400,7 +400,7 @@ CALLS |= {
         {"damping": (40.0, 10.0), "second_link": 0.43, "lever_arm": 0.4},
         {
             "damping": (*RATES, (0.0, 1.0), (1.0, -1.0)),
-            "second_link": POSITIVE,
+            "second_link": NOT_NEGATIVE,
             "lever_arm": POSITIVE,
             "elbow": NUMBER,
         },
