@@ -1,8 +1,8 @@
 //! Numbers with exact partial derivatives, carried through the series of the response.
 
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use lanes::Real;
+use lanes::{One, Real, Zero};
 
 /// A value and its partial derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,33 @@ impl<const N: usize> Add for Dual<N> {
 impl<const N: usize> AddAssign for Dual<N> {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
+    }
+}
+
+impl<const N: usize> SubAssign for Dual<N> {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const N: usize> MulAssign for Dual<N> {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<const N: usize> Zero for Dual<N> {
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+}
+
+impl<const N: usize> One for Dual<N> {
+    fn one() -> Self {
+        Self::constant(1.0)
     }
 }
 

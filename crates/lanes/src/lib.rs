@@ -7,7 +7,9 @@
 #![forbid(unsafe_code)]
 
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
+
+pub use num_traits::{One, Zero};
 
 /// Outcome of a comparison, lane by lane.
 pub trait Mask:
@@ -38,10 +40,15 @@ pub trait Real:
     + Send
     + Sync
     + 'static
+    + PartialEq
+    + Zero
+    + One
     + Add<Output = Self>
     + AddAssign
     + Sub<Output = Self>
+    + SubAssign
     + Mul<Output = Self>
+    + MulAssign
     + Div<Output = Self>
     + Neg<Output = Self>
 {
@@ -83,12 +90,6 @@ pub trait Real:
     #[must_use]
     fn select(mask: Self::Mask, then: Self, otherwise: Self) -> Self;
 
-    /// Zero in every lane.
-    #[inline(always)]
-    #[must_use]
-    fn zero() -> Self {
-        Self::splat(0.0)
-    }
     /// The smaller of two numbers; `other` where either is NaN.
     #[inline(always)]
     #[must_use]
@@ -185,7 +186,7 @@ impl Real for f64 {
 }
 
 /// `N` numbers side by side.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const N: usize>([f64; N]);
 
 /// `N` truths side by side, each all ones or all zeros.
@@ -211,10 +212,35 @@ lane_operator!(Sub, sub);
 lane_operator!(Mul, mul);
 lane_operator!(Div, div);
 
-impl<const N: usize> AddAssign for Lanes<N> {
+macro_rules! lane_assignment {
+    ($operator:ident, $method:ident, $plain:ident) => {
+        impl<const N: usize> $operator for Lanes<N> {
+            #[inline(always)]
+            fn $method(&mut self, other: Self) {
+                *self = self.$plain(other);
+            }
+        }
+    };
+}
+lane_assignment!(AddAssign, add_assign, add);
+lane_assignment!(SubAssign, sub_assign, sub);
+lane_assignment!(MulAssign, mul_assign, mul);
+
+impl<const N: usize> Zero for Lanes<N> {
     #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
+    fn zero() -> Self {
+        Self([0.0; N])
+    }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.0 == [0.0; N]
+    }
+}
+
+impl<const N: usize> One for Lanes<N> {
+    #[inline(always)]
+    fn one() -> Self {
+        Self([1.0; N])
     }
 }
 

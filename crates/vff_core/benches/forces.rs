@@ -8,7 +8,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::gains::GainLanes;
-use vff_core::lanes::{Lanes, Real, Vec2};
+use vff_core::lanes::{Lanes, Planar, Real, Vector2};
 use vff_core::laws::{ForceFieldLaw, Law, Situation, Stop};
 use vff_core::scenario::Scenario;
 
@@ -33,11 +33,8 @@ fn width<R: Real>(
     let mut law = ForceFieldLaw::<R, false>::new(&scenes::law(mode), gains, scenario);
     // Inside every active region of both scenes and outside every critical one.
     let robot = RobotState {
-        position: Vec2 {
-            x: R::from_fn(|lane| 2.6 + 0.01 * lane as f64),
-            y: R::splat(0.75),
-        },
-        velocity: Vec2::splat([-0.6, 0.1]),
+        position: Vector2::new(R::from_fn(|lane| 2.6 + 0.01 * lane as f64), R::splat(0.75)),
+        velocity: Vector2::splat([-0.6, 0.1]),
     };
     let mut group = criterion.benchmark_group(format!("forces/{scene}/{mode}"));
     group.throughput(Throughput::Elements(R::WIDTH as u64));

@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use vff_core::forces::geometry::{Body, RobotState};
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::{Situation, Stop};
 use vff_core::motion::BodyState;
 use vff_core::obstacle::{Regions, Shape};
@@ -107,8 +107,8 @@ fn measure<P: Planner>(
             planner.desired_velocity(black_box(&Situation {
                 bodies,
                 robot: RobotState {
-                    position: Vec2::splat(*position),
-                    velocity: Vec2::splat([-0.7, 0.0]),
+                    position: Vector2::splat(*position),
+                    velocity: Vector2::splat([-0.7, 0.0]),
                 },
                 interval: PERIOD,
                 stop: Stop::never(),

@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Failure, Given, Result, not_negative};
 use crate::forces::geometry::{Body, RobotState};
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::motion::BodyState;
 use crate::scenario::{PlacedObstacle, Scenario};
 
@@ -164,19 +164,16 @@ impl Measured {
     pub(crate) fn of_robot<R: Real>(
         &self,
         robot: RobotState<R>,
-        last: &mut Option<Vec2<R>>,
+        last: &mut Option<Vector2<R>>,
     ) -> RobotState<R> {
         let Some(error) = self.robot_error else {
             return robot;
         };
-        let position = robot.position + Vec2::splat(error);
+        let position = robot.position + Vector2::splat(error);
         let rate = R::splat(self.period);
         let velocity = last.map_or(robot.velocity, |last| {
             let way = position - last;
-            Vec2 {
-                x: way.x / rate,
-                y: way.y / rate,
-            }
+            Vector2::new(way.x / rate, way.y / rate)
         });
         *last = Some(position);
         RobotState { position, velocity }
@@ -190,7 +187,7 @@ pub(crate) struct Past<R: Real> {
     whole: usize,
     /// Share of the motion step before.
     share: f64,
-    positions: VecDeque<Vec2<R>>,
+    positions: VecDeque<Vector2<R>>,
 }
 
 impl<R: Real> Past<R> {
@@ -212,7 +209,7 @@ impl<R: Real> Past<R> {
     }
 
     /// Keeps the positions after a motion step; the first call is for the start of the run.
-    pub fn push(&mut self, position: Vec2<R>) {
+    pub fn push(&mut self, position: Vector2<R>) {
         if self.positions.len() > self.whole.saturating_add(1) {
             self.positions.pop_front();
         }
@@ -221,7 +218,7 @@ impl<R: Real> Past<R> {
 
     /// Positions of the latency ago, on the line between two motion steps; the robots stood at
     /// their start before the run.
-    pub fn delayed(&self, present: Vec2<R>) -> Vec2<R> {
+    pub fn delayed(&self, present: Vector2<R>) -> Vector2<R> {
         let last = self.positions.len().saturating_sub(1);
         let at = |steps: usize| {
             let place = self.positions.get(last.saturating_sub(steps));
@@ -232,7 +229,7 @@ impl<R: Real> Past<R> {
             return later;
         }
         let earlier = at(self.whole.saturating_add(1));
-        later + (earlier - later).scale(R::splat(self.share))
+        later + (earlier - later) * R::splat(self.share)
     }
 }
 

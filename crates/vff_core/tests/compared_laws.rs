@@ -5,7 +5,7 @@ mod configurations;
 use configurations::{crossing, law, limits, obstacles};
 use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::compared::{
     BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, Pairwise, PairwiseFamily, PairwiseField,
     PairwiseLaw,
@@ -90,8 +90,8 @@ fn force(field: impl PairwiseField<f64>, velocity: [f64; 2], discs: &[Disc]) -> 
         .collect();
     let mut law = PairwiseLaw::new(field, &scenario);
     let robot = RobotState {
-        position: Vec2::splat([0.0; 2]),
-        velocity: Vec2::splat(velocity),
+        position: Vector2::splat([0.0; 2]),
+        velocity: Vector2::splat(velocity),
     };
     let interval = 0.06;
     let situation = Situation {

@@ -6,7 +6,7 @@ use bitwise::computed;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use vff_core::angle::unsigned_angle;
-use vff_core::lanes::{LaneMask, Lanes, Mask, Real, Vec2};
+use vff_core::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2};
 
 /// Where an operation changes its kind of answer.
 const SPECIAL: [f64; 16] = [
@@ -31,10 +31,10 @@ const SPECIAL: [f64; 16] = [
 /// Numbers of one lane from three inputs: what is computed, what is moved as it is, what is true.
 type Answers<R> = (Vec<R>, Vec<R>, Vec<<R as Real>::Mask>);
 
-/// Every operation of [`Real`], [`Mask`] and [`Vec2`], and the angle.
+/// Every operation of [`Real`], [`Mask`] and [`Vector2`], and the angle.
 fn operations<R: Real>(a: R, b: R, c: R) -> Answers<R> {
     let (less, at_most) = (a.lt(b), a.le(b));
-    let (v, w) = (Vec2 { x: a, y: b }, Vec2 { x: b, y: c });
+    let (v, w) = (Vector2::new(a, b), Vector2::new(b, c));
     let mut accumulated = a;
     accumulated += b;
     let computed = vec![
@@ -45,15 +45,15 @@ fn operations<R: Real>(a: R, b: R, c: R) -> Answers<R> {
         accumulated,
         a.sqrt(),
         a * b + c,
-        v.dot(w),
-        v.cross(w),
-        v.scale(c).x,
-        v.scale(c).y,
+        v.dot(&w),
+        v.perp(&w),
+        (v * c).x,
+        (v * c).y,
         (v + w).x,
         (v - w).y,
         unsigned_angle(a, b),
     ];
-    let chosen = Vec2::select(less, v, w);
+    let chosen = Vector2::select(less, v, w);
     let moved = vec![
         -a,
         a.abs(),
@@ -65,8 +65,8 @@ fn operations<R: Real>(a: R, b: R, c: R) -> Answers<R> {
         R::select(at_most, c, a),
         chosen.x,
         chosen.y,
-        v.perp().x,
-        v.perp().y,
+        v.left_normal().x,
+        v.left_normal().y,
         (-v).x,
         R::zero(),
         R::splat(0.1),

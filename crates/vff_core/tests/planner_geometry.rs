@@ -2,24 +2,24 @@
 
 use proptest::prelude::*;
 use vff_core::forces::geometry::Body;
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::motion::BodyState;
 use vff_core::obstacle::{Regions, Shape};
 use vff_core::planners::half_planes::{HalfPlane, Solver};
 use vff_core::planners::outline::Outline;
 use vff_core::planners::reciprocal::avoiding;
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// Samples along a curve.
 const SAMPLES: u32 = 4_000;
 
 fn vector(x: f64, y: f64) -> Vector {
-    Vector { x, y }
+    Vector2::new(x, y)
 }
 
 fn length(v: Vector) -> f64 {
-    v.dot(v).sqrt()
+    v.dot(&v).sqrt()
 }
 
 prop_compose! {
@@ -54,7 +54,7 @@ fn outline(position: Vector, shape: Shape) -> Outline {
         regions,
         state,
     };
-    Outline::new(&body, Vector::zero(), 0.2, 0.0)
+    Outline::new(&body, Vector::zeros(), 0.2, 0.0)
 }
 
 /// Distance of a place from an outline, negative inside the rounding.
@@ -74,7 +74,7 @@ fn check_nearest_edge(outline: &Outline, velocity: Vector, horizon: f64) {
     let change = plane.point - velocity;
     // The point is on the edge: a little further out is free for the whole horizon, a little
     // further in is not. "Out" is the left of the line.
-    let out = plane.direction.perp().scale(1e-6);
+    let out = plane.direction.left_normal() * (1e-6);
     assert!(outline.time_to_contact(plane.point + out) > horizon);
     assert!(outline.time_to_contact(plane.point - out) <= horizon);
     // Nothing on the edge is nearer: every velocity within the change is on the same side.
@@ -83,7 +83,7 @@ fn check_nearest_edge(outline: &Outline, velocity: Vector, horizon: f64) {
     for n in 0..64u32 {
         let angle = std::f64::consts::TAU * f64::from(n) / 64.0;
         if reach > 0.0 {
-            let near = velocity + vector(angle.cos(), angle.sin()).scale(reach);
+            let near = velocity + vector(angle.cos(), angle.sin()) * reach;
             assert_eq!(outline.time_to_contact(near) <= horizon, own);
         }
     }
@@ -112,13 +112,13 @@ proptest! {
         let time = outline.time_to_contact(velocity);
         let end = 8.0 / speed;
         let at = |sample: u32| end * f64::from(sample) / f64::from(SAMPLES);
-        let first = (0..=SAMPLES).find(|&n| gap(&outline, velocity.scale(at(n))) < 0.0);
+        let first = (0..=SAMPLES).find(|&n| gap(&outline, velocity * at(n)) < 0.0);
         match first {
             Some(sample) => prop_assert!(time <= at(sample) && time >= at(sample - 1) - 1e-9, "{time}"),
-            None => prop_assert!(time > end || gap(&outline, velocity.scale(time)).abs() < 1e-9),
+            None => prop_assert!(time > end || gap(&outline, velocity * time).abs() < 1e-9),
         }
         if time.is_finite() {
-            prop_assert!(gap(&outline, velocity.scale(time)).abs() < 1e-9);
+            prop_assert!(gap(&outline, velocity * time).abs() < 1e-9);
         }
         prop_assert_eq!(time == f64::INFINITY, outline.missed_by(velocity));
     }
@@ -129,9 +129,9 @@ proptest! {
         let legs = outline.legs().unwrap();
         for (direction, reach) in [(legs.left, legs.left_reach), (legs.right, legs.right_reach)] {
             prop_assert!((length(direction) - 1.0).abs() < 1e-12);
-            prop_assert!(gap(&outline, direction.scale(reach)).abs() < 1e-9);
+            prop_assert!(gap(&outline, direction * reach).abs() < 1e-9);
             for n in 0..=SAMPLES {
-                let place = direction.scale(8.0 * f64::from(n) / f64::from(SAMPLES));
+                let place = direction * (8.0 * f64::from(n) / f64::from(SAMPLES));
                 prop_assert!(gap(&outline, place) > -1e-9);
             }
         }

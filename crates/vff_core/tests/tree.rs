@@ -14,7 +14,7 @@ use draws::Draws;
 use planning::{BARN_RADIUS, barn, body, distance_to_leg, scene, situation};
 use proptest::prelude::*;
 use slalom::{ROUNDING, slalom};
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::Stop;
 use vff_core::obstacle::Shape;
 use vff_core::planners::footprint::Footprint;
@@ -97,8 +97,8 @@ proptest! {
             1 => distance_to_leg(point, center, [center[0] + 0.7 * velocity.0, center[1] + 0.7 * velocity.1]),
             _ => {
                 // The distance of the outline that other planners use.
-                let outline = Outline::new(&moving, Vec2::zero(), 0.0, 0.0);
-                let (nearest, inside) = outline.nearest(Vec2::splat(point));
+                let outline = Outline::new(&moving, Vector2::zeros(), 0.0, 0.0);
+                let (nearest, inside) = outline.nearest(Vector2::splat(point));
                 if inside { 0.0 } else { (nearest.x - point[0]).hypot(nearest.y - point[1]) }
             }
         };

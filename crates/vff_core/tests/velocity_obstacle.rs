@@ -4,7 +4,7 @@ mod draws;
 
 use draws::Draws;
 use vff_core::forces::geometry::{Body, RobotState};
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::compared::{BorensteinKoren, Pairwise};
 use vff_core::laws::{Situation, Stop};
 use vff_core::metrics::clearances;
@@ -81,8 +81,8 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
     };
     let bodies: Vec<Body> = scenario.obstacles().iter().map(body).collect();
     let robot = RobotState {
-        position: Vec2::splat(START),
-        velocity: Vec2::zero(),
+        position: Vector2::splat(START),
+        velocity: Vector2::zeros(),
     };
     let interval = scenario.control_period();
     let situation = Situation {

@@ -4,7 +4,7 @@ use groundwork::error::Result;
 use reactive_core::impedance::attraction::Attraction;
 use reactive_core::impedance::law::{Impedance, Prepared};
 use vff_core::forces::geometry::RobotState;
-use vff_core::lanes::{Real, Vec2};
+use vff_core::lanes::{Planar, Real, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation};
 use vff_core::scenario::Scenario;
 
@@ -161,11 +161,11 @@ impl Impeded {
 
 impl<R: Real> Law<R> for Impeded {
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
-        let mut force = Vec2::<R>::zero();
+        let mut force = Vector2::<R>::zeros();
         for lane in 0..R::WIDTH {
             let robot = RobotState {
-                position: Vec2::splat(situation.robot.position.lane(lane)),
-                velocity: Vec2::splat(situation.robot.velocity.lane(lane)),
+                position: Vector2::splat(situation.robot.position.lane(lane)),
+                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
             };
             let [x, y] = self.force(
                 lane,
@@ -176,14 +176,11 @@ impl<R: Real> Law<R> for Impeded {
                     stop: situation.stop,
                 },
             );
-            force = Vec2 {
-                x: force.x.replace(lane, x),
-                y: force.y.replace(lane, y),
-            };
+            force = Vector2::new(force.x.replace(lane, x), force.y.replace(lane, y));
         }
         Command {
             force,
-            stabilizing: Vec2::zero(),
+            stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         }
     }

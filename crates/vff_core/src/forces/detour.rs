@@ -3,7 +3,7 @@
 use crate::forces::geometry::Approach;
 use crate::forces::side::Detour;
 use crate::gains::GainLanes;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 
 /// `psi` and its damping part (5.4.5), both along the left of `u`, so signed by the side.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +27,8 @@ impl<R: Real> Turning<R> {
 
     /// `F_psi = K_5 (psi + b psid*) u_psi` in N, `u_psi = s t`.
     #[inline(always)]
-    pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vec2<R> {
+    pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vector2<R> {
         let strength = gains.detour * (self.signed_potential + gains.ratio * self.signed_rate);
-        approach.outward.perp().scale(strength)
+        approach.outward.left_normal() * strength
     }
 }

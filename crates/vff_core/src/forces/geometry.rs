@@ -1,7 +1,7 @@
 //! One obstacle as the force field sees it from the robot.
 
 use crate::angle::unsigned_angle;
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::motion::BodyState;
 use crate::obstacle::{Regions, Shape};
 
@@ -16,9 +16,9 @@ const ON_THE_GOAL: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub struct RobotState<R> {
     /// Position in m.
-    pub position: Vec2<R>,
+    pub position: Vector2<R>,
     /// Velocity in m/s.
-    pub velocity: Vec2<R>,
+    pub velocity: Vector2<R>,
 }
 
 /// An obstacle at one instant, the same for every lane.
@@ -36,7 +36,7 @@ pub struct Body {
 #[derive(Clone, Copy, Debug)]
 pub struct Offset<R> {
     /// `D`: from the obstacle (centre of a disc, nearest contour point) to the robot, in m.
-    pub vector: Vec2<R>,
+    pub vector: Vector2<R>,
     /// `d^2` in m^2.
     pub distance_squared: R,
 }
@@ -44,8 +44,8 @@ pub struct Offset<R> {
 impl Body {
     /// Offset of a position from this obstacle.
     #[inline(always)]
-    pub fn offset<R: Real>(&self, position: Vec2<R>) -> Offset<R> {
-        let from_center = position - Vec2::splat(self.state.position);
+    pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R> {
+        let from_center = position - Vector2::splat(self.state.position);
         let vector = match self.shape {
             Shape::Disc { .. } => from_center,
             Shape::Rectangle {
@@ -54,16 +54,16 @@ impl Body {
                 axis,
             } => {
                 let local = into_axes(from_center, axis);
-                let beyond = Vec2 {
-                    x: local.x - clamped(local.x, half_length),
-                    y: local.y - clamped(local.y, half_width),
-                };
+                let beyond = Vector2::new(
+                    local.x - clamped(local.x, half_length),
+                    local.y - clamped(local.y, half_width),
+                );
                 out_of_axes(beyond, axis)
             }
         };
         Offset {
             vector,
-            distance_squared: vector.dot(vector),
+            distance_squared: vector.dot(&vector),
         }
     }
 }
@@ -74,18 +74,15 @@ fn clamped<R: Real>(value: R, limit: f64) -> R {
 }
 
 #[inline(always)]
-fn into_axes<R: Real>(vector: Vec2<R>, axis: [f64; 2]) -> Vec2<R> {
-    let axis = Vec2::splat(axis);
-    Vec2 {
-        x: axis.dot(vector),
-        y: axis.cross(vector),
-    }
+fn into_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
+    let axis = Vector2::splat(axis);
+    Vector2::new(axis.dot(&vector), axis.perp(&vector))
 }
 
 #[inline(always)]
-fn out_of_axes<R: Real>(vector: Vec2<R>, axis: [f64; 2]) -> Vec2<R> {
-    let axis = Vec2::splat(axis);
-    axis.scale(vector.x) + axis.perp().scale(vector.y)
+fn out_of_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
+    let axis = Vector2::splat(axis);
+    axis * vector.x + axis.left_normal() * vector.y
 }
 
 /// Everything the forces of one obstacle depend on.
@@ -94,11 +91,11 @@ pub struct Approach<R: Real> {
     /// Lanes inside the active region.
     pub active: R::Mask,
     /// `u = D/d`.
-    pub outward: Vec2<R>,
+    pub outward: Vector2<R>,
     /// `W`: from the obstacle to the goal, in m; zero for an obstacle on the goal.
-    pub to_goal: Vec2<R>,
+    pub to_goal: Vector2<R>,
     /// `D`, in m.
-    pub offset: Vec2<R>,
+    pub offset: Vector2<R>,
     /// `d` in m.
     pub distance: R,
     /// `ddot = u.(V - V_o)` in m/s.
@@ -133,23 +130,25 @@ impl<R: Real> Approach<R> {
         offset: Offset<R>,
         active: R::Mask,
         robot: &RobotState<R>,
-        goal: Vec2<R>,
+        goal: Vector2<R>,
     ) -> Self {
         let distance = offset.distance_squared.sqrt();
         let inverse = R::splat(1.0) / distance;
-        let outward = offset.vector.scale(inverse);
+        let outward = offset.vector * inverse;
         // The nearest point of a rectangle's face slides along with the robot.
         let (point_velocity, sliding) = point_velocity(body, robot);
         let relative = robot.velocity - point_velocity;
-        let bearing_rate = outward.cross(relative) * inverse;
+        let bearing_rate = outward.perp(&relative) * inverse;
         // For a disc straight from its centre, so that one on the goal gives exactly zero.
         let to_goal = match body.shape {
-            Shape::Disc { .. } => goal - Vec2::splat(body.state.position),
+            Shape::Disc { .. } => goal - Vector2::splat(body.state.position),
             Shape::Rectangle { .. } => goal - (robot.position - offset.vector),
         };
-        let away = to_goal.dot(to_goal).gt(R::splat(ON_THE_GOAL * ON_THE_GOAL));
-        let aim = Vec2::select(away, to_goal, Vec2::zero());
-        let (cross, dot) = (offset.vector.cross(aim), offset.vector.dot(aim));
+        let away = to_goal
+            .dot(&to_goal)
+            .gt(R::splat(ON_THE_GOAL * ON_THE_GOAL));
+        let aim = Vector2::select(away, to_goal, Vector2::zeros());
+        let (cross, dot) = (offset.vector.perp(&aim), offset.vector.dot(&aim));
         let behind = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
         Self {
             active,
@@ -157,7 +156,7 @@ impl<R: Real> Approach<R> {
             to_goal: aim,
             offset: offset.vector,
             distance,
-            range_rate: outward.dot(relative),
+            range_rate: outward.dot(&relative),
             bearing_rate: R::select(sliding, R::zero(), bearing_rate),
             goal_bearing_rate: goal_bearing_rate(body, aim, point_velocity),
             angle: unsigned_angle(cross, dot),
@@ -171,33 +170,33 @@ impl<R: Real> Approach<R> {
 
 /// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
 #[inline(always)]
-fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vec2<R>, point_velocity: Vec2<R>) -> R {
+fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vector2<R>, point_velocity: Vector2<R>) -> R {
     if matches!(body.shape, Shape::Disc { .. }) && body.state.velocity == [0.0; 2] {
         return R::zero();
     }
-    let length_squared = to_goal.dot(to_goal);
-    let rate = -to_goal.cross(point_velocity) / length_squared;
+    let length_squared = to_goal.dot(&to_goal);
+    let rate = -to_goal.perp(&point_velocity) / length_squared;
     R::select(length_squared.gt(R::zero()), rate, R::zero())
 }
 
 /// Velocity of the point that distances are measured from, and where it slides along a face.
 #[inline(always)]
-fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vec2<R>, R::Mask) {
+fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R::Mask) {
     match body.shape {
-        Shape::Disc { .. } => (Vec2::splat(body.state.velocity), R::Mask::none()),
+        Shape::Disc { .. } => (Vector2::splat(body.state.velocity), R::Mask::none()),
         Shape::Rectangle {
             half_length,
             half_width,
             axis,
         } => {
-            let local = into_axes(robot.position - Vec2::splat(body.state.position), axis);
+            let local = into_axes(robot.position - Vector2::splat(body.state.position), axis);
             let velocity = into_axes(robot.velocity, axis);
             let beside = local.x.abs().le(R::splat(half_length));
             let abreast = local.y.abs().le(R::splat(half_width));
-            let slide = Vec2 {
-                x: R::select(beside, velocity.x, R::zero()),
-                y: R::select(abreast, velocity.y, R::zero()),
-            };
+            let slide = Vector2::new(
+                R::select(beside, velocity.x, R::zero()),
+                R::select(abreast, velocity.y, R::zero()),
+            );
             (out_of_axes(slide, axis), beside | abreast)
         }
     }
@@ -210,22 +209,22 @@ pub fn separation<R: Real>(
     body: &Body,
     half: [f64; 2],
     axis: [f64; 2],
-    position: Vec2<R>,
-    goal: Vec2<R>,
+    position: Vector2<R>,
+    goal: Vector2<R>,
 ) -> (R::Mask, R, R) {
-    let center = Vec2::splat(body.state.position);
+    let center = Vector2::splat(body.state.position);
     let from = into_axes(position - center, axis);
     let to = into_axes(goal - center, axis);
     // Separating axes of a segment (midpoint m, half vector h) and a box (Ericson 2005, 5.3.3).
     let two = R::splat(0.5);
-    let middle = (from + to).scale(two);
-    let reach = (to - from).scale(two);
+    let middle = (from + to) * two;
+    let reach = (to - from) * two;
     let (half_x, half_y) = (R::splat(half[0]), R::splat(half[1]));
     let overlaps = middle.x.abs().le(half_x + reach.x.abs())
         & middle.y.abs().le(half_y + reach.y.abs())
         & middle
-            .cross(reach)
+            .perp(&reach)
             .abs()
             .le(half_x * reach.y.abs() + half_y * reach.x.abs());
-    (overlaps, from.cross(to), from.dot(to))
+    (overlaps, from.perp(&to), from.dot(&to))
 }

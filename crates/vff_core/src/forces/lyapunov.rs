@@ -4,18 +4,18 @@ use crate::forces::detour::Turning;
 use crate::forces::geometry::Approach;
 use crate::forces::repulsive::Repulsion;
 use crate::gains::GainLanes;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Real, Vector2};
 
 /// `V_1 = K_1^2 |E|^2/2 + m K_1 |Edot|^2/2` in N^2 (5.5.2).
 #[inline(always)]
 pub fn free_part<R: Real>(
     gains: &GainLanes<R>,
     mass: f64,
-    to_goal: Vec2<R>,
-    velocity: Vec2<R>,
+    to_goal: Vector2<R>,
+    velocity: Vector2<R>,
 ) -> R {
     let k1 = gains.attractive;
-    R::splat(0.5) * k1 * (k1 * to_goal.dot(to_goal) + R::splat(mass) * velocity.dot(velocity))
+    R::splat(0.5) * k1 * (k1 * to_goal.dot(&to_goal) + R::splat(mass) * velocity.dot(&velocity))
 }
 
 /// Part of an active obstacle in N^2, with the `h_Lambda` and `h_psi` of `Q_2` (5.5.2):

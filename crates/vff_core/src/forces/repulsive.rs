@@ -2,7 +2,7 @@
 
 use crate::forces::geometry::Approach;
 use crate::gains::GainLanes;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Real, Vector2};
 
 /// `L` and its damping part `Ld` (5.4.3).
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +27,7 @@ impl<R: Real> Repulsion<R> {
 
     /// `F_Lambda = K_3 (L + b Ld) u` in N.
     #[inline(always)]
-    pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vec2<R> {
-        approach
-            .outward
-            .scale(gains.repulsive * (self.potential + gains.ratio * self.rate))
+    pub fn force(&self, gains: &GainLanes<R>, approach: &Approach<R>) -> Vector2<R> {
+        approach.outward * (gains.repulsive * (self.potential + gains.ratio * self.rate))
     }
 }

@@ -1,7 +1,7 @@
 //! On which side the detour leads around an obstacle: the rules of Zeng (2011), 5.4.
 
 use crate::forces::geometry::{Approach, Body, COLLINEAR_ANGLE, RobotState, separation};
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::obstacle::Shape;
 
 /// An obstacle faster than this counts as moving, in m/s.
@@ -41,7 +41,7 @@ pub fn decide<R: Real>(
     body: &Body,
     approach: &Approach<R>,
     robot: &RobotState<R>,
-    goal: Vec2<R>,
+    goal: Vector2<R>,
 ) -> R {
     let mut side = R::select(approach.collinear, R::zero(), approach.shortest_side);
     match body.shape {
@@ -49,9 +49,9 @@ pub fn decide<R: Real>(
             let [x, y] = body.state.velocity;
             let speed = (x * x + y * y).sqrt();
             if rules.pass_behind && speed > MOVING_SPEED {
-                let course = Vec2::splat([x / speed, y / speed]);
-                let robot_side = course.cross(approach.offset);
-                let goal_side = course.cross(approach.to_goal);
+                let course = Vector2::splat([x / speed, y / speed]);
+                let robot_side = course.perp(&approach.offset);
+                let goal_side = course.perp(&approach.to_goal);
                 let line = R::splat(VELOCITY_LINE);
                 let straddled = (robot_side.gt(line) & goal_side.lt(-line))
                     | (robot_side.lt(-line) & goal_side.gt(line));
@@ -102,8 +102,8 @@ pub fn latch<R: Real>(rules: &SideRules, approach: &Approach<R>, side: R, latche
 /// detour forces, counter-clockwise when that sum has no component across, relative to the
 /// summed magnitudes.
 #[inline(always)]
-pub fn tie_break<R: Real>(outward: Vec2<R>, others: Vec2<R>, magnitudes: R) -> R {
-    let across = outward.cross(others);
+pub fn tie_break<R: Real>(outward: Vector2<R>, others: Vector2<R>, magnitudes: R) -> R {
+    let across = outward.perp(&others);
     let clear = across.abs().gt(R::splat(COLLINEAR_ANGLE) * magnitudes);
     // Lanes without any other force have 0 > 0, which is false: counter-clockwise.
     R::select(clear, across.sign(), R::splat(1.0))

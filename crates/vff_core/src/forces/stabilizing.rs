@@ -6,7 +6,7 @@ use crate::forces::geometry::{Approach, Body};
 use crate::forces::repulsive::Repulsion;
 use crate::forces::side::Detour;
 use crate::gains::GainLanes;
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 
 /// Below this `|v_L|` the direction of the force is lost and it is zero, in N/s.
 const NO_DIRECTION: f64 = 1e-6;
@@ -95,9 +95,9 @@ pub struct Dissipation<R> {
     /// Omega in N^2/s, without the terms of the attraction alone (there are none).
     pub omega: R,
     /// `sum of l` in N/s.
-    pub rate: Vec2<R>,
+    pub rate: Vector2<R>,
     /// `sum of f` in N.
-    pub force: Vec2<R>,
+    pub force: Vector2<R>,
 }
 
 /// What Omega needs to know of the robot.
@@ -106,9 +106,9 @@ pub struct Dissipative<R> {
     /// Mass in kg.
     pub mass: f64,
     /// `E` in m.
-    pub to_goal: Vec2<R>,
+    pub to_goal: Vector2<R>,
     /// `V` in m/s.
-    pub velocity: Vec2<R>,
+    pub velocity: Vector2<R>,
 }
 
 impl<R: Real> Dissipation<R> {
@@ -118,8 +118,8 @@ impl<R: Real> Dissipation<R> {
     pub fn zero() -> Self {
         Self {
             omega: R::zero(),
-            rate: Vec2::zero(),
-            force: Vec2::zero(),
+            rate: Vector2::zeros(),
+            force: Vector2::zeros(),
         }
     }
 
@@ -142,28 +142,28 @@ impl<R: Real> Dissipation<R> {
         let m = R::splat(robot.mass);
         let half_m = R::splat(0.5 * robot.mass);
         let two = R::splat(2.0);
-        let (u, t) = (approach.outward, approach.outward.perp());
+        let (u, t) = (approach.outward, approach.outward.left_normal());
         let (a, c, d) = (approach.depth, approach.margin, approach.distance);
         let ddot = approach.range_rate;
         let (betadot, phidot) = (approach.bearing_rate, approach.angle_rate());
-        let acceleration: Vec2<R> = Vec2::splat(body.state.acceleration);
+        let acceleration: Vector2<R> = Vector2::splat(body.state.acceleration);
 
-        let f = u.scale(k3 * repulsion.potential) + t.scale(k5 * turning.signed_potential);
-        let l = u.scale(k3 * repulsion.rate) + t.scale(k5 * turning.signed_rate);
+        let f = u * (k3 * repulsion.potential) + t * (k5 * turning.signed_potential);
+        let l = u * (k3 * repulsion.rate) + t * (k5 * turning.signed_rate);
         let edot = -robot.velocity;
         let margin_rate = -two * ddot * (a * a / (c * c * c) + a / (c * c));
         let alphaddot = goal_bearing_acceleration(body, approach);
 
-        let along = k1 * edot.dot(f) + two * k3 * k3 * ddot * (a / c) * repulsion.potential;
+        let along = k1 * edot.dot(&f) + two * k3 * k3 * ddot * (a / c) * repulsion.potential;
         let stiffening = half_m * k3 * margin_rate * ddot * ddot;
         let turning_power = k5
             * turning.signed_rate
-            * (m * acceleration.dot(t) - k1 * robot.to_goal.dot(t)
+            * (m * acceleration.dot(&t) - k1 * robot.to_goal.dot(&t)
                 + m * d * alphaddot
                 + two * m * ddot * betadot);
         let repelling_power = k3
             * repulsion.rate
-            * (k1 * robot.to_goal.dot(u) - m * acceleration.dot(u) + m * d * betadot * betadot);
+            * (k1 * robot.to_goal.dot(&u) - m * acceleration.dot(&u) + m * d * betadot * betadot);
         let spinning = m * k5 * a * ddot * phidot * phidot * (R::splat(0.5) * a - d);
         let narrowing = two * k5 * k5 * a * a * a * ddot * detour.turn * detour.turn;
         let overridden = (detour.descent - R::splat(1.0))
@@ -173,18 +173,18 @@ impl<R: Real> Dissipation<R> {
             * turning.signed_rate;
         let own = -along + stiffening + turning_power - repelling_power + spinning - narrowing
             + overridden;
-        let crossed = l.dot(self.force) + self.rate.dot(f);
+        let crossed = l.dot(&self.force) + self.rate.dot(&f);
 
         let active = approach.active;
         self.omega = R::select(active, self.omega + own - crossed, self.omega);
-        self.rate = Vec2::select(active, self.rate + l, self.rate);
-        self.force = Vec2::select(active, self.force + f, self.force);
+        self.rate = Vector2::select(active, self.rate + l, self.rate);
+        self.force = Vector2::select(active, self.force + f, self.force);
     }
 
     /// `v_L = K_1 Edot + sum of l` in N/s.
     #[inline(always)]
-    pub fn direction(&self, gains: &GainLanes<R>, velocity: Vec2<R>) -> Vec2<R> {
-        self.rate - velocity.scale(gains.attractive)
+    pub fn direction(&self, gains: &GainLanes<R>, velocity: Vector2<R>) -> Vector2<R> {
+        self.rate - velocity * gains.attractive
     }
 
     /// `F_L = Omega v_L / |v_L|^2` where `Omega > 0` (5.5.9), capped by the mode, in N.
@@ -195,24 +195,24 @@ impl<R: Real> Dissipation<R> {
         gains: &GainLanes<R>,
         robot: &Dissipative<R>,
         control_period: f64,
-    ) -> Vec2<R> {
+    ) -> Vector2<R> {
         let direction = self.direction(gains, robot.velocity);
-        let length = direction.dot(direction).sqrt();
+        let length = direction.dot(&direction).sqrt();
         let acts = self.omega.gt(R::zero()) & R::splat(NO_DIRECTION).le(length);
         let wanted = self.omega / length;
         let magnitude = match mode {
-            Stabilizing::Off => return Vec2::zero(),
+            Stabilizing::Off => return Vector2::zeros(),
             Stabilizing::Full => wanted,
             Stabilizing::Capped(Cap::Force(cap)) => wanted.min(R::splat(cap)),
             Stabilizing::Capped(Cap::Momentum(share)) => {
-                let speed = robot.velocity.dot(robot.velocity).sqrt();
+                let speed = robot.velocity.dot(&robot.velocity).sqrt();
                 wanted.min(speed * R::splat(share * robot.mass / control_period))
             }
         };
         if acts.any() {
-            Vec2::select(acts, direction.scale(magnitude / length), Vec2::zero())
+            Vector2::select(acts, direction * (magnitude / length), Vector2::zeros())
         } else {
-            Vec2::zero()
+            Vector2::zeros()
         }
     }
 }
@@ -226,9 +226,9 @@ fn goal_bearing_acceleration<R: Real>(body: &Body, approach: &Approach<R>) -> R 
         return R::zero();
     }
     let w = approach.to_goal;
-    let length_squared = w.dot(w);
-    let turning = w.cross(Vec2::splat(state.acceleration));
-    let closing = w.dot(Vec2::splat(state.velocity));
+    let length_squared = w.dot(&w);
+    let turning = w.perp(&Vector2::splat(state.acceleration));
+    let closing = w.dot(&Vector2::splat(state.velocity));
     let value = (R::splat(2.0) * closing * approach.goal_bearing_rate - turning) / length_squared;
     R::select(length_squared.gt(R::zero()), value, R::zero())
 }

@@ -14,7 +14,7 @@ pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;
 
 use crate::forces::geometry::{Body, Offset, RobotState};
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, Situation};
 use crate::obstacle::Shape;
 use crate::scenario::Scenario;
@@ -33,7 +33,7 @@ pub struct Neighbor<'a, R> {
     /// `d` in m.
     pub distance: R,
     /// `u = D/d`.
-    pub outward: Vec2<R>,
+    pub outward: Vector2<R>,
     /// Distance of the surfaces in m, at least [`LEAST_GAP`].
     pub gap: R,
     /// `r2` measured between the surfaces, in m.
@@ -43,7 +43,7 @@ pub struct Neighbor<'a, R> {
 /// Forces of one law, gains in lanes.
 pub trait PairwiseField<R: Real>: Copy {
     /// Attraction in N; `inside`: lanes inside an active region.
-    fn attraction(&self, to_goal: Vec2<R>, velocity: Vec2<R>, inside: R::Mask) -> Vec2<R>;
+    fn attraction(&self, to_goal: Vector2<R>, velocity: Vector2<R>, inside: R::Mask) -> Vector2<R>;
     /// Push of an obstacle on the robot inside its active region.
     fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R>;
 }
@@ -52,17 +52,17 @@ pub trait PairwiseField<R: Real>: Copy {
 #[derive(Clone, Copy, Debug)]
 pub struct Push<R> {
     /// Away from the obstacle.
-    pub repulsive: Vec2<R>,
+    pub repulsive: Vector2<R>,
     /// Around it.
-    pub detour: Vec2<R>,
+    pub detour: Vector2<R>,
 }
 
 impl<R: Real> Push<R> {
     /// A push without a detour.
     #[inline(always)]
     #[must_use]
-    pub fn straight(repulsive: Vec2<R>) -> Self {
-        let detour = Vec2::zero();
+    pub fn straight(repulsive: Vector2<R>) -> Self {
+        let detour = Vector2::zeros();
         Self { repulsive, detour }
     }
 }
@@ -71,7 +71,7 @@ impl<R: Real> Push<R> {
 #[derive(Clone, Copy, Debug)]
 pub struct PairwiseLaw<R, F> {
     field: F,
-    goal: Vec2<R>,
+    goal: Vector2<R>,
     robot_radius: f64,
 }
 
@@ -81,7 +81,7 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
     pub fn new(field: F, scenario: &Scenario) -> Self {
         Self {
             field,
-            goal: Vec2::splat(scenario.goal),
+            goal: Vector2::splat(scenario.goal),
             robot_radius: scenario.robot.radius,
         }
     }
@@ -91,7 +91,7 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
         let distance = offset.distance_squared.sqrt();
         let apart = distance.gt(R::zero());
         // A robot exactly on the centre, or inside a rectangle, is pushed nowhere.
-        let outward = offset.vector.scale(R::splat(1.0) / distance);
+        let outward = offset.vector * (R::splat(1.0) / distance);
         let touching = self.robot_radius
             + match body.shape {
                 Shape::Disc { radius } => radius,
@@ -101,7 +101,7 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
             body,
             offset,
             distance,
-            outward: Vec2::select(apart, outward, Vec2::zero()),
+            outward: Vector2::select(apart, outward, Vector2::zeros()),
             gap: (distance - R::splat(touching)).max(R::splat(LEAST_GAP)),
             reach: body.regions.active_radius - touching,
         }
@@ -136,8 +136,8 @@ impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
             let Some((_, push)) = push else {
                 return ObstacleTerms::idle(if body.state.present { "free" } else { "absent" });
             };
-            let left = body.offset(robot.position).vector.perp();
-            let along = push.detour.dot(left);
+            let left = body.offset(robot.position).vector.left_normal();
+            let along = push.detour.dot(&left);
             ObstacleTerms {
                 repulsive: push.repulsive.lane(0),
                 detour: push.detour.lane(0),
@@ -163,7 +163,7 @@ impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
     #[inline(always)]
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let robot = &situation.robot;
-        let mut force = Vec2::zero();
+        let mut force = Vector2::zeros();
         let mut inside = R::Mask::none();
         for body in situation.bodies {
             let Some((active, push)) = self.push_of(body, robot) else {
@@ -171,13 +171,13 @@ impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
             };
             inside = inside | active;
             let both = force + (push.repulsive + push.detour);
-            force = Vec2::select(active, both, force);
+            force = Vector2::select(active, both, force);
         }
         let to_goal = self.goal - robot.position;
         let attraction = self.field.attraction(to_goal, robot.velocity, inside);
         Command {
             force: attraction + force,
-            stabilizing: Vec2::zero(),
+            stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         }
     }

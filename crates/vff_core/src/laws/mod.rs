@@ -7,7 +7,7 @@ pub use virtual_force_field::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualF
 
 use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Real, Vector2};
 use crate::scenario::Scenario;
 
 /// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
@@ -52,9 +52,9 @@ pub struct Situation<'a, R> {
 #[derive(Clone, Copy, Debug)]
 pub struct Command<R> {
     /// Force in N, before the limits of the robot.
-    pub force: Vec2<R>,
+    pub force: Vector2<R>,
     /// Stabilizing force within it, in N.
-    pub stabilizing: Vec2<R>,
+    pub stabilizing: Vector2<R>,
     /// Lyapunov function in N^2, NaN where it is not defined or was not asked for.
     pub lyapunov: R,
 }

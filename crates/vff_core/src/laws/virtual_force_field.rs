@@ -9,7 +9,7 @@ use crate::forces::repulsive::Repulsion;
 use crate::forces::side::{self, Detour, SideRules};
 use crate::forces::stabilizing::{Dissipation, Dissipative, Stabilizing};
 use crate::gains::{GainLanes, Gains};
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::{Command, Law, LawFamily, Situation};
 use crate::scenario::Scenario;
 
@@ -133,8 +133,8 @@ struct Slot<R: Real> {
     detour: Detour<R>,
     turning: Turning<R>,
     repulsion: Repulsion<R>,
-    repulsive: Vec2<R>,
-    detouring: Vec2<R>,
+    repulsive: Vector2<R>,
+    detouring: Vector2<R>,
 }
 
 /// The law at work on robots side by side. `RECORD`: the Lyapunov function is wanted too.
@@ -143,7 +143,7 @@ pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
     gains: GainLanes<R>,
     stabilizing: Stabilizing,
     rules: SideRules,
-    goal: Vec2<R>,
+    goal: Vector2<R>,
     mass: f64,
     max_acceleration: f64,
     control_period: f64,
@@ -162,7 +162,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             gains,
             stabilizing: law.stabilizing,
             rules: law.rules,
-            goal: Vec2::splat(scenario.goal),
+            goal: Vector2::splat(scenario.goal),
             mass: scenario.robot.mass,
             max_acceleration: scenario.robot.max_acceleration,
             control_period: scenario.rules.control_period,
@@ -178,7 +178,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     fn add_up(
         &self,
         situation: &Situation<'_, R>,
-        total: &mut Vec2<R>,
+        total: &mut Vector2<R>,
         critical: &mut R::Mask,
     ) -> bool {
         let robot = &situation.robot;
@@ -198,18 +198,18 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             let repulsive = Repulsion::new(&approach).force(&self.gains, &approach);
             let detouring = Turning::new(&approach, &detour).force(&self.gains, &approach);
             let both = *total + (repulsive + detouring);
-            *total = Vec2::select(near.active, both, *total);
+            *total = Vector2::select(near.active, both, *total);
         }
         true
     }
 
     /// As [`Self::add_up`], with the sides of every rule, Omega and the terms kept in the slots.
     #[inline(always)]
-    fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vec2<R>, R::Mask) {
+    fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vector2<R>, R::Mask) {
         let critical = self.fill_slots(situation);
         self.break_ties();
         let robot = self.dissipative(&situation.robot);
-        let mut total = Vec2::zero();
+        let mut total = Vector2::zeros();
         self.dissipation = Dissipation::zero();
         if self.rules.hysteresis.is_finite() {
             self.latched.fill(R::zero());
@@ -217,7 +217,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         for slot in &mut self.slots {
             let latched = &mut self.latched[slot.index];
             let both = total + (slot.repulsive + slot.detouring);
-            total = Vec2::select(slot.approach.active, both, total);
+            total = Vector2::select(slot.approach.active, both, total);
             *latched = R::select(slot.approach.active, slot.detour.side, R::zero());
             let seen = (&slot.approach, &slot.repulsion, &slot.turning, &slot.detour);
             self.dissipation
@@ -264,13 +264,13 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         if !self.slots.iter().any(|slot| open(slot).any()) {
             return;
         }
-        let mut others = Vec2::zero();
+        let mut others = Vector2::zeros();
         let mut magnitudes = R::zero();
         for slot in &self.slots {
             let decided = slot.approach.active & half.lt(slot.side.abs());
             let force = slot.detouring;
-            others = Vec2::select(decided, others + force, others);
-            let longer = magnitudes + force.dot(force).sqrt();
+            others = Vector2::select(decided, others + force, others);
+            let longer = magnitudes + force.dot(&force).sqrt();
             magnitudes = R::select(decided, longer, magnitudes);
         }
         for slot in &mut self.slots {
@@ -288,8 +288,8 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             slot.turning = Turning::new(&slot.approach, &slot.detour);
             slot.detouring = slot.turning.force(&self.gains, &slot.approach);
             let force = slot.detouring;
-            others = Vec2::select(tied, others + force, others);
-            magnitudes = R::select(tied, magnitudes + force.dot(force).sqrt(), magnitudes);
+            others = Vector2::select(tied, others + force, others);
+            magnitudes = R::select(tied, magnitudes + force.dot(&force).sqrt(), magnitudes);
         }
     }
 
@@ -305,11 +305,11 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
 
     /// Braking along `-V` with `min(a_max, |V|/interval)`, which never reverses the robot.
     #[inline(always)]
-    fn braking(&self, velocity: Vec2<R>, interval: f64) -> Vec2<R> {
-        let speed = velocity.dot(velocity).sqrt();
+    fn braking(&self, velocity: Vector2<R>, interval: f64) -> Vector2<R> {
+        let speed = velocity.dot(&velocity).sqrt();
         let deceleration = (speed / R::splat(interval)).min(R::splat(self.max_acceleration));
-        let force = velocity.scale(R::splat(-self.mass) * deceleration / speed);
-        Vec2::select(speed.gt(R::zero()), force, Vec2::zero())
+        let force = velocity * (R::splat(-self.mass) * deceleration / speed);
+        Vector2::select(speed.gt(R::zero()), force, Vector2::zeros())
     }
 
     /// Lyapunov function of the slots of the last full evaluation.
@@ -333,7 +333,7 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
         let robot = &situation.robot;
         let stabilizes = self.stabilizing != Stabilizing::Off;
         let remembers = self.rules.hysteresis.is_finite();
-        let (mut obstacles, mut critical) = (Vec2::zero(), R::Mask::none());
+        let (mut obstacles, mut critical) = (Vector2::zeros(), R::Mask::none());
         let in_full = RECORD || stabilizes || remembers;
         if in_full || !self.add_up(situation, &mut obstacles, &mut critical) {
             (obstacles, critical) = self.sum_in_full(situation);
@@ -341,7 +341,7 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
         let attraction = attractive_force(&self.gains, self.goal - robot.position, robot.velocity);
         let mut command = Command {
             force: attraction + obstacles,
-            stabilizing: Vec2::zero(),
+            stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         };
         if stabilizes {
@@ -350,12 +350,12 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
             let force = self
                 .dissipation
                 .force(self.stabilizing, &self.gains, &state, period);
-            command.stabilizing = Vec2::select(critical, Vec2::zero(), force);
+            command.stabilizing = Vector2::select(critical, Vector2::zeros(), force);
             command.force = command.force + force;
         }
         if critical.any() {
             let braking = self.braking(robot.velocity, situation.interval);
-            command.force = Vec2::select(critical, braking, command.force);
+            command.force = Vector2::select(critical, braking, command.force);
         }
         if RECORD {
             let value = self.lyapunov(robot);
@@ -445,8 +445,8 @@ impl ForceFieldLaw<f64, true> {
         }
         let direction = self.dissipation.direction(&self.gains, robot.velocity);
         // dV2/dt = -b |v_L|^2 - v_L.F_L + Omega (5.5.6).
-        let derivative = -self.gains.ratio * direction.dot(direction)
-            - direction.dot(command.stabilizing)
+        let derivative = -self.gains.ratio * direction.dot(&direction)
+            - direction.dot(&command.stabilizing)
             + self.dissipation.omega;
         terms.lyapunov = Some((command.lyapunov, derivative));
         terms
@@ -454,7 +454,7 @@ impl ForceFieldLaw<f64, true> {
 }
 
 /// An obstacle without force.
-fn idle(body: &Body, position: Vec2<f64>) -> ObstacleTerms {
+fn idle(body: &Body, position: Vector2<f64>) -> ObstacleTerms {
     let squared = body.offset(position).distance_squared;
     let region = if !body.state.present {
         "absent"

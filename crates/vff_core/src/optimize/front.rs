@@ -187,7 +187,10 @@ impl Seen {
             }
             for point in part.chunks_exact(dimension) {
                 let bits: Vec<u64> = point.iter().map(|value| value.to_bits()).collect();
-                let on_grid = bits.iter().zip(&self.axes).all(|(bit, axis)| axis.contains(bit));
+                let on_grid = bits
+                    .iter()
+                    .zip(&self.axes)
+                    .all(|(bit, axis)| axis.contains(bit));
                 if !on_grid && self.points.insert(bits) {
                     fresh.extend_from_slice(point);
                 }

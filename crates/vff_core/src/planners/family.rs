@@ -3,7 +3,7 @@
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::forces::geometry::RobotState;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::{Command, Law, LawFamily, Situation};
 use crate::planners::Planner;
 use crate::planners::field_d_star::{FieldDStar, FieldDStarPlanner};
@@ -49,11 +49,11 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
 
     #[inline]
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
-        let mut wanted = Vec2::<R>::zero();
+        let mut wanted = Vector2::<R>::zeros();
         for (lane, planner) in self.planners.iter_mut().enumerate() {
             let robot = RobotState {
-                position: Vec2::splat(situation.robot.position.lane(lane)),
-                velocity: Vec2::splat(situation.robot.velocity.lane(lane)),
+                position: Vector2::splat(situation.robot.position.lane(lane)),
+                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
             };
             let [x, y] = planner.desired_velocity(&Situation {
                 bodies: situation.bodies,
@@ -66,8 +66,8 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
         }
         let change = wanted - situation.robot.velocity;
         Command {
-            force: change.scale(R::splat(self.mass / situation.interval)),
-            stabilizing: Vec2::zero(),
+            force: change * R::splat(self.mass / situation.interval),
+            stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         }
     }

@@ -4,9 +4,9 @@
 //! al. (2011), section 5.3, for programs without a solution: the velocity that violates the
 //! half-planes least.
 
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// Lines whose directions differ by less than this, as a sine, are parallel.
 const PARALLEL: f64 = 1e-9;
@@ -25,7 +25,7 @@ impl HalfPlane {
     #[inline]
     #[must_use]
     pub fn violation(&self, velocity: Vector) -> f64 {
-        self.direction.cross(self.point - velocity)
+        self.direction.perp(&(self.point - velocity))
     }
 }
 
@@ -84,7 +84,7 @@ impl Solver {
             for other in planes.iter().take(index).skip(hard) {
                 self.projected.extend(equal_violation(plane, other));
             }
-            let inward = Wish::Along(plane.direction.perp());
+            let inward = Wish::Along(plane.direction.left_normal());
             if let Ok(better) = program(&self.projected, max_speed, inward) {
                 velocity = better;
             }
@@ -96,21 +96,21 @@ impl Solver {
 
 /// Velocities that violate a half-plane at least as much as another one.
 fn equal_violation(plane: &HalfPlane, other: &HalfPlane) -> Option<HalfPlane> {
-    let sine = plane.direction.cross(other.direction);
+    let sine = plane.direction.perp(&other.direction);
     let point = if sine.abs() <= PARALLEL {
-        if plane.direction.dot(other.direction) > 0.0 {
+        if plane.direction.dot(&other.direction) > 0.0 {
             return None;
         }
-        (plane.point + other.point).scale(0.5)
+        (plane.point + other.point) * 0.5
     } else {
-        let share = other.direction.cross(plane.point - other.point) / sine;
-        plane.point + plane.direction.scale(share)
+        let share = other.direction.perp(&(plane.point - other.point)) / sine;
+        plane.point + plane.direction * share
     };
     let direction = other.direction - plane.direction;
-    let length = direction.dot(direction).sqrt();
+    let length = direction.dot(&direction).sqrt();
     Some(HalfPlane {
         point,
-        direction: direction.scale(1.0 / length),
+        direction: direction * (1.0 / length),
     })
 }
 
@@ -118,11 +118,11 @@ fn equal_violation(plane: &HalfPlane, other: &HalfPlane) -> Option<HalfPlane> {
 /// best velocity before it.
 fn program(planes: &[HalfPlane], max_speed: f64, wish: Wish) -> Result<Vector, (usize, Vector)> {
     let mut velocity = match wish {
-        Wish::Along(direction) => direction.scale(max_speed),
+        Wish::Along(direction) => direction * max_speed,
         Wish::Near(wanted) => {
-            let speed = wanted.dot(wanted).sqrt();
+            let speed = wanted.dot(&wanted).sqrt();
             if speed > max_speed {
-                wanted.scale(max_speed / speed)
+                wanted * (max_speed / speed)
             } else {
                 wanted
             }
@@ -140,9 +140,9 @@ fn program(planes: &[HalfPlane], max_speed: f64, wish: Wish) -> Result<Vector, (
 /// One-dimensional program on the line of a half-plane.
 fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish) -> Option<Vector> {
     let HalfPlane { point, direction } = *plane;
-    let foot = point.dot(direction);
+    let foot = point.dot(&direction);
     // Distance of the line from the origin, not by the difference of two squares: the point may be far.
-    let away = point.cross(direction);
+    let away = point.perp(&direction);
     let reach = max_speed * max_speed - away * away;
     if reach < 0.0 {
         return None;
@@ -150,8 +150,8 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
     let reach = reach.sqrt();
     let (mut low, mut high) = (-foot - reach, -foot + reach);
     for other in earlier {
-        let sine = direction.cross(other.direction);
-        let offset = other.direction.cross(point - other.point);
+        let sine = direction.perp(&other.direction);
+        let offset = other.direction.perp(&(point - other.point));
         if sine.abs() <= PARALLEL {
             if offset < 0.0 {
                 return None;
@@ -170,13 +170,13 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
     }
     let share = match wish {
         Wish::Along(aim) => {
-            if aim.dot(direction) > 0.0 {
+            if aim.dot(&direction) > 0.0 {
                 high
             } else {
                 low
             }
         }
-        Wish::Near(wanted) => direction.dot(wanted - point).max(low).min(high),
+        Wish::Near(wanted) => direction.dot(&(wanted - point)).max(low).min(high),
     };
-    Some(point + direction.scale(share))
+    Some(point + direction * share)
 }

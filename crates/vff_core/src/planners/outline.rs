@@ -1,10 +1,10 @@
 //! What a robot must keep its center out of: an obstacle grown by the robot's radius.
 
 use crate::forces::geometry::Body;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::obstacle::Shape;
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// Directions closer to a line than this, as a sine, count as on it.
 const STRAIGHT: f64 = 1e-12;
@@ -47,8 +47,8 @@ impl Outline {
                 half_width,
                 axis,
             } => {
-                let along = Vector::splat(axis).scale(half_length);
-                let across = Vector::splat(axis).perp().scale(half_width);
+                let along = Vector::splat(axis) * half_length;
+                let across = Vector::splat(axis).left_normal() * half_width;
                 let corners = [
                     center + along + across,
                     center - along + across,
@@ -89,7 +89,7 @@ impl Outline {
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for corner in &mut self.corners {
-            *corner = corner.scale(factor);
+            *corner *= factor;
         }
         self.radius *= factor;
         self
@@ -115,10 +115,10 @@ impl Outline {
         let mut best = (f64::INFINITY, self.corners[0]);
         for (from, to) in self.edges() {
             let (edge, offset) = (to - from, place - from);
-            inside &= edge.cross(offset) >= 0.0;
-            let share = (offset.dot(edge) / edge.dot(edge)).clamp(0.0, 1.0);
-            let point = from + edge.scale(share);
-            let gap = (place - point).dot(place - point);
+            inside &= edge.perp(&offset) >= 0.0;
+            let share = (offset.dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0);
+            let point = from + edge * share;
+            let gap = (place - point).dot(&(place - point));
             if gap < best.0 {
                 best = (gap, point);
             }
@@ -129,8 +129,8 @@ impl Outline {
     /// Whether the robot touches it or is inside.
     #[must_use]
     pub fn touches(&self) -> bool {
-        let (point, inside) = self.nearest(Vector::zero());
-        inside || point.dot(point) <= self.radius * self.radius
+        let (point, inside) = self.nearest(Vector::zeros());
+        inside || point.dot(&point) <= self.radius * self.radius
     }
 
     /// Rays that just touch it; none from inside.
@@ -141,11 +141,13 @@ impl Outline {
         }
         let mut legs: Option<Legs> = None;
         for &corner in self.corners() {
-            let square = corner.dot(corner);
+            let square = corner.dot(&corner);
             let reach = (square - self.radius * self.radius).sqrt();
-            let turned = |sine: f64| Vector {
-                x: (corner.x * reach - corner.y * sine) / square,
-                y: (corner.y * reach + corner.x * sine) / square,
+            let turned = |sine: f64| {
+                Vector2::new(
+                    (corner.x * reach - corner.y * sine) / square,
+                    (corner.y * reach + corner.x * sine) / square,
+                )
             };
             let (left, right) = (turned(self.radius), turned(-self.radius));
             let own = Legs {
@@ -158,10 +160,10 @@ impl Outline {
                 legs = Some(own);
                 continue;
             };
-            if known.left.cross(left) > 0.0 {
+            if known.left.perp(&left) > 0.0 {
                 (known.left, known.left_reach) = (left, reach);
             }
-            if known.right.cross(right) < 0.0 {
+            if known.right.perp(&right) < 0.0 {
                 (known.right, known.right_reach) = (right, reach);
             }
         }
@@ -173,8 +175,8 @@ impl Outline {
     #[must_use]
     pub fn time_to_contact(&self, relative: Vector) -> f64 {
         if self.touches() {
-            let (point, inside) = self.nearest(Vector::zero());
-            let leaving = !inside && point.dot(relative) <= 0.0;
+            let (point, inside) = self.nearest(Vector::zeros());
+            let leaving = !inside && point.dot(&relative) <= 0.0;
             return if leaving { f64::INFINITY } else { 0.0 };
         }
         let mut time = f64::INFINITY;
@@ -183,15 +185,15 @@ impl Outline {
         }
         for (from, to) in self.edges() {
             let edge = to - from;
-            let length = edge.dot(edge).sqrt();
+            let length = edge.dot(&edge).sqrt();
             // Outward normal of a counter-clockwise edge, and the edge moved out by the radius.
-            let normal = -edge.perp().scale(1.0 / length);
-            let approach = normal.dot(relative);
+            let normal = -edge.left_normal() * (1.0 / length);
+            let approach = normal.dot(&relative);
             if approach >= 0.0 {
                 continue;
             }
-            let until = (normal.dot(from) + self.radius) / approach;
-            let along = edge.dot(relative.scale(until) - from) / length;
+            let until = (normal.dot(&from) + self.radius) / approach;
+            let along = edge.dot(&(relative * until - from)) / length;
             if until >= 0.0 && (0.0..=length).contains(&along) {
                 time = time.min(until);
             }
@@ -213,16 +215,16 @@ impl Legs {
     /// Whether a direction lies between the rays; the rays themselves touch and do not count.
     #[must_use]
     pub fn hold(&self, direction: Vector) -> bool {
-        let slack = STRAIGHT * direction.dot(direction).sqrt();
-        self.left.cross(direction) < -slack && self.right.cross(direction) > slack
+        let slack = STRAIGHT * direction.dot(&direction).sqrt();
+        self.left.perp(&direction) < -slack && self.right.perp(&direction) > slack
     }
 }
 
 /// Time at which a point that starts at the origin enters a disc that it is not in.
 fn entry(center: Vector, radius: f64, velocity: Vector) -> f64 {
-    let approach = center.dot(velocity);
-    let square = velocity.dot(velocity);
-    let gap = center.dot(center) - radius * radius;
+    let approach = center.dot(&velocity);
+    let square = velocity.dot(&velocity);
+    let gap = center.dot(&center) - radius * radius;
     let discriminant = approach * approach - square * gap;
     if approach <= 0.0 || discriminant < 0.0 {
         return f64::INFINITY;

@@ -1,7 +1,7 @@
 //! Optimal reciprocal collision avoidance, van den Berg, Guy, Lin and Manocha (2011).
 
 use crate::forces::geometry::Body;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::obstacle::Shape;
 use crate::planners::Planner;
@@ -9,7 +9,7 @@ use crate::planners::half_planes::{HalfPlane, Solver};
 use crate::planners::outline::{Legs, Outline};
 use crate::scenario::Scenario;
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// Parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,14 +61,14 @@ pub fn avoiding(
         Some(legs) => pass(&outline.scaled(1.0 / horizon), &legs, relative),
     };
     HalfPlane {
-        point: velocity + change.scale(share),
+        point: velocity + change * share,
         direction,
     }
 }
 
 /// Direction of the line and change of velocity at a rounded front.
 fn front(normal: Vector, change: f64) -> (Vector, Vector) {
-    (-normal.perp(), normal.scale(change))
+    (-normal.left_normal(), normal * change)
 }
 
 /// Out of an outline by the shortest way.
@@ -79,30 +79,30 @@ fn leave(scaled: &Outline, relative: Vector) -> (Vector, Vector) {
     } else {
         relative - point
     };
-    let length = way.dot(way).sqrt();
+    let length = way.dot(&way).sqrt();
     if length == 0.0 {
         // Exactly on the set: any direction is as short as any other.
-        return front(Vector { x: 1.0, y: 0.0 }, scaled.radius);
+        return front(Vector2::new(1.0, 0.0), scaled.radius);
     }
     let depth = if inside {
         scaled.radius + length
     } else {
         scaled.radius - length
     };
-    front(way.scale(1.0 / length), depth)
+    front(way * (1.0 / length), depth)
 }
 
 /// To the nearest edge of the velocity obstacle of an outline ahead: front or one of the legs.
 fn pass(scaled: &Outline, legs: &Legs, relative: Vector) -> (Vector, Vector) {
-    let left_depth = -legs.left.cross(relative);
-    let right_depth = legs.right.cross(relative);
+    let left_depth = -legs.left.perp(&relative);
+    let right_depth = legs.right.perp(&relative);
     let (point, inside) = scaled.nearest(relative);
     let way = relative - point;
-    let length = way.dot(way).sqrt();
+    let length = way.dot(&way).sqrt();
     if !inside && length > 0.0 {
-        let normal = way.scale(1.0 / length);
-        let (left_normal, right_normal) = (legs.left.perp(), -legs.right.perp());
-        if left_normal.cross(normal) > 0.0 && normal.cross(right_normal) > 0.0 {
+        let normal = way * (1.0 / length);
+        let (left_normal, right_normal) = (legs.left.left_normal(), -legs.right.left_normal());
+        if left_normal.perp(&normal) > 0.0 && normal.perp(&right_normal) > 0.0 {
             return front(normal, scaled.radius - length);
         }
     }
@@ -116,24 +116,24 @@ fn pass(scaled: &Outline, legs: &Legs, relative: Vector) -> (Vector, Vector) {
     } else {
         -legs.right
     };
-    let change = direction.scale(relative.dot(direction)) - relative;
+    let change = direction * relative.dot(&direction) - relative;
     (direction, change)
 }
 
 /// Depth below the nearest face that looks to the robot, and its normal.
 fn front_face(scaled: &Outline, place: Vector) -> (f64, Vector) {
     let corners = scaled.corners();
-    let mut best = (f64::INFINITY, Vector { x: 1.0, y: 0.0 });
+    let mut best = (f64::INFINITY, Vector2::new(1.0, 0.0));
     for (index, &from) in corners.iter().enumerate() {
         let edge = corners[(index + 1) % corners.len()] - from;
-        let length = edge.dot(edge).sqrt();
+        let length = edge.dot(&edge).sqrt();
         if length == 0.0 {
             continue;
         }
-        let normal = -edge.perp().scale(1.0 / length);
-        let depth = scaled.radius + normal.dot(from - place);
+        let normal = -edge.left_normal() * (1.0 / length);
+        let depth = scaled.radius + normal.dot(&(from - place));
         // Faces whose rounded side the origin sees.
-        if normal.dot(from) + scaled.radius < 0.0 && depth < best.0 {
+        if normal.dot(&from) + scaled.radius < 0.0 && depth < best.0 {
             best = (depth, normal);
         }
     }
@@ -165,7 +165,7 @@ impl ReciprocalPlanner {
             goal: Vector::splat(scenario.goal),
             robot_radius: scenario.robot.radius,
             max_speed: scenario.robot.max_speed,
-            turn: Vector { x: cosine, y: sine },
+            turn: Vector2::new(cosine, sine),
             neighbors: Vec::with_capacity(count),
             planes: Vec::with_capacity(count),
             solver: Solver::default(),
@@ -175,13 +175,13 @@ impl ReciprocalPlanner {
     /// Velocity straight to the goal, slightly turned, that does not overshoot it.
     fn wanted(&self, situation: &Situation<'_, f64>) -> Vector {
         let to_goal = self.goal - situation.robot.position;
-        let distance = to_goal.dot(to_goal).sqrt();
+        let distance = to_goal.dot(&to_goal).sqrt();
         if distance == 0.0 {
-            return Vector::zero();
+            return Vector::zeros();
         }
         let speed = self.max_speed.min(distance / situation.interval);
-        let straight = to_goal.scale(speed / distance);
-        straight.scale(self.turn.x) + straight.perp().scale(self.turn.y)
+        let straight = to_goal * (speed / distance);
+        straight * self.turn.x + straight.left_normal() * self.turn.y
     }
 
     fn outline(&self, body: &Body, position: Vector) -> Outline {
@@ -205,11 +205,11 @@ impl Planner for ReciprocalPlanner {
                 continue;
             }
             let outline = self.outline(body, robot.position);
-            let (point, inside) = outline.nearest(Vector::zero());
+            let (point, inside) = outline.nearest(Vector::zeros());
             let gap = if inside {
                 0.0
             } else {
-                point.dot(point).sqrt() - outline.radius
+                point.dot(&point).sqrt() - outline.radius
             };
             if gap < self.settings.reach {
                 // Rectangles come first: they cannot be violated.

@@ -1,13 +1,13 @@
 //! Velocity obstacles of Fiorini and Shiller (1998): relative velocities that lead to a contact
 //! lie between two rays; what is left of the reachable velocities is searched exactly.
 
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::planners::Planner;
 use crate::planners::outline::{Legs, Outline};
 use crate::scenario::Scenario;
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// A velocity beyond a limit by less than this share of it is on the limit.
 const ON_THE_LIMIT: f64 = 1e-9;
@@ -105,13 +105,13 @@ struct Reachable {
 impl Reachable {
     fn holds(&self, velocity: Vector) -> bool {
         let beyond =
-            |vector: Vector, limit: f64| vector.dot(vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
+            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
         !beyond(velocity, self.max_speed) && !beyond(velocity - self.velocity, self.change)
     }
 
     fn circles(&self) -> [(Vector, f64); 2] {
         [
-            (Vector::zero(), self.max_speed),
+            (Vector::zeros(), self.max_speed),
             (self.velocity, self.change),
         ]
     }
@@ -168,7 +168,7 @@ impl VelocityObstaclePlanner {
             // The robot changes its velocity over a control period: as if it went on at the old
             // one for a part of it and had the new one from there.
             let before = (1.0 - self.settings.ramp) * situation.interval;
-            let moved = now.seen_after((robot.velocity - now.velocity).scale(before));
+            let moved = now.seen_after((robot.velocity - now.velocity) * before);
             let legs = moved.legs();
             self.cones.push(Cone {
                 outline: moved,
@@ -197,23 +197,27 @@ impl VelocityObstaclePlanner {
         let robot = &situation.robot;
         let change = velocity - robot.velocity;
         let period = situation.interval;
-        let farthest = (self.max_speed + change.dot(change).sqrt()) * period;
+        let farthest = (self.max_speed + change.dot(&change).sqrt()) * period;
         self.cones.iter().any(|cone| {
-            let (point, inside) = cone.now.nearest(Vector::zero());
-            let distance = if inside { 0.0 } else { point.dot(point).sqrt() };
-            let speed = cone.now.velocity.dot(cone.now.velocity).sqrt();
+            let (point, inside) = cone.now.nearest(Vector::zeros());
+            let distance = if inside {
+                0.0
+            } else {
+                point.dot(&point).sqrt()
+            };
+            let speed = cone.now.velocity.dot(&cone.now.velocity).sqrt();
             if distance - cone.now.radius > farthest + speed * period {
                 return false;
             }
             let kept = cone.now.radius.min(distance);
             (1..=INSTANTS).any(|instant| {
                 let share = f64::from(instant) / f64::from(INSTANTS);
-                let steady = (robot.velocity - cone.now.velocity).scale(share * period);
+                let steady = (robot.velocity - cone.now.velocity) * (share * period);
                 let bent = 0.5 * share * share + (self.settings.ramp - 0.5) * share;
-                let way = steady + change.scale(bent * period);
+                let way = steady + change * (bent * period);
                 let (point, inside) = cone.now.nearest(way);
                 let offset = way - point;
-                inside || offset.dot(offset) < kept * kept
+                inside || offset.dot(&offset) < kept * kept
             })
         })
     }
@@ -229,53 +233,53 @@ impl VelocityObstaclePlanner {
                 rays.push((cone.outline.velocity, legs.right));
             }
         }
-        rays.push((Vector::zero(), aim));
+        rays.push((Vector::zeros(), aim));
         if let Selection::Fastest { sector } = self.settings.selection {
             let (sine, cosine) = sector.sin_cos();
             for side in [sine, -sine] {
-                rays.push((Vector::zero(), aim.scale(cosine) + aim.perp().scale(side)));
+                rays.push((Vector::zeros(), aim * cosine + aim.left_normal() * side));
             }
         }
         let to_goal = self.goal - situation.robot.position;
-        let wanted = aim.scale(
-            self.max_speed
-                .min(to_goal.dot(to_goal).sqrt() / situation.interval),
-        );
+        let wanted = aim
+            * (self
+                .max_speed
+                .min(to_goal.dot(&to_goal).sqrt() / situation.interval));
         let candidates = &mut self.candidates;
         candidates.clear();
-        candidates.extend([wanted, situation.robot.velocity, Vector::zero()]);
+        candidates.extend([wanted, situation.robot.velocity, Vector::zeros()]);
         for (index, &(from, along)) in rays.iter().enumerate() {
-            candidates.push(from + along.scale(along.dot(wanted - from).max(0.0)));
+            candidates.push(from + along * (along.dot(&(wanted - from)).max(0.0)));
             for (center, radius) in reachable.circles() {
                 candidates.extend(on_circle(from, along, center, radius).into_iter().flatten());
             }
             for &(other, direction) in &rays[..index] {
-                let sine = along.cross(direction);
+                let sine = along.perp(&direction);
                 if sine != 0.0 {
-                    let share = (other - from).cross(direction) / sine;
-                    candidates.push(from + along.scale(share));
+                    let share = (other - from).perp(&direction) / sine;
+                    candidates.push(from + along * share);
                 }
             }
         }
         for (center, radius) in reachable.circles() {
-            candidates.push(center + aim.scale(radius));
+            candidates.push(center + aim * radius);
         }
         candidates.extend(where_circles_meet(&reachable).into_iter().flatten());
     }
 
     fn direction_to_goal(&self, situation: &Situation<'_, f64>) -> Vector {
         let to_goal = self.goal - situation.robot.position;
-        let distance = to_goal.dot(to_goal).sqrt();
+        let distance = to_goal.dot(&to_goal).sqrt();
         if distance == 0.0 {
-            return Vector { x: 1.0, y: 0.0 };
+            return Vector2::new(1.0, 0.0);
         }
-        to_goal.scale(1.0 / distance)
+        to_goal * (1.0 / distance)
     }
 
     /// What a rule prefers: larger is better, then by the second number.
     fn worth(&self, situation: &Situation<'_, f64>, aim: Vector, velocity: Vector) -> (f64, f64) {
-        let forward = velocity.dot(aim);
-        let speed = velocity.dot(velocity).sqrt();
+        let forward = velocity.dot(&aim);
+        let speed = velocity.dot(&velocity).sqrt();
         match self.settings.selection {
             Selection::ToGoal => (forward, speed),
             Selection::Fastest { sector } => {
@@ -292,9 +296,8 @@ impl VelocityObstaclePlanner {
                 )
             }
             Selection::TimeAndRisk { risk } => {
-                let left =
-                    self.goal - situation.robot.position - velocity.scale(situation.interval);
-                let time = left.dot(left).sqrt() / self.max_speed;
+                let left = self.goal - situation.robot.position - velocity * situation.interval;
+                let time = left.dot(&left).sqrt() / self.max_speed;
                 (-(time + risk / self.time_to_contact(velocity)), forward)
             }
         }
@@ -324,15 +327,15 @@ impl VelocityObstaclePlanner {
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let (sine, cosine) = angle.sin_cos();
             for (center, radius) in reachable.circles() {
-                let outward = Vector { x: cosine, y: sine };
-                self.candidates.push(center + outward.scale(radius));
+                let outward = Vector2::new(cosine, sine);
+                self.candidates.push(center + outward * radius);
             }
         }
         // A robot far above its limits can reach nothing that it may have: it slows down.
         let velocity = situation.robot.velocity;
-        let speed = velocity.dot(velocity).sqrt();
-        let slowest = velocity.scale((reachable.max_speed / speed).min(1.0));
-        let still = Vec2::select(speed > 0.0, slowest, velocity);
+        let speed = velocity.dot(&velocity).sqrt();
+        let slowest = velocity * ((reachable.max_speed / speed).min(1.0));
+        let still = Vector2::select(speed > 0.0, slowest, velocity);
         let mut best = (f64::NEG_INFINITY, still);
         for &velocity in &self.candidates {
             if reachable.holds(velocity) {
@@ -364,19 +367,19 @@ impl Planner for VelocityObstaclePlanner {
 /// Where a ray meets a circle.
 fn on_circle(from: Vector, along: Vector, center: Vector, radius: f64) -> [Option<Vector>; 2] {
     let offset = from - center;
-    let foot = -offset.dot(along);
-    let square = foot * foot + radius * radius - offset.dot(offset);
+    let foot = -offset.dot(&along);
+    let square = foot * foot + radius * radius - offset.dot(&offset);
     if square < 0.0 {
         return [None, None];
     }
     let half = square.sqrt();
-    [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along.scale(share)))
+    [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
 }
 
 /// Where the circle of the speed meets the circle of the change.
 fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
     let center = reachable.velocity;
-    let square = center.dot(center);
+    let square = center.dot(&center);
     if square == 0.0 {
         return [None, None];
     }
@@ -387,5 +390,5 @@ fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
         return [None, None];
     }
     let half = across.sqrt();
-    [half, -half].map(|side| Some(center.scale(share) + center.perp().scale(side)))
+    [half, -half].map(|side| Some(center * share + center.left_normal() * side))
 }

@@ -1,7 +1,7 @@
 //! Three-wheel holonomic robot: point mass with limits, wheel kinematics, feed-forward currents.
 
 use crate::error::{Result, not_negative, positive};
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::region::RobotLimits;
 use crate::robots::wheels::omni_rows;
 
@@ -95,29 +95,25 @@ impl HolonomicRobot {
 
     /// Acceleration from a commanded force: `F/m`, shortened to the largest acceleration.
     #[inline(always)]
-    pub fn acceleration<R: Real>(&self, force: Vec2<R>) -> Vec2<R> {
-        limited(
-            force.scale(R::splat(1.0 / self.mass)),
-            self.max_acceleration,
-        )
-        .0
+    pub fn acceleration<R: Real>(&self, force: Vector2<R>) -> Vector2<R> {
+        limited(force * R::splat(1.0 / self.mass), self.max_acceleration).0
     }
 
     /// Velocity shortened to the largest speed, and the speed that is left.
     #[inline(always)]
-    pub fn limited_velocity<R: Real>(&self, velocity: Vec2<R>) -> (Vec2<R>, R) {
+    pub fn limited_velocity<R: Real>(&self, velocity: Vector2<R>) -> (Vector2<R>, R) {
         limited(velocity, self.max_speed)
     }
 }
 
 /// A vector shortened to a largest magnitude, and its magnitude then.
 #[inline(always)]
-fn limited<R: Real>(vector: Vec2<R>, limit: f64) -> (Vec2<R>, R) {
+fn limited<R: Real>(vector: Vector2<R>, limit: f64) -> (Vector2<R>, R) {
     let limit = R::splat(limit);
-    let magnitude = vector.dot(vector).sqrt();
+    let magnitude = vector.dot(&vector).sqrt();
     // A factor of one leaves every bit as it is. No branch: at full speed it would be taken.
     let factor = R::select(magnitude.gt(limit), limit / magnitude, R::splat(1.0));
-    (vector.scale(factor), magnitude.min(limit))
+    (vector * factor, magnitude.min(limit))
 }
 
 /// Wheel speeds and currents at one heading.
@@ -154,8 +150,8 @@ impl WheelModel {
 
     /// Wheel speeds in rad/s.
     #[inline(always)]
-    pub fn speeds<R: Real>(&self, velocity: Vec2<R>) -> [R; 3] {
-        self.rows.map(|row| velocity.dot(Vec2::splat(row)))
+    pub fn speeds<R: Real>(&self, velocity: Vector2<R>) -> [R; 3] {
+        self.rows.map(|row| velocity.dot(&Vector2::splat(row)))
     }
 
     /// Motor currents in A from the wheel speeds before and after a step, (D.3.2) with 1 A/V:
@@ -190,7 +186,7 @@ mod tests {
     #[test]
     fn third_wheel_stands_still_along_x() {
         let model = WheelModel::new(&HolonomicRobot::default(), 0.0, 0.01);
-        let speeds = model.speeds(Vec2 { x: 0.7, y: 0.0 });
+        let speeds = model.speeds(Vector2::new(0.7, 0.0));
         assert!((speeds[0] + 6.062_177_826_491_07).abs() < 1e-12 && speeds[2] == 0.0);
         let currents = model.currents(&speeds, &speeds);
         assert_eq!(currents[2], 0.0);
@@ -203,11 +199,8 @@ mod tests {
         let turned = WheelModel::new(&robot, 0.4, 0.01);
         let straight = WheelModel::new(&robot, 0.0, 0.01);
         let (sin, cos) = 0.4f64.sin_cos();
-        let world = turned.speeds(Vec2 {
-            x: 0.3 * cos - 0.2 * sin,
-            y: 0.3 * sin + 0.2 * cos,
-        });
-        let own = straight.speeds(Vec2 { x: 0.3, y: 0.2 });
+        let world = turned.speeds(Vector2::new(0.3 * cos - 0.2 * sin, 0.3 * sin + 0.2 * cos));
+        let own = straight.speeds(Vector2::new(0.3, 0.2));
         for wheel in 0..3 {
             assert!((world[wheel] - own[wheel]).abs() < 1e-14);
         }
@@ -216,12 +209,9 @@ mod tests {
     #[test]
     fn limits_shorten_without_turning() {
         let robot = HolonomicRobot::default();
-        let acceleration = robot.acceleration(Vec2 {
-            x: 300.0,
-            y: -400.0,
-        });
+        let acceleration = robot.acceleration(Vector2::new(300.0, -400.0));
         assert!((acceleration.x - 6.0).abs() < 1e-12 && (acceleration.y + 8.0).abs() < 1e-12);
-        let (velocity, speed) = robot.limited_velocity(Vec2 { x: 0.3, y: 0.4 });
+        let (velocity, speed) = robot.limited_velocity(Vector2::new(0.3, 0.4));
         assert_eq!((velocity.x, velocity.y, speed), (0.3, 0.4, 0.5));
     }
 }

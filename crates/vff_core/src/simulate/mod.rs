@@ -25,7 +25,7 @@ pub(crate) use table::min_clearance;
 
 use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::{Body, RobotState};
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::laws::{FieldTerms, Situation, Stop};
 use crate::scenario::Scenario;
 
@@ -64,8 +64,8 @@ fn at_state<T>(
         .map(|placed| scene::body_at(placed, time, &mut 0))
         .collect();
     let robot = RobotState {
-        position: Vec2::splat(position),
-        velocity: Vec2::splat(velocity),
+        position: Vector2::splat(position),
+        velocity: Vector2::splat(velocity),
     };
     Ok(answer(&Situation {
         bodies: &bodies,

@@ -1,7 +1,7 @@
 //! What is kept of a run while it goes on.
 
 use crate::forces::geometry::Body;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::Command;
 use crate::scenario::Scenario;
 
@@ -15,8 +15,8 @@ pub trait Recorder<R: Real> {
     fn row(
         &mut self,
         _time: f64,
-        _position: Vec2<R>,
-        _velocity: Vec2<R>,
+        _position: Vector2<R>,
+        _velocity: Vector2<R>,
         _currents: &[R; 3],
         _command: &Command<R>,
         _bodies: &[Body],
@@ -26,8 +26,8 @@ pub trait Recorder<R: Real> {
     fn end(
         &mut self,
         _time: f64,
-        _position: Vec2<R>,
-        _velocity: Vec2<R>,
+        _position: Vector2<R>,
+        _velocity: Vector2<R>,
         _currents: &[R; 3],
         _bodies: impl FnOnce() -> Vec<Body>,
     ) {
@@ -125,8 +125,8 @@ impl TrajectoryRecorder {
             distance: Vec::with_capacity(rows * obstacles),
         };
         let command = Command {
-            force: Vec2::zero(),
-            stabilizing: Vec2::zero(),
+            force: Vector2::zeros(),
+            stabilizing: Vector2::zeros(),
             lyapunov: f64::NAN,
         };
         Self { columns, command }
@@ -149,8 +149,8 @@ impl Recorder<f64> for TrajectoryRecorder {
     fn end(
         &mut self,
         time: f64,
-        position: Vec2<f64>,
-        velocity: Vec2<f64>,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
         currents: &[f64; 3],
         bodies: impl FnOnce() -> Vec<Body>,
     ) {
@@ -161,8 +161,8 @@ impl Recorder<f64> for TrajectoryRecorder {
     fn row(
         &mut self,
         time: f64,
-        position: Vec2<f64>,
-        velocity: Vec2<f64>,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
         currents: &[f64; 3],
         command: &Command<f64>,
         bodies: &[Body],
@@ -199,8 +199,8 @@ mod tests {
         let mut counter = DescentCounter::<f64>::default();
         for value in [3.0, 2.0, 2.5, f64::NAN, 1.0, 0.5] {
             let command = Command {
-                force: Vec2::zero(),
-                stabilizing: Vec2::zero(),
+                force: Vector2::zeros(),
+                stabilizing: Vector2::zeros(),
                 lyapunov: value,
             };
             counter.sample(&command, bool::splat(true));

@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Result};
 use crate::forces::geometry::{Body, RobotState};
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Real, Vector2};
 use crate::laws::{Law, Situation, Stop};
 use crate::measurement::{Measured, Sensor};
 use crate::scenario::Scenario;
@@ -184,7 +184,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs.check_force(command.force, time)?;
     runs.command = command;
     runs.acceleration = runs.scenario.robot.acceleration(command.force);
-    runs.push = runs.acceleration.scale(R::splat(clock.step));
+    runs.push = runs.acceleration * R::splat(clock.step);
     runs.count_sample();
     runs.look_ahead(actual);
     member.recorder.sample(&command, runs.running);
@@ -253,24 +253,24 @@ fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> Robot
 fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
     let robot = &runs.scenario.robot;
     (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
-    runs.position = runs.position + runs.velocity.scale(R::splat(runs.clock.step));
+    runs.position = runs.position + runs.velocity * R::splat(runs.clock.step);
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
 fn rk4_held<R: Real>(runs: &mut Runs<'_, R>) {
     let robot = &runs.scenario.robot;
     let Clock { step, .. } = runs.clock;
-    let at = |share: f64| runs.velocity + runs.acceleration.scale(R::splat(share * step));
+    let at = |share: f64| runs.velocity + runs.acceleration * R::splat(share * step);
     let middle = robot.limited_velocity(at(0.5)).0;
     let (last, speed) = robot.limited_velocity(at(1.0));
-    let weighted = runs.velocity + middle.scale(R::splat(4.0)) + last;
-    runs.position = runs.position + weighted.scale(R::splat(step / 6.0));
+    let weighted = runs.velocity + middle * R::splat(4.0) + last;
+    runs.position = runs.position + weighted * R::splat(step / 6.0);
     (runs.velocity, runs.speed) = (last, speed);
 }
 
 /// Force of a later stage; out of line, or the kernel would hold four copies of the law.
 #[inline(never)]
-fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) -> Vec2<R> {
+fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) -> Vector2<R> {
     law.command(situation).force
 }
 
@@ -295,14 +295,14 @@ fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_
     };
     let limited = |velocity| robot.limited_velocity(velocity).0;
     let (half, whole) = (R::splat(0.5 * step), R::splat(step));
-    let v2 = limited(velocity + first.scale(half));
-    let second = push(&scene.middle, start + velocity.scale(half), v2);
-    let v3 = limited(velocity + second.scale(half));
-    let third = push(&scene.middle, start + v2.scale(half), v3);
-    let v4 = limited(velocity + third.scale(whole));
-    let fourth = push(&scene.frames[1], start + v3.scale(whole), v4);
+    let v2 = limited(velocity + first * half);
+    let second = push(&scene.middle, start + velocity * half, v2);
+    let v3 = limited(velocity + second * half);
+    let third = push(&scene.middle, start + v2 * half, v3);
+    let v4 = limited(velocity + third * whole);
+    let fourth = push(&scene.frames[1], start + v3 * whole, v4);
     let (sixth, two) = (R::splat(step / 6.0), R::splat(2.0));
-    runs.position = start + (velocity + (v2 + v3).scale(two) + v4).scale(sixth);
-    let gain = (first + (second + third).scale(two) + fourth).scale(sixth);
+    runs.position = start + (velocity + (v2 + v3) * two + v4) * sixth;
+    let gain = (first + (second + third) * two + fourth) * sixth;
     (runs.velocity, runs.speed) = robot.limited_velocity(velocity + gain);
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::{Command, Stop};
 use crate::measurement::Past;
 use crate::robots::WheelModel;
@@ -25,22 +25,22 @@ pub(crate) struct Runs<'a, R: Real> {
     pub clock: Clock,
     /// Whether to stop, for a law that thinks long.
     pub stop: Stop<'a>,
-    pub position: Vec2<R>,
-    pub velocity: Vec2<R>,
+    pub position: Vector2<R>,
+    pub velocity: Vector2<R>,
     pub speed: R,
     /// Motor currents in A of the last step, for a recorder.
     pub currents: [R; 3],
     pub running: R::Mask,
     /// The held force, and what it accelerates with, in m/s^2.
     pub command: Command<R>,
-    pub acceleration: Vec2<R>,
+    pub acceleration: Vector2<R>,
     /// Change of velocity in one step of the held force, in m/s.
-    pub push: Vec2<R>,
+    pub push: Vector2<R>,
     /// Measured position at the sample before, if it was measured with an error.
-    pub last_measured: Option<Vec2<R>>,
+    pub last_measured: Option<Vector2<R>>,
     /// Positions at the last motion steps, if they are measured late.
     pub past: Option<Past<R>>,
-    goal: Vec2<R>,
+    goal: Vector2<R>,
     wheels: WheelModel,
     wheel_speeds: [R; 3],
     squared_current: R,
@@ -67,28 +67,28 @@ pub(crate) struct Runs<'a, R: Real> {
 impl<'a, R: Real> Runs<'a, R> {
     pub fn new(scenario: &'a Scenario, clock: Clock, bodies: &[Body]) -> Self {
         let count = scenario.obstacles.len();
-        let velocity = Vec2::zero();
+        let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
         let unset = R::splat(f64::NAN);
         let mut runs = Self {
             scenario,
             clock,
             stop: Stop::never(),
-            position: Vec2::splat(scenario.start),
+            position: Vector2::splat(scenario.start),
             velocity,
             speed: R::zero(),
             currents: [R::zero(); 3],
             running: R::Mask::splat(true),
             command: Command {
-                force: Vec2::zero(),
-                stabilizing: Vec2::zero(),
+                force: Vector2::zeros(),
+                stabilizing: Vector2::zeros(),
                 lyapunov: R::splat(f64::NAN),
             },
-            acceleration: Vec2::zero(),
-            push: Vec2::zero(),
+            acceleration: Vector2::zeros(),
+            push: Vector2::zeros(),
             last_measured: None,
             past: Past::new(scenario, clock.step),
-            goal: Vec2::splat(scenario.goal),
+            goal: Vector2::splat(scenario.goal),
             wheels,
             wheel_speeds: wheels.speeds(velocity),
             squared_current: R::zero(),
@@ -135,7 +135,7 @@ impl<'a, R: Real> Runs<'a, R> {
     /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
     /// the currents are looked at afterwards.
     #[inline(always)]
-    pub fn account(&mut self, bodies: &[Body], before: Vec2<R>, time: f64, record: bool) {
+    pub fn account(&mut self, bodies: &[Body], before: Vector2<R>, time: f64, record: bool) {
         let speeds = self.wheels.speeds(self.velocity);
         let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
         self.wheel_speeds = speeds;
@@ -148,7 +148,7 @@ impl<'a, R: Real> Runs<'a, R> {
         if self.near_goal {
             let to_goal = self.goal - self.position;
             let tolerance = self.scenario.rules.arrival_tolerance;
-            let near = to_goal.dot(to_goal).le(R::splat(tolerance * tolerance));
+            let near = to_goal.dot(&to_goal).le(R::splat(tolerance * tolerance));
             let arrived = self.running & near;
             if arrived.any() {
                 self.arrive(before, time, arrived, squared, way);
@@ -194,7 +194,7 @@ impl<'a, R: Real> Runs<'a, R> {
         let own = self.scenario.robot.max_speed;
         let to_goal = self.goal - self.position;
         let reach = self.scenario.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
-        let near = to_goal.dot(to_goal).lt(R::splat(reach * reach));
+        let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
         self.near_goal = (near & self.running).any();
         for (index, placed) in self.scenario.obstacles.iter().enumerate() {
             let body = &bodies[index];
@@ -226,14 +226,14 @@ impl<'a, R: Real> Runs<'a, R> {
     /// instant of entry, linear inside the step.
     #[cold]
     #[inline(never)]
-    fn arrive(&mut self, before: Vec2<R>, time: f64, arrived: R::Mask, squared: R, way: R) {
+    fn arrive(&mut self, before: Vector2<R>, time: f64, arrived: R::Mask, squared: R, way: R) {
         let tolerance = self.scenario.rules.arrival_tolerance;
         let after = self.position;
-        let length = |vector: Vec2<R>| vector.dot(vector).sqrt();
+        let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
         let (from, to) = (length(self.goal - before), length(self.goal - after));
         let share = (from - R::splat(tolerance)) / (from - to);
-        let entry = before + (after - before).scale(share);
-        self.position = Vec2::select(arrived, entry, after);
+        let entry = before + (after - before) * share;
+        self.position = Vector2::select(arrived, entry, after);
         self.squared_current += R::select(arrived, squared * share, R::zero());
         self.path += R::select(arrived, way * share, R::zero());
         for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
@@ -336,14 +336,14 @@ impl<'a, R: Real> Runs<'a, R> {
     #[inline(always)]
     pub fn check_finite(&self, time: f64) -> Result<()> {
         let limit = R::splat(f64::INFINITY);
-        let finite = |vector: Vec2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
+        let finite = |vector: Vector2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
         self.check(finite(self.position) & finite(self.velocity), time)
     }
 
     /// A force whose magnitude overflows has no direction left.
     #[inline(always)]
-    pub fn check_force(&self, force: Vec2<R>, time: f64) -> Result<()> {
-        let sound = force.dot(force).lt(R::splat(f64::INFINITY));
+    pub fn check_force(&self, force: Vector2<R>, time: f64) -> Result<()> {
+        let sound = force.dot(&force).lt(R::splat(f64::INFINITY));
         self.check(sound, time)
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use vff_core::forces::geometry::{Body, RobotState};
-use vff_core::lanes::Vec2;
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::{Situation, Stop};
 use vff_core::motion::BodyState;
 use vff_core::obstacle::{Limits, Obstacle, Regions, Shape};
@@ -39,8 +39,8 @@ pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Sit
     Situation {
         bodies,
         robot: RobotState {
-            position: Vec2::splat(position),
-            velocity: Vec2::splat(velocity),
+            position: Vector2::splat(position),
+            velocity: Vector2::splat(velocity),
         },
         interval: 0.06,
         stop: Stop::never(),
@@ -92,14 +92,14 @@ pub struct Ride {
 /// robot, 60 s at most.
 pub fn drive(scenario: &Scenario, ends: [[f64; 2]; 2], planner: &mut impl Planner) -> Ride {
     let robot = HolonomicRobot::default();
-    let mut place = Vec2::<f64>::splat(ends[0]);
-    let mut velocity = Vec2::zero();
+    let mut place = Vector2::<f64>::splat(ends[0]);
+    let mut velocity = Vector2::zeros();
     let mut ride = Ride {
         arrival: None,
         touched: false,
         distances: vec![f64::INFINITY; scenario.obstacle_count()],
     };
-    let mut force = Vec2::zero();
+    let mut force = Vector2::zeros();
     for step in 0..6_000u32 {
         let time = 0.01 * f64::from(step);
         let bodies = scenario.obstacles().iter().map(|placed| Body {
@@ -120,12 +120,12 @@ pub fn drive(scenario: &Scenario, ends: [[f64; 2]; 2], planner: &mut impl Planne
         }
         if step % 6 == 0 {
             let known = situation(&bodies, [place.x, place.y], [velocity.x, velocity.y]);
-            let wanted = Vec2::splat(planner.desired_velocity(&known));
-            force = (wanted - velocity).scale(robot.mass / 0.06);
+            let wanted = Vector2::splat(planner.desired_velocity(&known));
+            force = (wanted - velocity) * (robot.mass / 0.06);
         }
-        velocity = velocity + robot.acceleration(force).scale(0.01);
+        velocity = velocity + robot.acceleration(force) * 0.01;
         velocity = robot.limited_velocity(velocity).0;
-        place = place + velocity.scale(0.01);
+        place = place + velocity * 0.01;
     }
     ride
 }

@@ -2,7 +2,7 @@
 
 use super::{Neighbor, PairwiseField, Push};
 use crate::forces::geometry::{Approach, RobotState};
-use crate::lanes::{Mask, Real, Vec2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 
 /// Least `(d - r)^2` in m^2: where the stopping distance `r` equals `d` the law is singular.
 const LEAST_SQUARE: f64 = 1e-12;
@@ -25,15 +25,20 @@ pub struct GeCui<R = f64> {
 
 impl<R: Real> PairwiseField<R> for GeCui<R> {
     #[inline(always)]
-    fn attraction(&self, to_goal: Vec2<R>, velocity: Vec2<R>, _inside: R::Mask) -> Vec2<R> {
-        (to_goal - velocity.scale(self.ratio)).scale(self.attractive)
+    fn attraction(
+        &self,
+        to_goal: Vector2<R>,
+        velocity: Vector2<R>,
+        _inside: R::Mask,
+    ) -> Vector2<R> {
+        (to_goal - velocity * self.ratio) * self.attractive
     }
 
     #[inline(always)]
     fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
         // The goal enters the angles of an approach only, which are not used here.
         let everywhere = R::Mask::splat(true);
-        let goal = Vec2::zero();
+        let goal = Vector2::zeros();
         let approach = Approach::new(neighbor.body, neighbor.offset, everywhere, robot, goal);
         let (rate, limit) = (approach.range_rate, R::splat(self.max_acceleration));
         let stopping = rate * rate / (limit + limit);
@@ -44,10 +49,10 @@ impl<R: Real> PairwiseField<R> for GeCui<R> {
         let around = -(strength * rate * approach.bearing_rate * neighbor.distance);
         // On the centre of an obstacle nothing has a direction.
         let apart = neighbor.distance.gt(R::zero());
-        let (outward, zero) = (neighbor.outward, Vec2::zero());
+        let (outward, zero) = (neighbor.outward, Vector2::zeros());
         Push {
-            repulsive: Vec2::select(apart, outward.scale(away), zero),
-            detour: Vec2::select(apart, outward.perp().scale(around), zero),
+            repulsive: Vector2::select(apart, outward * away, zero),
+            detour: Vector2::select(apart, outward.left_normal() * around, zero),
         }
     }
 }

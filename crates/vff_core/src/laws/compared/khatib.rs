@@ -2,7 +2,7 @@
 
 use super::{Neighbor, PairwiseField, Push};
 use crate::forces::geometry::RobotState;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 
 /// Which repulsion is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,8 +31,13 @@ pub struct Khatib<R = f64> {
 
 impl<R: Real> PairwiseField<R> for Khatib<R> {
     #[inline(always)]
-    fn attraction(&self, to_goal: Vec2<R>, velocity: Vec2<R>, _inside: R::Mask) -> Vec2<R> {
-        (to_goal - velocity.scale(self.ratio)).scale(self.attractive)
+    fn attraction(
+        &self,
+        to_goal: Vector2<R>,
+        velocity: Vector2<R>,
+        _inside: R::Mask,
+    ) -> Vector2<R> {
+        (to_goal - velocity * self.ratio) * self.attractive
     }
 
     #[inline(always)]
@@ -44,12 +49,12 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
             KhatibForm::Gradient => {
                 let one = R::splat(1.0);
                 let steepness = (one / gap - one / reach) / square;
-                neighbor.outward.scale(self.repulsive * steepness)
+                neighbor.outward * (self.repulsive * steepness)
             }
             KhatibForm::Printed => {
-                let velocity = Vec2::splat(neighbor.body.state.velocity);
+                let velocity = Vector2::splat(neighbor.body.state.velocity);
                 let strength = self.repulsive * (reach - gap) / (square * gap);
-                (velocity - robot.velocity).scale(strength)
+                (velocity - robot.velocity) * strength
             }
         };
         Push::straight(force)

@@ -2,7 +2,7 @@
 
 use super::{Neighbor, PairwiseField, Push};
 use crate::forces::geometry::RobotState;
-use crate::lanes::{Real, Vec2};
+use crate::lanes::{Planar, Real, Vector2};
 
 /// `F = K_1 E + sum (K_3 D + K_5 d t)`, (2.2.8)-(2.2.10): no damping anywhere, the circulation
 /// always counter-clockwise.
@@ -18,8 +18,13 @@ pub struct Masoud<R = f64> {
 
 impl<R: Real> PairwiseField<R> for Masoud<R> {
     #[inline(always)]
-    fn attraction(&self, to_goal: Vec2<R>, _velocity: Vec2<R>, _inside: R::Mask) -> Vec2<R> {
-        to_goal.scale(self.attractive)
+    fn attraction(
+        &self,
+        to_goal: Vector2<R>,
+        _velocity: Vector2<R>,
+        _inside: R::Mask,
+    ) -> Vector2<R> {
+        to_goal * self.attractive
     }
 
     #[inline(always)]
@@ -27,8 +32,8 @@ impl<R: Real> PairwiseField<R> for Masoud<R> {
         let offset = neighbor.offset.vector;
         // d t = the offset turned left.
         Push {
-            repulsive: offset.scale(self.repulsive),
-            detour: offset.perp().scale(self.detour),
+            repulsive: offset * self.repulsive,
+            detour: offset.left_normal() * self.detour,
         }
     }
 }

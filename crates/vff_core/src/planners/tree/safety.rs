@@ -1,10 +1,10 @@
 //! Whether a velocity leaves room to stop.
 
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::planners::outline::Outline;
 
-type Vector = Vec2<f64>;
+type Vector = Vector2<f64>;
 
 /// Pieces that the braking is cut into.
 const PIECES: u32 = 4;
@@ -29,7 +29,7 @@ impl Stopping {
     pub fn is_safe(&self, situation: &Situation<'_, f64>, wanted: [f64; 2]) -> bool {
         let robot = &situation.robot;
         let velocity = self.taken_up(robot.velocity, Vector::splat(wanted), situation.interval);
-        let speed = velocity.dot(velocity).sqrt();
+        let speed = velocity.dot(&velocity).sqrt();
         let piece = speed / self.max_acceleration / f64::from(PIECES);
         let slack = self.max_acceleration * piece * piece / 8.0;
         situation
@@ -42,13 +42,13 @@ impl Stopping {
                 let mut step = |velocity: Vector, time: f64| {
                     let relative = velocity - own;
                     let touched = outline.time_to_contact(relative) <= time && time > 0.0;
-                    outline = outline.seen_after(relative.scale(time));
+                    outline = outline.seen_after(relative * time);
                     !touched
                 };
                 step(velocity, situation.interval)
                     && (0..PIECES).all(|number| {
                         let left = 1.0 - (f64::from(number) + 0.5) / f64::from(PIECES);
-                        step(velocity.scale(left), piece)
+                        step(velocity * left, piece)
                     })
             })
     }
@@ -56,12 +56,12 @@ impl Stopping {
     /// Velocity at the next sample when another one is wanted.
     fn taken_up(&self, from: Vector, wanted: Vector, interval: f64) -> Vector {
         let change = wanted - from;
-        let needed = change.dot(change).sqrt();
+        let needed = change.dot(&change).sqrt();
         let most = self.max_acceleration * interval;
         if needed <= most {
             wanted
         } else {
-            from + change.scale(most / needed)
+            from + change * (most / needed)
         }
     }
 }

@@ -48,8 +48,8 @@ impl Everything {
         Self {
             motion: TrajectoryRecorder::new(scenario),
             command: Command {
-                force: crate::lanes::Vec2::zero(),
-                stabilizing: crate::lanes::Vec2::zero(),
+                force: crate::lanes::Vector2::zeros(),
+                stabilizing: crate::lanes::Vector2::zeros(),
                 lyapunov: f64::NAN,
             },
             seen: scenario.start,

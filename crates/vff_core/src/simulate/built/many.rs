@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Given, Result};
 use crate::forces::geometry::Body;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::scenario::Scenario;
 use crate::simulate::Interrupted;
 use crate::simulate::built::Built;
@@ -29,11 +29,11 @@ struct Sampled {
     kept: Histories,
     every: usize,
     next: usize,
-    last: Option<(f64, Vec2<f64>, Vec<f64>)>,
+    last: Option<(f64, Vector2<f64>, Vec<f64>)>,
 }
 
 impl Sampled {
-    fn keep(&mut self, (time, position, distances): (f64, Vec2<f64>, Vec<f64>)) {
+    fn keep(&mut self, (time, position, distances): (f64, Vector2<f64>, Vec<f64>)) {
         self.kept.time.push(time);
         self.kept.position.push(position.lane(0));
         self.kept.distance.extend(distances);

@@ -1,7 +1,7 @@
 //! How a commanded force becomes motion.
 
 use crate::forces::geometry::RobotState;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::robots::{HolonomicRobot, WheelModel};
 use crate::scenario::Scenario;
 
@@ -24,17 +24,17 @@ pub(super) struct Reading {
     /// Electrical loss over the step in J.
     pub loss: f64,
     /// Position of the point mass that the law drives, in m.
-    pub reference: Vec2<f64>,
+    pub reference: Vector2<f64>,
 }
 
 impl Reading {
     /// A robot at rest at the start of a scenario.
     pub fn at_start(scenario: &Scenario) -> Self {
-        let position = Vec2::splat(scenario.start);
+        let position = Vector2::splat(scenario.start);
         Self {
             robot: RobotState {
                 position,
-                velocity: Vec2::zero(),
+                velocity: Vector2::zeros(),
             },
             speed: 0.0,
             heading: scenario.rules.heading,
@@ -50,7 +50,7 @@ impl Reading {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fix {
     /// Position in m.
-    pub position: Vec2<f64>,
+    pub position: Vector2<f64>,
     /// Heading in rad, if it is measured.
     pub heading: Option<f64>,
 }
@@ -59,7 +59,7 @@ pub(super) struct Fix {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Order {
     /// Commanded force in N.
-    pub force: Vec2<f64>,
+    pub force: Vector2<f64>,
     /// The pose as measured now, `None` where it is known exactly.
     pub fix: Option<Fix>,
     /// Whether it is outside every active region, as far as it knows.
@@ -89,8 +89,8 @@ pub(super) struct PointMass {
     /// Speed in m/s.
     pub speed: f64,
     /// Held acceleration in m/s^2.
-    pub acceleration: Vec2<f64>,
-    push: Vec2<f64>,
+    pub acceleration: Vector2<f64>,
+    push: Vector2<f64>,
     step: f64,
 }
 
@@ -99,20 +99,20 @@ impl PointMass {
         Self {
             robot: scenario.robot,
             state: RobotState {
-                position: Vec2::splat(scenario.start),
-                velocity: Vec2::zero(),
+                position: Vector2::splat(scenario.start),
+                velocity: Vector2::zeros(),
             },
             speed: 0.0,
-            acceleration: Vec2::zero(),
-            push: Vec2::zero(),
+            acceleration: Vector2::zeros(),
+            push: Vector2::zeros(),
             step,
         }
     }
 
     /// Holds a commanded force in N.
-    pub fn hold(&mut self, force: Vec2<f64>) {
+    pub fn hold(&mut self, force: Vector2<f64>) {
         self.acceleration = self.robot.acceleration(force);
-        self.push = self.acceleration.scale(self.step);
+        self.push = self.acceleration * self.step;
     }
 
     /// Velocity first, then position with the new velocity.
@@ -121,7 +121,7 @@ impl PointMass {
         let (velocity, speed) = self.robot.limited_velocity(velocity + self.push);
         self.speed = speed;
         self.state = RobotState {
-            position: position + velocity.scale(self.step),
+            position: position + velocity * self.step,
             velocity,
         };
     }
@@ -143,7 +143,7 @@ impl IdealHolonomic {
         Self {
             point: PointMass::new(scenario, step),
             wheels,
-            wheel_speeds: wheels.speeds(Vec2::zero()),
+            wheel_speeds: wheels.speeds(Vector2::zeros()),
             heading,
         }
     }

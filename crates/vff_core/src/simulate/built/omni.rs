@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::forces::geometry::RobotState;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::robots::wheels::{OmniKinematics, WheelDrive};
 use crate::scenario::Scenario;
 use crate::simulate::built::Built;
@@ -16,7 +16,7 @@ pub(super) struct OmniRobot {
     kinematics: OmniKinematics,
     wheels: DrivenWheels,
     wanted_heading: f64,
-    position: Vec2<f64>,
+    position: Vector2<f64>,
     heading: f64,
     step: f64,
 }
@@ -34,7 +34,7 @@ impl OmniRobot {
             kinematics,
             wheels: DrivenWheels::new(drives, built.slip, size, built.step)?,
             wanted_heading: heading,
-            position: Vec2::splat(scenario.start),
+            position: Vector2::splat(scenario.start),
             heading,
             step: built.step,
         })
@@ -56,19 +56,19 @@ impl Moving for OmniRobot {
         let kinematics = self.kinematics;
         let wanted = kinematics.wheel_speeds_in_world([x, y, 0.0], self.wanted_heading);
         let (mut position, mut heading, period) = (self.position, self.heading, self.wheels.period);
-        let mut velocity = Vec2::zero();
+        let mut velocity = Vector2::zeros();
         self.wheels.step(wanted, |rolling, _| {
             let turn = kinematics.body_velocity(rolling)[2] * period;
             let [x, y, _] = kinematics.world_velocity(rolling, heading + 0.5 * turn);
-            velocity = Vec2 { x, y };
-            position = position + velocity.scale(period);
+            velocity = Vector2::new(x, y);
+            position = position + velocity * period;
             heading += turn;
         });
         let way = position - self.position;
         (self.position, self.heading) = (position, heading);
         Reading {
             robot: RobotState { position, velocity },
-            speed: way.dot(way).sqrt() / self.step,
+            speed: way.dot(&way).sqrt() / self.step,
             heading,
             wheel_speeds: self.wheels.speeds,
             currents: self.wheels.currents,

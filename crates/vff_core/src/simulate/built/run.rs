@@ -2,6 +2,7 @@
 
 use crate::error::{Failure, Result};
 use crate::forces::geometry::Body;
+use crate::lanes::Planar;
 use crate::laws::{Situation, Stop};
 use crate::metrics::{Performance, Weights, performance};
 use crate::scenario::Scenario;

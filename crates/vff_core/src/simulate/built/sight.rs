@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::forces::geometry::{Body, RobotState};
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::measurement::{Measurement, Noise, Past, Sensor};
 use crate::motion::BodyState;
 use crate::scenario::{PlacedObstacle, Scenario};
@@ -39,7 +39,7 @@ impl Seen<'_> {
 struct Samples<'a> {
     sensor: Sensor<'a>,
     mark: Option<Noise>,
-    last_measured: Option<Vec2<f64>>,
+    last_measured: Option<Vector2<f64>>,
     /// Past places of the center and of the second mark, of a robot that is measured late.
     past: Option<[Past<f64>; 2]>,
 }
@@ -110,13 +110,14 @@ impl Cameras {
         let [center, mark] = self.robot.as_ref()?;
         let place = center.estimate(time);
         let robot = place.map_or(start, |found| RobotState {
-            position: Vec2::splat(found.position),
-            velocity: Vec2::splat(found.velocity),
+            position: Vector2::splat(found.position),
+            velocity: Vector2::splat(found.velocity),
         });
         // Marks of one picture only: between two pictures the robot has moved on.
         let same = |at: f64| place.is_some_and(|found| found.measured_at == at);
         let marked = mark.estimate(time).filter(|found| same(found.measured_at));
-        let heading = marked.map(|found| heading_of(robot.position, Vec2::splat(found.position)));
+        let heading =
+            marked.map(|found| heading_of(robot.position, Vector2::splat(found.position)));
         let position = robot.position;
         Some((robot, Fix { position, heading }))
     }
@@ -136,8 +137,8 @@ impl<'s> Sight<'s> {
             eye: Eye::new(scenario, built)?,
             mark_distance: built.fusion.mark,
             start: RobotState {
-                position: Vec2::splat(scenario.start),
-                velocity: Vec2::zero(),
+                position: Vector2::splat(scenario.start),
+                velocity: Vector2::zeros(),
             },
             seen: bodies.to_vec(),
         })
@@ -187,7 +188,7 @@ impl<'s> Sight<'s> {
                 }
                 let robot = measured.of_robot(robot, &mut samples.last_measured);
                 let fix = samples.mark.as_mut().map(|mark| {
-                    let place = place + Vec2::splat(mark.draw());
+                    let place = place + Vector2::splat(mark.draw());
                     Fix {
                         position: robot.position,
                         heading: Some(heading_of(robot.position, place)),
@@ -218,14 +219,14 @@ impl<'s> Sight<'s> {
 }
 
 /// Where the second mark is.
-fn mark_of(reading: &Reading, distance: f64) -> Vec2<f64> {
+fn mark_of(reading: &Reading, distance: f64) -> Vector2<f64> {
     let (sin, cos) = reading.heading.sin_cos();
-    let ahead = Vec2 { x: cos, y: sin };
-    reading.robot.position + ahead.scale(distance)
+    let ahead = Vector2::new(cos, sin);
+    reading.robot.position + ahead * distance
 }
 
 /// Heading in rad from the measured places of both marks, (7.3.1) of Zeng (2011).
-fn heading_of(position: Vec2<f64>, mark: Vec2<f64>) -> f64 {
+fn heading_of(position: Vector2<f64>, mark: Vector2<f64>) -> f64 {
     let ahead = mark - position;
     ahead.y.atan2(ahead.x)
 }

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::forces::geometry::RobotState;
-use crate::lanes::Vec2;
+use crate::lanes::{Planar, Vector2};
 use crate::robots::differential::{
     DifferentialLimits, Pose, Reference, TorqueSteering, Tracker, Twist,
 };
@@ -204,8 +204,8 @@ impl Moving for TwoWheels {
         let way = (position[0] - before[0]).hypot(position[1] - before[1]);
         Reading {
             robot: RobotState {
-                position: Vec2::splat(position),
-                velocity: Vec2::splat([twist.speed * cos, twist.speed * sin]),
+                position: Vector2::splat(position),
+                velocity: Vector2::splat([twist.speed * cos, twist.speed * sin]),
             },
             speed: way / self.step,
             heading: self.pose.heading,
