@@ -21,7 +21,7 @@ import numpy as np
 import hrsafety
 from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
-from hrsafety.navigation.simulation import Outcome
+from hrsafety.navigation.trajectory import Outcome
 from hrsafety.navigation.statistics import wilson
 from hrsafety.reactive.fixes import STATUS_WORDS as FIX_WORDS
 

@@ -15,7 +15,7 @@ from hrsafety.reproduce.markup import figure
 
 if TYPE_CHECKING:
     from hrsafety import impact
-    from hrsafety.cli.foam import FoamReport, Judged, Range
+    from hrsafety.cli.foam_report import FoamReport, Judged, Range
 
 __all__ = ["html", "limits_words", "range_words"]
 

@@ -35,7 +35,7 @@ from hrsafety.navigation.references import CircleReference, LineReference, PathR
 from hrsafety.navigation.repeated import Band, Repeated, repeat
 from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Measurement, Regions, Scenario, region_radii
-from hrsafety.navigation.simulation import Performance, Trajectory, evaluate, simulate
+from hrsafety.navigation.simulation import evaluate, simulate
 from hrsafety.navigation.tracking import TrackingRun, TrackingSummary, track, track_batch
 from hrsafety.navigation.tracking_laws import (
     ExponentialTracking,
@@ -45,6 +45,7 @@ from hrsafety.navigation.tracking_laws import (
     Twist,
     VirtualTorque,
 )
+from hrsafety.navigation.trajectory import Performance, Trajectory
 from hrsafety.navigation.vision import ColorPatch, Observation, PositionNoise, Vision, observe
 from hrsafety.navigation.wheel_tests import OpenLoopTest, WheelFit, identify_wheel, open_loop_tests
 from hrsafety.navigation.wheels import (

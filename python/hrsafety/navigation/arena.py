@@ -17,8 +17,8 @@ from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import of_runs
-from hrsafety.navigation.simulation import Integrator
 from hrsafety.navigation.statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
+from hrsafety.navigation.trajectory import Integrator
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, with_units
 

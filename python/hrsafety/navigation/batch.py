@@ -15,7 +15,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.robots import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Integrator, check_weights
+from hrsafety.navigation.trajectory import Integrator, check_weights
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 

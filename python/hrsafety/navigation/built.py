@@ -11,7 +11,6 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.kinematics import OmniKinematics, Slip
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Performance, Trajectory, check_weights, without_obstacles
 from hrsafety.navigation.tracking_laws import (
     ExponentialTracking,
     FullSpeedTracking,
@@ -19,6 +18,7 @@ from hrsafety.navigation.tracking_laws import (
     Tracking,
     VirtualTorque,
 )
+from hrsafety.navigation.trajectory import Performance, Trajectory, check_weights, without_obstacles
 from hrsafety.navigation.vision import Vision
 from hrsafety.navigation.wheels import WheelDrive
 from hrsafety.tables import Columns, each, plane

@@ -13,7 +13,7 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Integrator
+from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns, Table
 
 __all__ = ["GainSensitivity", "gain_sensitivity"]

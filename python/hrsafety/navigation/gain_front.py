@@ -29,7 +29,7 @@ from hrsafety.navigation.gain_settings import (
 )
 from hrsafety.navigation.laws import Law
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.simulation import Integrator
+from hrsafety.navigation.trajectory import Integrator
 
 __all__ = ["pareto_front"]
 

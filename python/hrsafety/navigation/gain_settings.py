@@ -18,7 +18,7 @@ from hrsafety.navigation.gain_metrics import METRICS, check_metric
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.planners import RapidlyExploringRandomTree
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Integrator, check_weights
+from hrsafety.navigation.trajectory import Integrator, check_weights
 
 __all__ = ["Constraint", "GainConstraint", "Method", "Objective", "Robustness", "SearchSettings"]
 

@@ -14,7 +14,7 @@ from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_ba
 from hrsafety.navigation.gain_metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.simulation import Integrator
+from hrsafety.navigation.trajectory import Integrator
 
 __all__ = ["GainGradient", "gain_gradient"]
 

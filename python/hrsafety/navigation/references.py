@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, instance, pair, points, vector
 from hrsafety.errors import ShapeError
-from hrsafety.navigation.simulation import Trajectory
+from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["CircleReference", "LineReference", "PathReference", "Reference", "ReferenceMotion"]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.simulation import Trajectory
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, labels, law_looks, notes, shapes, style
 from hrsafety.plotting.law_looks import Runs
 from hrsafety.plotting.scenes import _draw_path

@@ -13,7 +13,7 @@ from hrsafety.plotting import inputs, notes, style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.simulation import Trajectory
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["energy"]
 

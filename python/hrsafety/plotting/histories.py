@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    from hrsafety.navigation.simulation import Trajectory
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["distances", "lyapunov"]
 

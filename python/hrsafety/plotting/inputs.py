@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hrsafety._arguments import word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.simulation import Trajectory
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting.style import Limits
 
 VIEWS = ("scene", "paths")

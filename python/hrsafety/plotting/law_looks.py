@@ -16,7 +16,7 @@ from hrsafety.navigation.planners import (
     RapidlyExploringRandomTree,
     VelocityObstacle,
 )
-from hrsafety.navigation.simulation import Trajectory
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, shapes, style
 from hrsafety.plotting.scenes import MARGIN
 

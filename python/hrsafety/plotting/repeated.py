@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from hrsafety.navigation.scenario import Scenario
-    from hrsafety.navigation.simulation import Trajectory
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["repeated_distances", "repeated_paths"]
 

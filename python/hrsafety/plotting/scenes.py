@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
 
-    from hrsafety.navigation.simulation import Trajectory
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["paths"]
 

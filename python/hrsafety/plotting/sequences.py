@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.simulation import Trajectory
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["time_sequence"]
 
