@@ -8,13 +8,23 @@ BIN    := $(VENV)/bin
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build test lint bench docs images check reproduce clean
+.PHONY: build develop hooks test lint bench docs images check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 build: $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check ".[plot,test,dev,docs]"
+
+# Builds the native module into the source tree, for work on the package itself; incremental.
+develop: build
+	CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_INCREMENTAL=true \
+	    VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release --quiet
+
+# Formatters and lints before each commit.
+hooks: build
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check pre-commit
+	$(BIN)/pre-commit install
 
 test: build
 	cargo test --workspace --locked
