@@ -8,8 +8,9 @@ use crate::laws::Stop;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::SearchState;
 use crate::optimize::meeting::{Asker, meet};
-use crate::optimize::observe::{Control, Observer, Report, Stage};
+use crate::optimize::observe::{Control, Observer, Report};
 use crate::optimize::problem::{Candidate, Problem, Score};
+use crate::optimize::stage::Stage;
 use groundwork::threads::{on_threads, team, try_map};
 
 /// Blocks that a list of points is cut into at least, so that threads share the work evenly.

@@ -9,10 +9,10 @@ use crate::optimize::archive::Archive;
 use crate::optimize::blocks::Session;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::grid::{Grid, GridOptions};
-use crate::optimize::ledger::SearchState;
-use crate::optimize::observe::{Observer, Stage};
+use crate::optimize::ledger::{Fingerprint, SearchState};
+use crate::optimize::observe::Observer;
 use crate::optimize::problem::{Bounds, Problem};
-use crate::optimize::search::fingerprint;
+use crate::optimize::stage::Stage;
 use groundwork::threads::on_threads;
 
 /// Options of a search for the best compromises.
@@ -80,7 +80,7 @@ pub fn front_search(
         keep: 1,
     };
     grid.check(bounds)?;
-    let sum = grid.fingerprint(fingerprint(problem, bounds));
+    let sum = grid.fingerprint(Fingerprint::of_box(problem, bounds));
     let session = Session::new(observer, SearchState::resumed(resume, sum.value())?);
     on_threads(options.threads, || {
         rounds(&session, problem, bounds, options)

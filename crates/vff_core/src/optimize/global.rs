@@ -8,10 +8,10 @@ use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::Session;
 use crate::optimize::ledger::{Fingerprint, SearchState};
 use crate::optimize::meeting::Asker;
-use crate::optimize::observe::{Observer, Stage};
+use crate::optimize::observe::Observer;
 use crate::optimize::problem::{Bounds, Candidate, Problem, single_objective};
-use crate::optimize::search::fingerprint;
 use crate::optimize::solvers::{Found, Halt, Oracle, cma_es, differential_evolution};
+use crate::optimize::stage::Stage;
 use groundwork::threads::on_threads;
 
 /// First standard deviation of CMA-ES in shares of the sides of the box.
@@ -87,7 +87,7 @@ pub fn global_search(
         let given = Given::Count(options.evaluations);
         return Err(Failure::invalid("evaluations", rule, given));
     }
-    let sum = options.fingerprint(fingerprint(problem, bounds));
+    let sum = options.fingerprint(Fingerprint::of_box(problem, bounds));
     let session = Session::new(observer, SearchState::resumed(resume, sum.value())?);
     let solver = |island: usize, asker: &mut Asker| {
         let budget = options.budget(island);

@@ -7,8 +7,8 @@ use crate::error::{Failure, Given, Result};
 use crate::optimize::blocks::Session;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::Fingerprint;
-use crate::optimize::observe::Stage;
 use crate::optimize::problem::{Bounds, Candidate, Problem, Score};
+use crate::optimize::stage::Stage;
 
 /// Options of a coarse-to-fine grid.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::error::{Failure, Given, Result};
 use crate::optimize::evaluated::Evaluated;
-use crate::optimize::observe::Stage;
+use crate::optimize::problem::{Bounds, Problem};
+use crate::optimize::stage::Stage;
 
 /// First bytes of a stored state: a name and the version of its form.
 const MAGIC: &[u8; 8] = b"vffgain1";
@@ -25,6 +26,17 @@ pub struct SearchState {
 pub(crate) struct Fingerprint(u64);
 
 impl Fingerprint {
+    /// Sizes of a problem and its box.
+    pub(crate) fn of_box(problem: &dyn Problem, bounds: &Bounds) -> Self {
+        Self::new()
+            .count(problem.dimension())
+            .count(problem.objectives())
+            .count(problem.constraints())
+            .count(problem.block())
+            .numbers(bounds.lower())
+            .numbers(bounds.upper())
+    }
+
     pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }

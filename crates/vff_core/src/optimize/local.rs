@@ -6,10 +6,10 @@ use crate::optimize::blocks::Session;
 use crate::optimize::evaluated::Evaluated;
 use crate::optimize::ledger::{Fingerprint, SearchState};
 use crate::optimize::meeting::Asker;
-use crate::optimize::observe::{Observer, Stage};
+use crate::optimize::observe::Observer;
 use crate::optimize::problem::{Bounds, Candidate, Problem, Score, single_objective};
-use crate::optimize::search::fingerprint;
 use crate::optimize::solvers::{Found, Halt, Oracle, cobyla, mads};
+use crate::optimize::stage::Stage;
 use groundwork::threads::on_threads;
 
 /// Local method.
@@ -164,7 +164,7 @@ pub fn local_search(
     single_objective(problem)?;
     bounds.check(problem)?;
     options.check()?;
-    let mut sum = options.fingerprint(fingerprint(problem, bounds));
+    let mut sum = options.fingerprint(Fingerprint::of_box(problem, bounds));
     for (index, start) in starts.iter().enumerate() {
         if !bounds.contains(start) {
             let name = format!("starts[{index}]");

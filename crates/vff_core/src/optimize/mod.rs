@@ -22,6 +22,7 @@ mod pareto;
 mod problem;
 mod search;
 mod solvers;
+mod stage;
 
 pub use blocks::evaluate_all;
 pub use evaluated::Evaluated;
@@ -35,7 +36,8 @@ pub use global::{GlobalMethod, GlobalOptions, GlobalSearch, global_search};
 pub use grid::{GridOptions, Round};
 pub use ledger::SearchState;
 pub use local::{LocalMethod, LocalOptions, LocalSearch, LocalStatus, local_search};
-pub use observe::{Control, Observer, Report, Stage};
+pub use observe::{Control, Observer, Report};
 pub use pareto::{hypervolume, non_dominated};
 pub use problem::{Bounds, Candidate, Evaluation, FEASIBILITY, Problem, Score};
 pub use search::{Search, SearchOptions, search};
+pub use stage::Stage;

@@ -53,7 +53,9 @@ pub fn search(
     single_objective(problem)?;
     bounds.check(problem)?;
     options.grid.check(bounds)?;
-    let mut sum = options.grid.fingerprint(fingerprint(problem, bounds));
+    let mut sum = options
+        .grid
+        .fingerprint(Fingerprint::of_box(problem, bounds));
     if let Some(local) = &options.local {
         local.check()?;
         sum = local.fingerprint(sum);
@@ -86,15 +88,4 @@ pub fn search(
         }
         Ok(search)
     })
-}
-
-/// Sizes of a problem and its box.
-pub(crate) fn fingerprint(problem: &dyn Problem, bounds: &Bounds) -> Fingerprint {
-    Fingerprint::new()
-        .count(problem.dimension())
-        .count(problem.objectives())
-        .count(problem.constraints())
-        .count(problem.block())
-        .numbers(bounds.lower())
-        .numbers(bounds.upper())
 }
