@@ -78,8 +78,16 @@ def test_core_knows_neither_python_nor_another_core(crate: str) -> None:
     assert run_time_dependencies(crate).isdisjoint(PYTHON_CRATES | (set(CORES) - {crate}) | {"hrsafety_py"})
 
 
-def test_numbers_of_the_kernels_depend_on_nothing() -> None:
-    assert run_time_dependencies("lanes") <= {"lanes"}
+def test_numbers_of_the_kernels_depend_on_the_traits_of_numbers_alone() -> None:
+    assert run_time_dependencies("lanes") <= {"lanes", "num-traits", "libm"}
+
+
+def test_vectors_are_those_of_the_linear_algebra_library() -> None:
+    assert "nalgebra" in run_time_dependencies("vff_core")
+    own = [
+        path for path in (REPOSITORY / "crates").rglob("*.rs") if re.search(r"struct Vec(tor)?[23]\b", path.read_text())
+    ]
+    assert own == []
 
 
 def test_what_the_cores_share_knows_no_core() -> None:
