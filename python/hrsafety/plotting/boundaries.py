@@ -243,12 +243,21 @@ def refined(damping: npt.ArrayLike, curves: Sequence[Callable[[inputs.Array], Fo
     """
     grid = _rising(damping)
     for curve in curves:
+        meanings = _meanings(curve(grid))
         for _ in range(_ROUNDS):
-            found = curve(grid)
-            known, words = np.isfinite(np.asarray(found.stiffness)), np.array([_look(word) for word in _words(found)])
-            changes = np.flatnonzero((known[1:] != known[:-1]) | (words[1:] != words[:-1]))
-            grid = np.union1d(grid, (grid[changes] + grid[changes + 1]) / 2.0)
+            changes = np.flatnonzero(meanings[1:] != meanings[:-1])
+            if not changes.size:
+                break
+            between = (grid[changes] + grid[changes + 1]) / 2.0
+            grid = np.insert(grid, changes + 1, between)
+            meanings = np.insert(meanings, changes + 1, _meanings(curve(between)))
     return grid
+
+
+def _meanings(boundary: FoamBoundary) -> npt.NDArray[np.object_]:
+    """Return what each point of a boundary means: whether it exists, and how it is drawn."""
+    known = np.isfinite(np.atleast_1d(boundary.stiffness))
+    return np.array([f"{exists} {_look(word)}" for exists, word in zip(known, _words(boundary), strict=True)], object)
 
 
 def _shadow() -> style.Properties:
