@@ -71,7 +71,7 @@ impl<R: Real> Motion<R> {
         let mut factor = 1.0;
         for value in &mut jet {
             factor /= self.length;
-            *value = *value * R::splat(factor);
+            *value *= R::splat(factor);
         }
         jet
     }

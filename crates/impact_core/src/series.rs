@@ -258,7 +258,7 @@ pub fn derivatives<R: Real, const D: usize, const N: usize>(series: &[R; N], x: 
     let mut factorial = 1.0;
     for (order, value) in taylor.iter_mut().enumerate().skip(2) {
         factorial *= order as f64;
-        *value = *value * R::splat(factorial);
+        *value *= R::splat(factorial);
     }
     taylor
 }

@@ -93,7 +93,7 @@ fn factors<R: Real>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) {
     for _ in 0..RESOLVENT_STEPS {
         let value = ((sum - q2) * sum + linear) * sum + constant;
         let slope = (R::splat(3.0) * sum - q2 - q2) * sum + linear;
-        sum = sum - value / slope;
+        sum -= value / slope;
     }
     let difference = (sum * sum - four * q4).max(R::zero()).sqrt();
     let b = R::splat(0.5) * (sum + difference);

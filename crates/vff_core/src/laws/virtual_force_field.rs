@@ -351,7 +351,7 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
                 .dissipation
                 .force(self.stabilizing, &self.gains, &state, period);
             command.stabilizing = Vector2::select(critical, Vector2::zeros(), force);
-            command.force = command.force + force;
+            command.force += force;
         }
         if critical.any() {
             let braking = self.braking(robot.velocity, situation.interval);

@@ -80,7 +80,7 @@ impl Outline {
     #[must_use]
     pub fn seen_after(mut self, way: Vector) -> Self {
         for corner in &mut self.corners {
-            *corner = *corner - way;
+            *corner -= way;
         }
         self
     }

@@ -253,7 +253,7 @@ fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> Robot
 fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
     let robot = &runs.scenario.robot;
     (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
-    runs.position = runs.position + runs.velocity * R::splat(runs.clock.step);
+    runs.position += runs.velocity * R::splat(runs.clock.step);
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
@@ -264,7 +264,7 @@ fn rk4_held<R: Real>(runs: &mut Runs<'_, R>) {
     let middle = robot.limited_velocity(at(0.5)).0;
     let (last, speed) = robot.limited_velocity(at(1.0));
     let weighted = runs.velocity + middle * R::splat(4.0) + last;
-    runs.position = runs.position + weighted * R::splat(step / 6.0);
+    runs.position += weighted * R::splat(step / 6.0);
     (runs.velocity, runs.speed) = (last, speed);
 }
 

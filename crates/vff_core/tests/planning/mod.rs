@@ -123,9 +123,9 @@ pub fn drive(scenario: &Scenario, ends: [[f64; 2]; 2], planner: &mut impl Planne
             let wanted = Vector2::splat(planner.desired_velocity(&known));
             force = (wanted - velocity) * (robot.mass / 0.06);
         }
-        velocity = velocity + robot.acceleration(force) * 0.01;
+        velocity += robot.acceleration(force) * 0.01;
         velocity = robot.limited_velocity(velocity).0;
-        place = place + velocity * 0.01;
+        place += velocity * 0.01;
     }
     ride
 }

@@ -61,7 +61,7 @@ impl Moving for OmniRobot {
             let turn = kinematics.body_velocity(rolling)[2] * period;
             let [x, y, _] = kinematics.world_velocity(rolling, heading + 0.5 * turn);
             velocity = Vector2::new(x, y);
-            position = position + velocity * period;
+            position += velocity * period;
             heading += turn;
         });
         let way = position - self.position;
