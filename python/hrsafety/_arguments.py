@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -75,9 +76,13 @@ def number(name: str, value: object) -> float:
 
 def _check_mask(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
-    masked = int(np.count_nonzero(np.ma.getmaskarray(value))) if isinstance(value, np.ma.MaskedArray) else 0
+    # Importing them takes longer than all arguments of a session; who has one has imported them.
+    masked_arrays = sys.modules.get("numpy.ma")
+    if masked_arrays is None or not isinstance(value, masked_arrays.MaskedArray):
+        return
+    masked = int(np.count_nonzero(masked_arrays.getmaskarray(value)))
     if masked:
-        shown = Shown(f"{masked} masked of {value.size}")  # type: ignore[attr-defined]  # a masked array
+        shown = Shown(f"{masked} masked of {value.size}")
         raise InvalidParameterError(name, "have no masked values", shown, "leave them out with .compressed()")
 
 
