@@ -76,7 +76,7 @@ def number(name: str, value: object) -> float:
 
 def _check_mask(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
-    # Importing them takes longer than all arguments of a session; who has one has imported them.
+    # Importing them takes longer than checking all arguments of a program; whoever has one has imported them.
     masked_arrays = sys.modules.get("numpy.ma")
     if masked_arrays is None or not isinstance(value, masked_arrays.MaskedArray):
         return
