@@ -25,7 +25,7 @@ from hrsafety import navigation as nav
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "python" / "hrsafety"
-CORES = ("vff_core", "impact_core", "reactive_core")
+CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
 NATIVE_USERS = ("navigation", "impact", "reactive")
@@ -78,8 +78,11 @@ def test_core_knows_neither_python_nor_another_core(crate: str) -> None:
     assert run_time_dependencies(crate).isdisjoint(PYTHON_CRATES | (set(CORES) - {crate}) | {"hrsafety_py"})
 
 
-def test_numbers_of_the_kernels_depend_on_the_traits_of_numbers_alone() -> None:
-    assert run_time_dependencies("lanes") <= {"lanes", "num-traits", "libm"}
+def test_random_numbers_come_from_one_place() -> None:
+    sources = (REPOSITORY / "crates").glob("*/src/**/*.rs")
+    users = {path for path in sources if "rand_chacha" in re.sub(r"(?s)#\[cfg\(test\)\].*", "", path.read_text("utf-8"))}
+    users = {path for path in users if path.name != "tests.rs"}
+    assert [path.relative_to(REPOSITORY).as_posix() for path in users] == ["crates/numeric/src/random.rs"]
 
 
 def test_vectors_are_those_of_the_linear_algebra_library() -> None:
@@ -91,7 +94,7 @@ def test_vectors_are_those_of_the_linear_algebra_library() -> None:
 
 
 def test_what_the_cores_share_knows_no_core() -> None:
-    assert run_time_dependencies("groundwork").isdisjoint(PYTHON_CRATES | set(CORES) | {"hrsafety_py", "lanes"})
+    assert run_time_dependencies("numeric").isdisjoint(PYTHON_CRATES | set(CORES) | {"hrsafety_py"})
 
 
 @pytest.mark.parametrize("crate", CORES)
@@ -104,7 +107,7 @@ def test_binding_crate_is_the_one_that_knows_python() -> None:
     assert {"pyo3", "vff_core"} <= run_time_dependencies("hrsafety_py")
 
 
-@pytest.mark.parametrize("crate", [*CORES, "groundwork", "lanes"])
+@pytest.mark.parametrize("crate", [*CORES, "numeric"])
 def test_core_forbids_unsafe_code(crate: str) -> None:
     text = (REPOSITORY / "crates" / crate / "src" / "lib.rs").read_text(encoding="utf-8")
     assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)
@@ -150,7 +153,7 @@ def test_selections_of_the_binding_name_every_case(name: str) -> None:
 def test_threads_come_from_one_place() -> None:
     sources = (REPOSITORY / "crates").glob("*/src/**/*.rs")
     users = [path for path in sources if re.search(r"\brayon\b|\bpar_\w+\(", path.read_text(encoding="utf-8"))]
-    assert [path.relative_to(REPOSITORY).as_posix() for path in users] == ["crates/groundwork/src/threads.rs"]
+    assert [path.relative_to(REPOSITORY).as_posix() for path in users] == ["crates/numeric/src/threads.rs"]
 
 
 # ---- imports --------------------------------------------------------------------------------

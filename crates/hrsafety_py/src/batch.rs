@@ -3,8 +3,8 @@
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::scenario;
-use vff_core::simulate::{BatchOptions, BatchTable, Instructions, Width, run_batch};
+use vff_core::run::{BatchOptions, BatchTable, Instructions, Width, run_batch};
+use vff_core::world::scenario;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;

@@ -2,12 +2,12 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::scenario;
-use vff_core::simulate::built::{
+use vff_core::run::built::{
     Built, BuiltTrajectory, Histories, PoseFusion, Steered, evaluate_built, repeat_built,
     simulate_built,
 };
-use vff_core::simulate::{Contact, RunSummary};
+use vff_core::run::{Contact, RunSummary};
+use vff_core::world::scenario;
 
 use crate::arrays::Fields;
 use crate::differential::{Tracking, VirtualTorque};

@@ -1,14 +1,14 @@
 //! Two-wheel robot that follows a reference.
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::motion::Motion;
 use vff_core::robots::differential::{
     self, DifferentialLimits, ErrorFrame, ExponentialGoal, FullSpeed, Nonlinear, Pose,
     ReferenceTurn, TorqueSteering, TrackOptions, TrackRow, TrackRun, TrackStart, Twist,
 };
+use vff_core::world::motion::Motion;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 

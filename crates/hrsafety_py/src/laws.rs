@@ -1,21 +1,22 @@
 //! Navigation laws.
 
-use groundwork::error::{Failure, Given, Result};
+use numeric::error::{Failure, Given, Result};
 use pyo3::prelude::*;
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::gains::Gains;
 use vff_core::laws;
-use vff_core::laws::compared::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, Pairwise};
-use vff_core::planners::family::Planned;
-use vff_core::planners::field_d_star::FieldDStar;
-use vff_core::planners::reciprocal::ReciprocalAvoidance;
-use vff_core::planners::tree::RapidlyExploringRandomTree;
-use vff_core::planners::velocity_obstacle::{Selection, VelocityObstacle};
-use vff_core::simulate::AnyLaw;
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::Stabilizing;
+use vff_core::laws::field_d_star::FieldDStar;
+use vff_core::laws::pairwise::Pairwise;
+use vff_core::laws::planning::family::Planned;
+use vff_core::laws::reciprocal::ReciprocalAvoidance;
+use vff_core::laws::tree::RapidlyExploringRandomTree;
+use vff_core::laws::velocity_obstacle::{Selection, VelocityObstacle};
+use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
+use vff_core::run::AnyLaw;
 
-use reactive_core::impedance::attraction::Attraction;
-use reactive_core::impedance::law::{Form, Impedance};
+use vff_core::laws::impedance::attraction::Attraction;
+use vff_core::laws::impedance::law::{Form, Impedance};
 
 use crate::errors::{CoreError, CoreResult, InvalidParameterError};
 use crate::reactive::arena::ImpedanceFamily;

@@ -31,7 +31,7 @@ mod _hrsafety {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         PyArray1::<f64>::zeros(module.py(), 0, false).try_readonly()?;
-        module.add("CONTACT_SPEED", vff_core::simulate::CONTACT_SPEED)
+        module.add("CONTACT_SPEED", vff_core::run::CONTACT_SPEED)
     }
 
     #[pymodule_export]

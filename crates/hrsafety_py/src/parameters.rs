@@ -1,13 +1,14 @@
 //! Checked parameter objects behind the Python dataclasses.
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
 use pyo3::prelude::*;
-use vff_core::measurement::{self, Distribution, Noisy};
-use vff_core::motion::{Motion, Segment};
-use vff_core::obstacle::{self, Limits};
-use vff_core::region::{self, Sensing};
 use vff_core::robots::{self, DifferentialWheels, Wheels};
-use vff_core::scenario::{self, Rules};
+use vff_core::sensing::measurement;
+use vff_core::sensing::measurement::{Distribution, Noisy};
+use vff_core::world::motion::{Motion, Segment};
+use vff_core::world::obstacle::{self, Limits};
+use vff_core::world::region::{self, Sensing};
+use vff_core::world::scenario::{self, Rules};
 
 use crate::errors::CoreResult;
 

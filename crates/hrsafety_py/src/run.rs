@@ -6,8 +6,8 @@ use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::laws::FieldTerms;
-use vff_core::metrics::{self, Weights};
-use vff_core::simulate::{
+use vff_core::run::metrics::{self, Weights};
+use vff_core::run::{
     Contact, Integrator, Options, Outcome, RunSummary, Trajectory, command_at,
     simulate as run_once, terms_at,
 };
@@ -51,7 +51,7 @@ pub fn run_options(
 /// Runs with the interpreter released; signals are looked at now and then.
 fn run(
     py: Python<'_>,
-    scenario: &vff_core::scenario::Scenario,
+    scenario: &vff_core::world::scenario::Scenario,
     law: &Law,
     options: &Options,
 ) -> PyResult<(RunSummary, Trajectory)> {
@@ -78,7 +78,7 @@ fn run(
 /// Fields of a trajectory.
 pub fn trajectory_fields<'py>(
     py: Python<'py>,
-    scenario: &vff_core::scenario::Scenario,
+    scenario: &vff_core::world::scenario::Scenario,
     summary: RunSummary,
     columns: Trajectory,
 ) -> PyResult<Bound<'py, PyDict>> {

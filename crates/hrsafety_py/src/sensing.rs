@@ -1,10 +1,10 @@
 //! Sensing: conversion of arguments and results.
 
-use groundwork::error::Failure;
+use numeric::error::Failure;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::measurement::Distribution;
+use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::{
     self, Estimate, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, VisionSensor,
 };

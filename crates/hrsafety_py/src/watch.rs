@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use groundwork::error::Failure;
+use numeric::error::Failure;
 use pyo3::prelude::*;
 
 use crate::errors::CoreError;

@@ -1,6 +1,6 @@
 //! Wheels: conversion of arguments and results.
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

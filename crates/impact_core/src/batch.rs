@@ -4,7 +4,7 @@ mod kernel;
 
 pub(crate) use kernel::usual;
 
-use groundwork::threads::{on_threads, try_each};
+use numeric::threads::{on_threads, try_each};
 
 use crate::criteria::{MetricOptions, Metrics, Status};
 use crate::error::{Failure, Given, Result};

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use lanes::{One, Real, Zero};
+use numeric::lanes::{One, Real, Zero};
 
 /// A value and its partial derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use crate::parameters::{System, Target};
 use crate::roots::Peak;
 use crate::series::Plant;
 use crate::windows::Window;
-use lanes::Zero;
+use numeric::lanes::Zero;
 
 /// Number of parameters.
 pub const PARAMETERS: usize = 10;

@@ -6,7 +6,7 @@
 
 #![forbid(unsafe_code)]
 
-pub use groundwork::error;
+pub use numeric::error;
 
 pub mod batch;
 pub mod contact;

@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Given, Result};
 use crate::series::{CELL_ANGLE, Cell, Drive, Plant, Recurrence, State, derivatives, integrated};
-use lanes::Real;
+use numeric::lanes::Real;
 
 /// Cells that a motion may have; more means that its fastest root is far too fast for its length.
 pub const MAX_CELLS: usize = 200_000;

@@ -17,7 +17,7 @@
 //! of them is a difference of the others.
 
 use crate::parameters::{System, Target};
-use lanes::Real;
+use numeric::lanes::Real;
 
 /// Coefficients of a rate in a cell.
 pub const ORDER: usize = 24;

@@ -3,16 +3,16 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
-use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::wheels::{differential_wheels, holonomic_wheels};
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::AnyLaw;
-use vff_core::simulate::built::{Built, repeat_built};
+use vff_core::run::AnyLaw;
+use vff_core::run::built::{Built, repeat_built};
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 const START: [f64; 2] = [3.99, 0.6];
 const GOAL: [f64; 2] = [0.0, 0.6];

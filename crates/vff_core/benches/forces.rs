@@ -6,14 +6,14 @@ mod scenes;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use vff_core::forces::geometry::{Body, RobotState};
-use vff_core::gains::GainLanes;
 use vff_core::lanes::{Lanes, Planar, Real, Vector2};
+use vff_core::laws::field::gains::GainLanes;
 use vff_core::laws::{ForceFieldLaw, Law, Situation, Stop};
-use vff_core::scenario::Scenario;
+use vff_core::world::geometry::{Body, RobotState};
+use vff_core::world::scenario::Scenario;
 
 fn bodies(scenario: &Scenario) -> Vec<Body> {
-    let body = |placed: &vff_core::scenario::PlacedObstacle| Body {
+    let body = |placed: &vff_core::world::scenario::PlacedObstacle| Body {
         shape: placed.obstacle.shape,
         regions: placed.regions,
         state: placed.obstacle.motion.at(1.0, &mut 0),

@@ -7,18 +7,18 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use vff_core::gains::Gains;
-use vff_core::metrics::Weights;
-use vff_core::motion::Motion;
-use vff_core::obstacle::{Limits, Obstacle};
-use vff_core::optimize::{
+use vff_core::laws::field::gains::Gains;
+use vff_core::robots::HolonomicRobot;
+use vff_core::run::metrics::Weights;
+use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Outcome, run_batch};
+use vff_core::search::{
     Bounds, GainOptions, GainProblem, GlobalMethod, GlobalOptions, GridOptions, LocalOptions,
     Metric, Objective, Over, Robustness, Search, SearchOptions, evaluate_all, global_search,
     local_search, search,
 };
-use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{BatchOptions, BatchTable, Instructions, Options, Outcome, run_batch};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 const THIRDS: Weights = Weights {
     arrival_time: 1.0 / 3.0,

@@ -4,16 +4,16 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::{Planar, Vector2};
+use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
+use vff_core::laws::planning::Planner;
+use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use vff_core::laws::{Situation, Stop};
-use vff_core::motion::BodyState;
-use vff_core::obstacle::{Regions, Shape};
-use vff_core::planners::Planner;
-use vff_core::planners::field_d_star::{FieldDStar, FieldDStarPlanner};
-use vff_core::planners::tree::{RapidlyExploringRandomTree, TreePlanner};
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::world::geometry::{Body, RobotState};
+use vff_core::world::motion::BodyState;
+use vff_core::world::obstacle::{Regions, Shape};
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Control steps that are looped over: a way of 3 m at 0.7 m/s.
 const STEPS: usize = 72;

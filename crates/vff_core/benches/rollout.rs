@@ -6,13 +6,11 @@ mod scenes;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
-use vff_core::metrics::Weights;
-use vff_core::scenario::Scenario;
-use vff_core::simulate::{
-    BatchOptions, BatchTable, Instructions, Options, Width, run_batch, simulate,
-};
+use vff_core::laws::field::gains::Gains;
+use vff_core::run::metrics::Weights;
+use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Width, run_batch, simulate};
+use vff_core::world::scenario::Scenario;
 
 fn batch(
     scenario: &Scenario,

@@ -4,18 +4,19 @@ mod configurations;
 
 use configurations::{crossing, law, limits, obstacles};
 use proptest::prelude::*;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::laws::compared::{Masoud, Pairwise};
-use vff_core::measurement::{Distribution, Measurement, Noisy};
-use vff_core::motion::Motion;
-use vff_core::obstacle::Obstacle;
+use vff_core::laws::Masoud;
+use vff_core::laws::field::stabilizing::Stabilizing;
+use vff_core::laws::pairwise::Pairwise;
 use vff_core::robots::DifferentialDriveRobot;
 use vff_core::robots::differential::{Nonlinear, Tracking, VirtualTorque};
 use vff_core::robots::wheels::{Slip, differential_wheels, holonomic_wheels};
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::run::built::{Built, Steered, repeat_built, simulate_built};
+use vff_core::run::{AnyLaw, Options, Outcome, simulate};
+use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::sensing::{Estimator, PositionError, Vision};
-use vff_core::simulate::built::{Built, Steered, repeat_built, simulate_built};
-use vff_core::simulate::{AnyLaw, Options, Outcome, simulate};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Gains of chapters 6 and 7.
 const NEW: [f64; 4] = [3.0, 20.0, 17.0, 0.25];

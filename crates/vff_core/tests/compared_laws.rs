@@ -3,27 +3,24 @@
 mod configurations;
 
 use configurations::{crossing, law, limits, obstacles};
-use vff_core::forces::geometry::{Body, RobotState};
-use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::lanes::{Planar, Vector2};
-use vff_core::laws::compared::{
-    BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, Pairwise, PairwiseFamily, PairwiseField,
-    PairwiseLaw,
-};
-use vff_core::laws::{Law, Situation, Stop};
-use vff_core::metrics::Weights;
-use vff_core::motion::{BodyState, Motion};
-use vff_core::obstacle::{Obstacle, Regions, Shape};
-use vff_core::planners::family::Planned;
-use vff_core::planners::field_d_star::FieldDStar;
-use vff_core::planners::reciprocal::ReciprocalAvoidance;
-use vff_core::planners::tree::RapidlyExploringRandomTree;
-use vff_core::planners::velocity_obstacle::VelocityObstacle;
+use vff_core::laws::field::stabilizing::Stabilizing;
+use vff_core::laws::field_d_star::FieldDStar;
+use vff_core::laws::pairwise::{Pairwise, PairwiseFamily, PairwiseField, PairwiseLaw};
+use vff_core::laws::planning::family::Planned;
+use vff_core::laws::reciprocal::ReciprocalAvoidance;
+use vff_core::laws::tree::RapidlyExploringRandomTree;
+use vff_core::laws::velocity_obstacle::VelocityObstacle;
+use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Law, Masoud, Situation, Stop};
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{
+use vff_core::run::metrics::Weights;
+use vff_core::run::{
     AnyLaw, BatchOptions, Instructions, Options, Outcome, RunSummary, Width, run_batch, simulate,
 };
+use vff_core::world::geometry::{Body, RobotState};
+use vff_core::world::motion::{BodyState, Motion};
+use vff_core::world::obstacle::{Obstacle, Regions, Shape};
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Relative.
 const TIME: f64 = 0.01;

@@ -3,14 +3,14 @@
 mod configurations;
 
 use configurations::{crossing, law, limits, obstacles};
-use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::laws::VirtualForceField;
-use vff_core::measurement::{Distribution, Measurement, Noisy};
-use vff_core::motion::Motion;
-use vff_core::obstacle::Obstacle;
+use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{Integrator, Options, Trajectory, simulate};
+use vff_core::run::{Integrator, Options, Trajectory, simulate};
+use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Largest deviation of a measured order; the next term of the error is smaller by the step.
 const ORDER: f64 = 0.2;

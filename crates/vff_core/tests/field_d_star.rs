@@ -9,10 +9,10 @@ mod draws;
 
 use draws::Draws;
 use proptest::prelude::*;
-use vff_core::planners::field_d_star::IncrementalSearch;
-use vff_core::planners::field_d_star::cost::corner_cost;
-use vff_core::planners::field_d_star::extraction::extract;
-use vff_core::planners::path::length;
+use vff_core::laws::field_d_star::IncrementalSearch;
+use vff_core::laws::field_d_star::cost::corner_cost;
+use vff_core::laws::field_d_star::extraction::extract;
+use vff_core::laws::planning::path::length;
 
 /// Of a cost of up to a few hundred cells: far above rounding.
 const EQUAL: f64 = 1e-9;

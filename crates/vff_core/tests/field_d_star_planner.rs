@@ -15,14 +15,14 @@ use configurations::{crossing, obstacles};
 use draws::Draws;
 use planning::{BARN_RADIUS, barn, body, drive, scene, shifted_velocities, situation};
 use proptest::prelude::*;
-use vff_core::forces::geometry::Body;
-use vff_core::obstacle::Shape;
-use vff_core::planners::Planner;
-use vff_core::planners::field_d_star::{FieldDStar, FieldDStarPlanner, IncrementalSearch};
-use vff_core::planners::footprint::Footprint;
-use vff_core::planners::grid::{Frame, OccupancyGrid};
-use vff_core::planners::path::{PathStatus, length, point_ahead};
-use vff_core::scenario::Rules;
+use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner, IncrementalSearch};
+use vff_core::laws::planning::Planner;
+use vff_core::laws::planning::footprint::Footprint;
+use vff_core::laws::planning::grid::{Frame, OccupancyGrid};
+use vff_core::laws::planning::path::{PathStatus, length, point_ahead};
+use vff_core::world::geometry::Body;
+use vff_core::world::obstacle::Shape;
+use vff_core::world::scenario::Rules;
 
 /// Of a cost of up to a few hundred cells: far above rounding.
 const EQUAL: f64 = 1e-9;

@@ -6,17 +6,17 @@ mod functions;
 use configurations::{crossing, law, obstacles};
 use functions::grid;
 use vff_core::error::Failure;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::gains::Gains;
-use vff_core::measurement::{Distribution, Measurement, Noisy};
-use vff_core::metrics::Weights;
-use vff_core::optimize::{
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::stabilizing::Stabilizing;
+use vff_core::run::metrics::Weights;
+use vff_core::run::{BatchOptions, Instructions, Options, Outcome, Width, run_batch};
+use vff_core::search::{
     Bounds, FEASIBILITY, GainOptions, GainProblem, Limit, LocalOptions, Metric, MetricConstraint,
     Objective, Over, Problem, Robustness, Search, SearchOptions, arrival_margin, evaluate_all,
     search,
 };
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{BatchOptions, Instructions, Options, Outcome, Width, run_batch};
+use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
+use vff_core::world::scenario::{Rules, Scenario};
 
 const THIRDS: Weights = Weights {
     arrival_time: 1.0 / 3.0,

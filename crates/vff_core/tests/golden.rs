@@ -7,13 +7,13 @@ use std::path::Path;
 
 use configurations::{crossing, law, limits, obstacles};
 use serde_json::Value;
-use vff_core::forces::stabilizing::Stabilizing;
 use vff_core::laws::FieldTerms;
-use vff_core::motion::Motion;
-use vff_core::obstacle::Obstacle;
+use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{Options, Outcome, simulate, terms_at};
+use vff_core::run::{Options, Outcome, simulate, terms_at};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Of the norm of a term: some hundred roundings; the file prints 16 digits.
 const RELATIVE: f64 = 1e-12;

@@ -3,9 +3,9 @@
 mod bitwise;
 
 use bitwise::computed;
+use numeric::angle::unsigned_angle;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use vff_core::angle::unsigned_angle;
 use vff_core::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2};
 
 /// Where an operation changes its kind of answer.

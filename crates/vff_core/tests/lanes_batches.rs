@@ -7,20 +7,20 @@ use std::fmt::Debug;
 
 use bitwise::computed;
 use configurations::{crossing, gains, law, limits, obstacles};
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::{Cap, Stabilizing};
-use vff_core::gains::{GainLanes, Gains};
 use vff_core::lanes::{Lanes, Real};
 use vff_core::laws::VirtualForceField;
-use vff_core::measurement::{Distribution, Measurement, Noisy};
-use vff_core::metrics::Weights;
-use vff_core::motion::Motion;
-use vff_core::obstacle::Obstacle;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{
+use vff_core::laws::field::gains::{GainLanes, Gains};
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
+use vff_core::run::metrics::Weights;
+use vff_core::run::{
     BatchOptions, BatchTable, Instructions, Integrator, Options, Outcome, Width, run_batch,
     simulate,
 };
+use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::scenario::{Rules, Scenario};
 
 const NEW: [f64; 4] = [3.0, 20.0, 17.0, 0.25];
 

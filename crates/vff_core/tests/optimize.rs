@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use functions::{Function, grid, unit_box};
 use hock_schittkowski::{Case, cases};
 use vff_core::error::{Failure, Result};
-use vff_core::optimize::{
+use vff_core::search::{
     Bounds, Candidate, Evaluation, GridOptions, LocalMethod, LocalOptions, LocalStatus, Problem,
     Score, SearchOptions, local_search, search,
 };

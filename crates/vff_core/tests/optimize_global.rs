@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 use functions::{Bowls, Function, global, rippled, unit_box};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use vff_core::optimize::{
+use vff_core::search::{
     FrontOptions, GlobalMethod, GlobalOptions, front_search, global_search, hypervolume,
     non_dominated,
 };

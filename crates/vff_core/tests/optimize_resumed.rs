@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use functions::{Bowls, Function, global, grid, rippled, unit_box};
-use vff_core::optimize::{
+use vff_core::search::{
     Control, FrontOptions, GlobalMethod, GlobalOptions, LocalOptions, LocalStatus, Observer,
     Report, SearchOptions, SearchState, Stage, front_search, global_search, search,
 };

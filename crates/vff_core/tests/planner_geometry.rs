@@ -1,13 +1,13 @@
 //! Outlines, velocity obstacles and linear programs against plain sampling.
 
 use proptest::prelude::*;
-use vff_core::forces::geometry::Body;
 use vff_core::lanes::{Planar, Vector2};
-use vff_core::motion::BodyState;
-use vff_core::obstacle::{Regions, Shape};
-use vff_core::planners::half_planes::{HalfPlane, Solver};
-use vff_core::planners::outline::Outline;
-use vff_core::planners::reciprocal::avoiding;
+use vff_core::laws::planning::half_planes::{HalfPlane, Solver};
+use vff_core::laws::planning::outline::Outline;
+use vff_core::laws::reciprocal::avoiding;
+use vff_core::world::geometry::Body;
+use vff_core::world::motion::BodyState;
+use vff_core::world::obstacle::{Regions, Shape};
 
 type Vector = Vector2<f64>;
 

@@ -9,13 +9,13 @@ use configurations::{crossing, gains, law, limits, obstacles};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use vff_core::error::Failure;
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::{Cap, Stabilizing};
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::{FieldTerms, VirtualForceField};
-use vff_core::obstacle::Obstacle;
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{Integrator, Options, Trajectory, simulate, terms_at};
+use vff_core::run::{Integrator, Options, Trajectory, simulate, terms_at};
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::scenario::{Rules, Scenario};
 use worlds::{Frame, Kind, State, any_law, any_state, length, minus, plus, times};
 
 /// Of the sum of the magnitudes of the terms: at the smallest `d - r3` of the generated states,
@@ -106,7 +106,7 @@ proptest! {
         law in any_law(), others in prop::array::uniform2(-1.0..1.0),
     ) {
         let (critical, active, depth) = (0.5, 1.5, 10f64.powi(-exponent) * 0.5);
-        let motion = vff_core::motion::Motion::moving([0.0; 2], others, [0.0; 2], None).unwrap();
+        let motion = vff_core::world::motion::Motion::moving([0.0; 2], others, [0.0; 2], None).unwrap();
         let disc = Obstacle::disc(0.1, motion, limits(critical, active)).unwrap();
         let goal = [-3.0, 1.0];
         let state = State::beside(times(active - depth, [bearing.cos(), bearing.sin()]),
@@ -288,7 +288,7 @@ proptest! {
     /// A person walks into the robot: it stops on its course and stays.
     #[test]
     fn braking_run_keeps_its_course(offset in -0.3..0.3, speed in 1.2..3.0, law in any_law()) {
-        let motion = vff_core::motion::Motion::moving([0.5, 0.6 + offset], [speed, 0.0], [0.0; 2], None);
+        let motion = vff_core::world::motion::Motion::moving([0.5, 0.6 + offset], [speed, 0.0], [0.0; 2], None);
         let person = Obstacle::disc(0.4, motion.unwrap(), limits(0.8, 1.0)).unwrap();
         let scenario = crossing(vec![person], Rules { time_limit: 4.0, ..Rules::default() });
         let (_, path) = simulate(&scenario, law, &options(false, true), &|| false).unwrap();
@@ -333,8 +333,12 @@ fn wild_obstacle() -> impl Strategy<Value = Option<Obstacle>> {
         if round {
             let stop = stops.then(|| plus([n[2], n[3]], [n[4], n[5]]));
             let acceleration = if stops { [0.0; 2] } else { [n[6], n[7]] };
-            let motion =
-                vff_core::motion::Motion::moving([n[2], n[3]], [n[4], n[5]], acceleration, stop);
+            let motion = vff_core::world::motion::Motion::moving(
+                [n[2], n[3]],
+                [n[4], n[5]],
+                acceleration,
+                stop,
+            );
             Obstacle::disc(n[8].abs(), motion.ok()?, limits).ok()
         } else {
             Obstacle::rectangle([n[2], n[3]], [n[4].abs(), n[5].abs()], n[6], limits).ok()

@@ -1,8 +1,8 @@
 //! Cameras, estimators and vision: properties.
 
 use proptest::prelude::*;
-use vff_core::measurement::Distribution;
 use vff_core::sensing::camera::distorted_ratio;
+use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::vision::Frame;
 use vff_core::sensing::{
     Camera, Estimator, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, Vision,

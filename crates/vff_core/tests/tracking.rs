@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use draws::Draws;
 use proptest::prelude::*;
 use vff_core::error::Failure;
-use vff_core::motion::Motion;
 use vff_core::robots::DifferentialDriveRobot;
 use vff_core::robots::differential::{
     DifferentialDrive, DifferentialLimits, ExponentialGoal, FullSpeed, Nonlinear, Pose, Reference,
     ReferencePath, TorqueSteering, TrackOptions, TrackRow, TrackStart, Tracker, Tracking, Twist,
     VirtualTorque, track, track_batch,
 };
+use vff_core::world::motion::Motion;
 
 const STARTS: usize = 200;
 const LEVELS: [f64; 2] = [0.1, 0.001];

@@ -16,13 +16,13 @@ use proptest::prelude::*;
 use slalom::{ROUNDING, slalom};
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::Stop;
-use vff_core::obstacle::Shape;
-use vff_core::planners::footprint::Footprint;
-use vff_core::planners::outline::Outline;
-use vff_core::planners::path::{PathStatus, length};
-use vff_core::planners::tree::buckets::Buckets;
-use vff_core::planners::tree::growth::{Growth, Tree};
-use vff_core::planners::tree::{RapidlyExploringRandomTree, TreePlanner};
+use vff_core::laws::planning::footprint::Footprint;
+use vff_core::laws::planning::outline::Outline;
+use vff_core::laws::planning::path::{PathStatus, length};
+use vff_core::laws::tree::buckets::Buckets;
+use vff_core::laws::tree::growth::{Growth, Tree};
+use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
+use vff_core::world::obstacle::Shape;
 
 /// Points drawn for one tree in a BARN world: an upper bound of its nodes.
 const BARN_DRAWS: usize = 2_000;

@@ -17,12 +17,12 @@ use draws::Draws;
 use planning::{body, distance_to_leg, drive, scene, shifted_velocities, situation};
 use proptest::prelude::*;
 use slalom::{ROUNDING, disc, slalom};
-use vff_core::forces::geometry::Body;
-use vff_core::obstacle::Shape;
-use vff_core::planners::Planner;
-use vff_core::planners::path::{PathStatus, length};
-use vff_core::planners::tree::{RapidlyExploringRandomTree, TreePlanner};
-use vff_core::scenario::Rules;
+use vff_core::laws::planning::Planner;
+use vff_core::laws::planning::path::{PathStatus, length};
+use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
+use vff_core::world::geometry::Body;
+use vff_core::world::obstacle::Shape;
+use vff_core::world::scenario::Rules;
 
 /// Highest speed of the robot, in m/s.
 const SPEED: f64 = 0.7;

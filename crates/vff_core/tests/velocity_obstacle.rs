@@ -3,18 +3,19 @@
 mod draws;
 
 use draws::Draws;
-use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::{Planar, Vector2};
-use vff_core::laws::compared::{BorensteinKoren, Pairwise};
+use vff_core::laws::BorensteinKoren;
+use vff_core::laws::pairwise::Pairwise;
+use vff_core::laws::planning::family::Planned;
+use vff_core::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
 use vff_core::laws::{Situation, Stop};
-use vff_core::metrics::clearances;
-use vff_core::motion::Motion;
-use vff_core::obstacle::{Limits, Obstacle};
-use vff_core::planners::family::Planned;
-use vff_core::planners::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
-use vff_core::simulate::{AnyLaw, Options, Outcome, RunSummary, simulate};
+use vff_core::run::metrics::clearances;
+use vff_core::run::{AnyLaw, Options, Outcome, RunSummary, simulate};
+use vff_core::world::geometry::{Body, RobotState};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Cases of each rule; ten thousand together.
 const CASES: usize = 3_334;
@@ -74,7 +75,7 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
         selection,
         ..VelocityObstacle::default()
     };
-    let body = |placed: &vff_core::scenario::PlacedObstacle| Body {
+    let body = |placed: &vff_core::world::scenario::PlacedObstacle| Body {
         shape: placed.obstacle.shape,
         regions: placed.regions,
         state: placed.obstacle.motion.at(0.0, &mut 0),

@@ -3,17 +3,18 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use groundwork::error::Result;
+use numeric::error::Result;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::metrics::Weights;
-use vff_core::optimize::{
+use vff_core::run::metrics::Weights;
+use vff_core::run::{BatchOptions, Instructions, Options, Width};
+use vff_core::search;
+use vff_core::search::{
     Evaluated, Evaluation, GainOptions, Limit, Metric, MetricConstraint, Objective, Over, Problem,
     Robustness, Score, evaluate_all,
 };
-use vff_core::simulate::{BatchOptions, Instructions, Options, Width};
-use vff_core::{optimize, scenario};
+use vff_core::world::scenario;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
@@ -35,7 +36,7 @@ pub struct GainProblem {
     /// Number of gains of the law.
     dimension: usize,
     /// Objectives and constraints on metrics.
-    native: Option<optimize::GainProblem>,
+    native: Option<search::GainProblem>,
     /// Those that are callables.
     scorer: Option<Scorer>,
     /// Whether each objective is a metric.
@@ -104,7 +105,7 @@ impl GainProblem {
                 width,
                 instructions: Instructions::Widest,
             };
-            let built = optimize::GainProblem::new(scenarios, &law.any, options);
+            let built = search::GainProblem::new(scenarios, &law.any, options);
             Some(built.map_err(CoreError::from)?)
         };
         Ok(Self {
@@ -160,7 +161,7 @@ impl GainProblem {
     /// Evaluates the metrics and the callables apart and puts their columns together.
     fn merge(
         &self,
-        native: &optimize::GainProblem,
+        native: &search::GainProblem,
         scorer: &Scorer,
         points: &[f64],
         into: &mut Evaluation<'_>,

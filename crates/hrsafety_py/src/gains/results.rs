@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use vff_core::optimize::{Candidate, Front, GlobalSearch, LocalSearch, Round, Search};
+use vff_core::search::{Candidate, Front, GlobalSearch, LocalSearch, Round, Search};
 
 use crate::arrays::Fields;
 

@@ -2,13 +2,13 @@
 
 use std::sync::Mutex;
 
-use groundwork::error::{Failure, Result};
+use numeric::error::{Failure, Result};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use vff_core::optimize::{Evaluation, arrival_margin};
-use vff_core::scenario::Scenario;
-use vff_core::simulate::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
+use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
+use vff_core::search::{Evaluation, arrival_margin};
+use vff_core::world::scenario::Scenario;
 
 use crate::batch::columns;
 

@@ -1,9 +1,9 @@
 //! Searches over a gain problem.
 
-use groundwork::error::Result;
+use numeric::error::Result;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::optimize::{
+use vff_core::search::{
     Bounds, FrontOptions, GlobalMethod, GlobalOptions, GridOptions, LocalOptions, Problem,
     SearchOptions, SearchState, front_search, global_search, hypervolume, search,
 };

@@ -4,11 +4,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use groundwork::error::Result;
+use numeric::error::Result;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use vff_core::optimize::{Control, Observer, Report, SearchState, Stage};
+use vff_core::search::{Control, Observer, Report, SearchState, Stage};
 
 use crate::errors::CoreError;
 use crate::gains::problem::GainProblem;

@@ -1,9 +1,9 @@
 //! Boundaries of foam stiffness and what follows from them.
 
-use groundwork::error::{Failure, Result};
 use impact_core::foam_design::{
     DesignProblem, FoamBoundary, Quantity, Requirement, stiffness_lower, stiffness_upper,
 };
+use numeric::error::{Failure, Result};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -29,7 +29,7 @@ fn requirements(given: Vec<(String, f64, Target)>) -> PyResult<Vec<Requirement>>
         .map(|(word, limit, head)| {
             let known = QUANTITIES.into_iter().find(|known| known.word() == word);
             let quantity = known.ok_or_else(|| {
-                let given = groundwork::error::Given::Word(word);
+                let given = numeric::error::Given::Word(word);
                 CoreError::from(Failure::invalid("limits", "have known names", given))
             })?;
             Ok(Requirement {

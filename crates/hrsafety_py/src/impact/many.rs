@@ -1,10 +1,10 @@
 //! Loads of many impacts: one crossing of the boundary.
 
-use groundwork::error::{Failure, finite};
 use impact_core::batch::{
     BatchOptions, Column, Columns, FieldSet, HeadColumns, Width, metrics_batch,
 };
 use impact_core::criteria::Status;
+use numeric::error::{Failure, finite};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,10 +1,10 @@
 //! Injury criteria of sampled signals.
 
-use groundwork::error::Failure;
 use impact_core::batch::Interrupted;
 use impact_core::criteria::INJURY_WINDOWS;
 use impact_core::parameters::GRAVITY;
 use impact_core::signal::{self, Recording};
+use numeric::error::Failure;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;

@@ -1,12 +1,12 @@
 //! Virtual impedance as a navigation law with ideal sensing: the place where both cores meet.
 
-use groundwork::error::Result;
-use reactive_core::impedance::attraction::Attraction;
-use reactive_core::impedance::law::{Impedance, Prepared};
-use vff_core::forces::geometry::RobotState;
+use numeric::error::Result;
 use vff_core::lanes::{Planar, Real, Vector2};
+use vff_core::laws::impedance::attraction::Attraction;
+use vff_core::laws::impedance::law::{Impedance, Prepared};
 use vff_core::laws::{Command, Law, LawFamily, Situation};
-use vff_core::scenario::Scenario;
+use vff_core::world::geometry::RobotState;
+use vff_core::world::scenario::Scenario;
 
 /// Numbers that a search may choose, in their order.
 const GAIN_NAMES: [&str; 6] = [

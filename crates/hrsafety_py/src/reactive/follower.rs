@@ -3,22 +3,22 @@
 pub mod echoes;
 pub mod runs;
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
 use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
-use reactive_core::impedance::collision::Pairing;
-use reactive_core::impedance::{
+use vff_core::laws::impedance::collision::Pairing;
+use vff_core::laws::impedance::{
     Attraction, BankOptions, Form, Impedance, RateFilter, Rotation, Speed, clamped_foot,
     collision_point, foot, printed_foot,
 };
+use vff_core::run::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use echoes::{EchoShape, Sonar};
-use reactive_core::sonar::Pose;
+use vff_core::sensing::sonar::Pose;
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;

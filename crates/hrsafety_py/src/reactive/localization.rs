@@ -2,14 +2,14 @@
 
 pub mod bursts;
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
+use numeric::parallel::Work;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::localization::batch::{FixColumns, locate_many};
-use reactive_core::localization::fix::{self, Covariance, FixStatus};
-use reactive_core::localization::microphones::{self, Pair};
-use reactive_core::parallel::Work;
+use vff_core::sensing::sound::batch::{FixColumns, locate_many};
+use vff_core::sensing::sound::fix::{self, Covariance, FixStatus};
+use vff_core::sensing::sound::microphones::{self, Pair};
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};

@@ -1,15 +1,15 @@
 //! Skirt: conversion of arguments and results.
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
+use numeric::parallel::Work;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::parallel::Work;
-use reactive_core::skirt::ring::{
+use vff_core::run::skirt::ring::{
     Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
 };
-use reactive_core::skirt::states::TABLE_1;
-use reactive_core::skirt::{
+use vff_core::run::skirt::states::TABLE_1;
+use vff_core::run::skirt::{
     Action, Direction, Motion, Policy, Ring, Rule, SceneOptions, Skirt, SkirtOptions, TestPlan,
     TriOmni, normal_distances, test_batch,
 };
@@ -454,7 +454,7 @@ struct Record {
 }
 
 impl Record {
-    fn push(&mut self, moment: &reactive_core::skirt::robot::Moment<'_>) {
+    fn push(&mut self, moment: &vff_core::run::skirt::robot::Moment<'_>) {
         let [cos, sin] = moment.pose.direction;
         self.time.push(moment.time);
         self.position.extend(moment.pose.position);

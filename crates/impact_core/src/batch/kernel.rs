@@ -6,7 +6,7 @@ use crate::fast::apart::apart;
 use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
 use crate::parameters::{System, Target};
 use crate::series::Plant;
-use lanes::{Lanes, Mask, Real};
+use numeric::lanes::{Lanes, Mask, Real};
 use pulp::{Scalar, Simd, WithSimd};
 
 /// Fills a block.

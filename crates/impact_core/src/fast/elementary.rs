@@ -1,7 +1,7 @@
 //! Exponential, sine and cosine of numbers side by side, from basic operations only, so that their
 //! bits do not depend on the width.
 
-use lanes::Real;
+use numeric::lanes::Real;
 
 /// `1.5 * 2^52`: a number of moderate size added to it is rounded to an integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;

@@ -5,7 +5,7 @@ use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
 use super::{Each, MAX_STEPS, MapWith, Solved};
 use crate::criteria::INJURY_WINDOWS;
-use lanes::{Mask, Real};
+use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 
 /// Places of windows that are looked at, at most.

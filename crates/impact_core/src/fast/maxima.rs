@@ -4,7 +4,7 @@ use super::apart::apart;
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
 use super::{GroupPeaks, MAX_STEPS, MapWith, Solved, product, third_order};
-use lanes::{Mask, Real};
+use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 
 /// Last step to a maximum, in cells; its fifth power, over 120, is what the value may be wrong by.

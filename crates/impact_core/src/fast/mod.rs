@@ -18,8 +18,8 @@ mod windows;
 
 use crate::series::Plant;
 use apart::apart;
-use lanes::{Mask, Real};
 use modes::{Basis, Motion, Wave};
+use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 use scan::{Place, touching};
 pub use space::Workspace;

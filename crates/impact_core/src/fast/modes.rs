@@ -15,7 +15,7 @@ use super::Each;
 use super::apart::apart;
 use super::elementary::{cosine_and_sine, exponential};
 use crate::series::Plant;
-use lanes::{Mask, Real};
+use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 
 /// Newton steps for the sum of the squared moduli of both pairs.

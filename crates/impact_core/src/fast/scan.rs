@@ -1,7 +1,7 @@
 //! A walk along the response that notes where signs change.
 
 use super::Each;
-use lanes::{Mask, Real};
+use numeric::lanes::{Mask, Real};
 
 /// A piece of time with the values and slopes of a function at both of its ends.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Space for the walk along a response: nodes, pieces between them, what was found in them.
 
 use super::scan::{Piece, Place, Tops};
-use lanes::Real;
+use numeric::lanes::Real;
 
 /// Nodes after which an impact is refused.
 pub(super) const NODES: usize = 65;

@@ -4,7 +4,7 @@ use super::apart::apart;
 use super::modes::{Basis, Wave};
 use super::{Each, MAX_STEPS, MapWith, Solved, third_order};
 use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS};
-use lanes::{Mask, Real};
+use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 
 /// Last step of a window, in cells; its third power is what its place, and with it a level held

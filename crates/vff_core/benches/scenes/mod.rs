@@ -2,14 +2,14 @@
 
 #![allow(dead_code, reason = "each bench uses its part")]
 
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::{Cap, Stabilizing};
-use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
-use vff_core::motion::Motion;
-use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 fn limits(active: f64, critical: f64) -> Limits {
     Limits {

@@ -1,14 +1,29 @@
 //! Navigation laws behind one interface.
 
-pub mod compared;
-mod virtual_force_field;
+mod borenstein_koren;
+pub mod field;
+pub mod field_d_star;
+mod ge_cui;
+pub mod impedance;
+mod khatib;
+mod masoud;
+pub mod pairwise;
+pub mod planning;
+pub mod reciprocal;
+mod registry;
+pub mod tree;
+pub mod velocity_obstacle;
 
-pub use virtual_force_field::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};
+pub use borenstein_koren::BorensteinKoren;
+pub use field::law::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};
+pub use ge_cui::GeCui;
+pub use khatib::{Khatib, KhatibForm};
+pub use masoud::Masoud;
 
 use crate::error::Result;
-use crate::forces::geometry::{Body, RobotState};
 use crate::lanes::{Real, Vector2};
-use crate::scenario::Scenario;
+use crate::world::geometry::{Body, RobotState};
+use crate::world::scenario::Scenario;
 
 /// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
 /// after it was told to stop counts for nothing.

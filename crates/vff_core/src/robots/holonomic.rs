@@ -2,8 +2,8 @@
 
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Planar, Real, Vector2};
-use crate::region::RobotLimits;
 use crate::robots::wheels::omni_rows;
+use crate::world::region::RobotLimits;
 
 /// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
 const WHEEL_STANDSTILL: f64 = 1e-9;

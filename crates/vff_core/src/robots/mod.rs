@@ -7,7 +7,7 @@ pub mod wheels;
 pub use holonomic::{HolonomicRobot, WheelModel, Wheels};
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::region::RobotLimits;
+use crate::world::region::RobotLimits;
 
 /// Driven wheels and motors of a two-wheel robot.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,11 @@
 pub mod camera;
 pub mod estimator;
 mod linearized;
+pub mod measurement;
 mod rotation;
+pub mod sampled;
+pub mod sonar;
+pub mod sound;
 pub mod vision;
 
 pub use camera::{Camera, Lens, Pose};

@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
-use crate::measurement::{Distribution, Measurement, Noise, Noisy};
 use crate::sensing::camera::Camera;
 use crate::sensing::estimator::{Estimate, Estimator, Track};
+use crate::sensing::measurement::{Distribution, Measurement, Noise, Noisy};
 
 /// A frame is due when it is this share of a period away: times of control steps are rounded.
 const ROUNDING: f64 = 1e-9;

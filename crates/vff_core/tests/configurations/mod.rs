@@ -1,13 +1,13 @@
 //! Configurations 1 to 4 of Zeng (2011), chapter 6, and laws by their gains.
 
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::Stabilizing;
-use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
-use vff_core::motion::Motion;
-use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Region radii of an obstacle, both given.
 pub fn limits(critical: f64, active: f64) -> Limits {

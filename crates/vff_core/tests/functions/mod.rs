@@ -5,7 +5,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use vff_core::error::Result;
-use vff_core::optimize::{
+use vff_core::search::{
     Bounds, Evaluation, GlobalMethod, GlobalOptions, GridOptions, Problem, SearchOptions,
 };
 

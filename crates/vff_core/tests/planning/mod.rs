@@ -5,14 +5,14 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use vff_core::forces::geometry::{Body, RobotState};
 use vff_core::lanes::{Planar, Vector2};
+use vff_core::laws::planning::Planner;
 use vff_core::laws::{Situation, Stop};
-use vff_core::motion::BodyState;
-use vff_core::obstacle::{Limits, Obstacle, Regions, Shape};
-use vff_core::planners::Planner;
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::world::geometry::{Body, RobotState};
+use vff_core::world::motion::BodyState;
+use vff_core::world::obstacle::{Limits, Obstacle, Regions, Shape};
+use vff_core::world::scenario::{Rules, Scenario};
 
 /// Half the width of the robot that the worlds are made for, in m.
 pub const BARN_RADIUS: f64 = 0.165;

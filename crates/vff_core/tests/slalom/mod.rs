@@ -1,7 +1,7 @@
 //! What the tests of the tree share: rows of discs with gaps.
 
-use vff_core::forces::geometry::Body;
-use vff_core::obstacle::Shape;
+use vff_core::world::geometry::Body;
+use vff_core::world::obstacle::Shape;
 
 use crate::planning::body;
 

@@ -3,14 +3,14 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use vff_core::forces::side::SideRules;
-use vff_core::forces::stabilizing::{Cap, Stabilizing};
-use vff_core::gains::Gains;
 use vff_core::laws::VirtualForceField;
-use vff_core::motion::Motion;
-use vff_core::obstacle::{Limits, Obstacle};
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::robots::HolonomicRobot;
-use vff_core::scenario::{Rules, Scenario};
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
 
 pub fn plus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]

@@ -1,11 +1,11 @@
 //! Shapes and sonar: conversion of arguments and results.
 
+use numeric::random::Stream;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::follower::Sensors;
-use reactive_core::random::Stream;
-use reactive_core::sonar::ranging::Normals;
-use reactive_core::sonar::{self, Firing, Pose, Ranging, Rectangle, Shape};
+use vff_core::run::follower::Sensors;
+use vff_core::sensing::sonar::ranging::Normals;
+use vff_core::sensing::sonar::{self, Firing, Pose, Ranging, Rectangle, Shape};
 
 use super::{Column, Rows, pairs, word};
 use crate::arrays::Fields;

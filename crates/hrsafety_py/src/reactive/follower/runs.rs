@@ -1,13 +1,13 @@
 //! Runs of the follower: one recorded, or many in one crossing.
 
+use numeric::parallel::Work;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::follower::{
+use vff_core::run::follower::{
     Follower as Robot, Layouts, Leader, Mover as Obstacle, Outcome, Recording, Scene, Setting,
     record, run_batch, touching_layouts,
 };
-use reactive_core::parallel::Work;
-use reactive_core::sonar::Shape;
+use vff_core::sensing::sonar::Shape;
 
 use super::{Follower, Mover, VirtualImpedance, word};
 use crate::arrays::Fields;

@@ -2,19 +2,19 @@
 
 use std::sync::OnceLock;
 
-use groundwork::error::{Failure, Given};
+use numeric::error::{Failure, Given};
+use numeric::parallel::Work;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reactive_core::localization::Interrupted;
-use reactive_core::localization::burst::{self, Signal, Sound};
-use reactive_core::localization::correlation::Method;
-use reactive_core::localization::delays::{DelayFinder, DelayOptions};
-use reactive_core::localization::recording::{self, Hearing};
-use reactive_core::localization::trials::{
+use vff_core::sensing::sound::Interrupted;
+use vff_core::sensing::sound::burst::{self, Signal, Sound};
+use vff_core::sensing::sound::correlation::Method;
+use vff_core::sensing::sound::delays::{DelayFinder, DelayOptions};
+use vff_core::sensing::sound::recording::{self, Hearing};
+use vff_core::sensing::sound::trials::{
     Equipment, Repetition, TrialDelays, burst_delays, jittered_delays,
 };
-use reactive_core::parallel::Work;
 
 use crate::arrays::Fields;
 use crate::errors::CoreResult;

@@ -1,7 +1,6 @@
 //! Intervals from refits to resampled residuals.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use numeric::random::Stream;
 
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
@@ -20,14 +19,14 @@ impl Tests<'_> {
     ) -> Result<[[f64; 2]; 3]> {
         let repeats = self.settings.bootstrap;
         let mut values = [0, 1, 2].map(|_| Vec::with_capacity(repeats));
-        let mut generator = ChaCha8Rng::seed_from_u64(self.settings.seed);
+        let mut stream = Stream::new(self.settings.seed, 0);
         for repeat in 0..repeats {
             if interrupted() {
                 return Err(Failure::Interrupted);
             }
-            generator.set_stream(repeat as u64);
+            stream.set_stream(repeat as u64);
             let refit = self
-                .resampled(&found.parameters, &mut generator)
+                .resampled(&found.parameters, &mut stream)
                 .minimize(found.parameters.clone())?;
             for (values, value) in values.iter_mut().zip(&refit.parameters) {
                 values.push(*value);
@@ -40,11 +39,8 @@ impl Tests<'_> {
         }))
     }
 
-    fn resampled(&self, parameters: &[f64], generator: &mut ChaCha8Rng) -> Self {
-        let mut index = |count: usize| {
-            let wide = u128::from(generator.next_u64()) * count as u128;
-            usize::try_from(wide >> 64).unwrap_or(0)
-        };
+    fn resampled(&self, parameters: &[f64], stream: &mut Stream) -> Self {
+        let mut index = |count: usize| stream.below(count);
         let mut result = self.clone();
         let left: Vec<f64> = self.forces_left(parameters).collect();
         let grown = (left.len() as f64 / (left.len() - 1) as f64).sqrt();

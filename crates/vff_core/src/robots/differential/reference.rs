@@ -2,7 +2,7 @@
 
 use super::full_speed::STANDSTILL;
 use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
-use crate::motion::Motion;
+use crate::world::motion::Motion;
 
 /// State of the robot that is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use super::drive::{DifferentialDrive, DifferentialLimits, Pose, Twist};
 use super::reference::{Reference, ReferencePath};
 use super::tracker::{Tracker, Tracking};
 use crate::error::{Failure, Given, Result, finite_pair, positive};
-use crate::simulate::Interrupted;
-use groundwork::threads::{map, on_threads};
+use crate::run::Interrupted;
+use numeric::threads::{map, on_threads};
 
 /// Largest number of motion steps of one run.
 const MAX_STEPS: f64 = 1e8;

@@ -1,0 +1,392 @@
+//! Numbers of one kernel, two widths: `f64` for a single run and [`Lanes`] for runs side by side.
+//!
+//! Every operation acts on each lane by the same IEEE operation as `f64`, without contraction,
+//! so a run gives the same bits at any width. Plain arrays: the compiler turns the loops into
+//! vector instructions.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
+
+mod planar;
+
+pub use nalgebra::Vector2;
+pub use num_traits::{One, Zero};
+pub use planar::Planar;
+
+/// Outcome of a comparison, lane by lane.
+pub trait Mask:
+    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// The same truth in every lane.
+    fn splat(value: bool) -> Self;
+    /// Whether any lane is true.
+    fn any(self) -> bool;
+    /// Truth of one lane.
+    fn lane(self, index: usize) -> bool;
+    /// The mask with one lane made false.
+    #[must_use]
+    fn without(self, index: usize) -> Self;
+
+    /// No lane is true.
+    #[inline(always)]
+    #[must_use]
+    fn none() -> Self {
+        Self::splat(false)
+    }
+}
+
+/// A real number, or several side by side.
+pub trait Real:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + PartialEq
+    + Zero
+    + One
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + SubAssign
+    + Mul<Output = Self>
+    + MulAssign
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// What a comparison gives.
+    type Mask: Mask;
+    /// Number of lanes.
+    const WIDTH: usize;
+
+    /// The same value in every lane.
+    fn splat(value: f64) -> Self;
+    /// A value for each lane.
+    fn from_fn(value: impl FnMut(usize) -> f64) -> Self;
+    /// Value of one lane.
+    fn lane(self, index: usize) -> f64;
+    /// The number with one lane replaced.
+    #[must_use]
+    fn replace(self, index: usize, value: f64) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// Magnitude of `self` with the sign of `sign`.
+    #[must_use]
+    fn copysign(self, sign: Self) -> Self;
+    /// `2^k` of an integer `k` between -1022 and 1023 that is given as `1.5 * 2^52 + k`.
+    #[inline(always)]
+    #[must_use]
+    fn power_of_two(self) -> Self {
+        // The last bits hold `k`; with the bias of exponents they are moved to their place.
+        Self::from_fn(|lane| f64::from_bits((self.lane(lane).to_bits().wrapping_add(1023)) << 52))
+    }
+    /// Whether `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// Whether `self <= other`.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `then` where the mask is true, `otherwise` elsewhere; the value not taken may be NaN.
+    #[must_use]
+    fn select(mask: Self::Mask, then: Self, otherwise: Self) -> Self;
+
+    /// The smaller of two numbers; `other` where either is NaN.
+    #[inline(always)]
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
+    /// The larger of two numbers; `other` where either is NaN.
+    #[inline(always)]
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.lt(self), self, other)
+    }
+    /// Whether `self > other`.
+    #[inline(always)]
+    fn gt(self, other: Self) -> Self::Mask {
+        other.lt(self)
+    }
+    /// Whether `self >= other`.
+    #[inline(always)]
+    fn ge(self, other: Self) -> Self::Mask {
+        other.le(self)
+    }
+    /// +1 where `self >= 0`, -1 elsewhere.
+    #[inline(always)]
+    #[must_use]
+    fn sign(self) -> Self {
+        Self::select(self.ge(Self::zero()), Self::splat(1.0), Self::splat(-1.0))
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn splat(value: bool) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn lane(self, _index: usize) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn without(self, _index: usize) -> Self {
+        false
+    }
+}
+
+impl Real for f64 {
+    type Mask = bool;
+    const WIDTH: usize = 1;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn from_fn(mut value: impl FnMut(usize) -> f64) -> Self {
+        value(0)
+    }
+    #[inline(always)]
+    fn lane(self, _index: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn replace(self, _index: usize, value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        f64::copysign(self, sign)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, then: Self, otherwise: Self) -> Self {
+        if mask { then } else { otherwise }
+    }
+}
+
+/// `N` numbers side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lanes<const N: usize>([f64; N]);
+
+/// `N` truths side by side, each all ones or all zeros.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneMask<const N: usize>([u64; N]);
+
+macro_rules! lane_operator {
+    ($operator:ident, $method:ident) => {
+        impl<const N: usize> $operator for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for (a, b) in self.0.iter_mut().zip(other.0) {
+                    *a = a.$method(b);
+                }
+                self
+            }
+        }
+    };
+}
+lane_operator!(Add, add);
+lane_operator!(Sub, sub);
+lane_operator!(Mul, mul);
+lane_operator!(Div, div);
+
+macro_rules! lane_assignment {
+    ($operator:ident, $method:ident, $plain:ident) => {
+        impl<const N: usize> $operator for Lanes<N> {
+            #[inline(always)]
+            fn $method(&mut self, other: Self) {
+                *self = self.$plain(other);
+            }
+        }
+    };
+}
+lane_assignment!(AddAssign, add_assign, add);
+lane_assignment!(SubAssign, sub_assign, sub);
+lane_assignment!(MulAssign, mul_assign, mul);
+
+impl<const N: usize> Zero for Lanes<N> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self([0.0; N])
+    }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.0 == [0.0; N]
+    }
+}
+
+impl<const N: usize> One for Lanes<N> {
+    #[inline(always)]
+    fn one() -> Self {
+        Self([1.0; N])
+    }
+}
+
+impl<const N: usize> Neg for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+
+macro_rules! mask_operator {
+    ($operator:ident, $method:ident) => {
+        impl<const N: usize> $operator for LaneMask<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for (a, b) in self.0.iter_mut().zip(other.0) {
+                    *a = a.$method(b);
+                }
+                self
+            }
+        }
+    };
+}
+mask_operator!(BitAnd, bitand);
+mask_operator!(BitOr, bitor);
+
+impl<const N: usize> Not for LaneMask<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(mut self) -> Self {
+        for a in &mut self.0 {
+            *a = !*a;
+        }
+        self
+    }
+}
+
+impl<const N: usize> Mask for LaneMask<N> {
+    #[inline(always)]
+    fn splat(value: bool) -> Self {
+        Self([if value { u64::MAX } else { 0 }; N])
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        let mut joined = 0;
+        for a in self.0 {
+            joined |= a;
+        }
+        joined != 0
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> bool {
+        self.0[index] != 0
+    }
+    #[inline(always)]
+    fn without(mut self, index: usize) -> Self {
+        self.0[index] = 0;
+        self
+    }
+}
+
+impl<const N: usize> Lanes<N> {
+    #[inline(always)]
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for a in &mut self.0 {
+            *a = f(*a);
+        }
+        self
+    }
+    #[inline(always)]
+    fn compare(self, other: Self, holds: impl Fn(f64, f64) -> bool) -> LaneMask<N> {
+        let mut mask = [0; N];
+        for ((m, a), b) in mask.iter_mut().zip(self.0).zip(other.0) {
+            *m = if holds(a, b) { u64::MAX } else { 0 };
+        }
+        LaneMask(mask)
+    }
+}
+
+impl<const N: usize> Real for Lanes<N> {
+    type Mask = LaneMask<N>;
+    const WIDTH: usize = N;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; N])
+    }
+    #[inline(always)]
+    fn from_fn(value: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(value))
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> f64 {
+        self.0[index]
+    }
+    #[inline(always)]
+    fn replace(mut self, index: usize, value: f64) -> Self {
+        self.0[index] = value;
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+    #[inline(always)]
+    fn copysign(mut self, sign: Self) -> Self {
+        for (a, s) in self.0.iter_mut().zip(sign.0) {
+            *a = a.copysign(s);
+        }
+        self
+    }
+    #[inline(always)]
+    fn min(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = if *a < b { *a } else { b };
+        }
+        self
+    }
+    #[inline(always)]
+    fn max(mut self, other: Self) -> Self {
+        for (a, b) in self.0.iter_mut().zip(other.0) {
+            *a = if b < *a { *a } else { b };
+        }
+        self
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> LaneMask<N> {
+        self.compare(other, |a, b| a < b)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> LaneMask<N> {
+        self.compare(other, |a, b| a <= b)
+    }
+    #[inline(always)]
+    fn select(mask: LaneMask<N>, mut then: Self, otherwise: Self) -> Self {
+        for ((a, b), m) in then.0.iter_mut().zip(otherwise.0).zip(mask.0) {
+            *a = f64::from_bits((a.to_bits() & m) | (b.to_bits() & !m));
+        }
+        then
+    }
+}

@@ -1,0 +1,41 @@
+//! Vectors of the plane whose components are numbers of any width.
+
+use nalgebra::Vector2;
+
+use super::Real;
+
+/// What the kernels need of a vector beyond its arithmetic, lane by lane.
+pub trait Planar<R: Real> {
+    /// The same vector in every lane.
+    fn splat(vector: [f64; 2]) -> Self;
+    /// The vector turned counter-clockwise by a right angle.
+    #[must_use]
+    fn left_normal(self) -> Self;
+    /// `then` where the mask is true, `otherwise` elsewhere.
+    #[must_use]
+    fn select(mask: R::Mask, then: Self, otherwise: Self) -> Self;
+    /// The vector of one lane.
+    fn lane(self, index: usize) -> [f64; 2];
+}
+
+impl<R: Real> Planar<R> for Vector2<R> {
+    #[inline(always)]
+    fn splat([x, y]: [f64; 2]) -> Self {
+        Self::new(R::splat(x), R::splat(y))
+    }
+    #[inline(always)]
+    fn left_normal(self) -> Self {
+        Self::new(-self.y, self.x)
+    }
+    #[inline(always)]
+    fn select(mask: R::Mask, then: Self, otherwise: Self) -> Self {
+        Self::new(
+            R::select(mask, then.x, otherwise.x),
+            R::select(mask, then.y, otherwise.y),
+        )
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> [f64; 2] {
+        [self.x.lane(index), self.y.lane(index)]
+    }
+}

@@ -1,0 +1,11 @@
+//! What all cores stand on: errors with their data, checks of numbers, numbers and vectors side by
+//! side, streams of random numbers, threads.
+
+#![forbid(unsafe_code)]
+
+pub mod angle;
+pub mod error;
+pub mod lanes;
+pub mod parallel;
+pub mod random;
+pub mod threads;

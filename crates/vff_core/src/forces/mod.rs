@@ -1,9 +1,0 @@
-//! The terms of the virtual force field, one file each.
-
-pub mod attractive;
-pub mod detour;
-pub mod geometry;
-pub mod lyapunov;
-pub mod repulsive;
-pub mod side;
-pub mod stabilizing;

@@ -1,0 +1,147 @@
+//! The compared laws up to their gains.
+
+use crate::error::{Result, not_negative};
+use crate::lanes::Real;
+use crate::laws::pairwise::{PairwiseField, PairwiseLaw};
+use crate::laws::{BorensteinKoren, GeCui, Khatib, Masoud};
+use crate::laws::{FieldTerms, LawFamily, Situation};
+use crate::world::scenario::Scenario;
+
+/// A field with its gains, by which it is known to a search.
+pub trait PairwiseFamily: Copy + Sync {
+    /// The field for gain sets side by side.
+    type Field<R: Real>: PairwiseField<R>;
+    /// Words for the gains, in their order.
+    const GAIN_NAMES: &'static [&'static str];
+    /// Gains that act on a robot without obstacles, ascending.
+    const FREE_GAINS: &'static [usize];
+    /// Its own gains, in that order.
+    fn gains(&self) -> Vec<f64>;
+    /// The field with gains in one scenario.
+    fn with_gains<R: Real>(&self, gains: &[R], scenario: &Scenario) -> Self::Field<R>;
+}
+
+/// A field as a family of laws.
+#[derive(Clone, Copy, Debug)]
+pub struct Pairwise<F>(pub F);
+
+impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
+    type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, F::Field<R>>;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        F::GAIN_NAMES
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.0.gains()
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        F::FREE_GAINS
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        let field = self.0.with_gains::<f64>(&self.0.gains(), scenario);
+        Some(PairwiseLaw::new(field, scenario).terms(situation))
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        for (name, gain) in F::GAIN_NAMES.iter().zip(gains) {
+            not_negative(name, *gain)?;
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<Self::Law<R, RECORD>> {
+        Ok(PairwiseLaw::new(
+            self.0.with_gains(gains, scenario),
+            scenario,
+        ))
+    }
+}
+
+impl PairwiseFamily for Masoud {
+    type Field<R: Real> = Masoud<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "detour_gain"];
+    const FREE_GAINS: &'static [usize] = &[0];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.detour]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Masoud<R> {
+        Masoud {
+            attractive: gains[0],
+            repulsive: gains[1],
+            detour: gains[2],
+        }
+    }
+}
+
+impl PairwiseFamily for GeCui {
+    type Field<R: Real> = GeCui<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "gain_ratio"];
+    const FREE_GAINS: &'static [usize] = &[0, 2];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.ratio]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], scenario: &Scenario) -> GeCui<R> {
+        GeCui {
+            attractive: gains[0],
+            repulsive: gains[1],
+            ratio: gains[2],
+            max_acceleration: scenario.robot.max_acceleration,
+        }
+    }
+}
+
+impl PairwiseFamily for Khatib {
+    type Field<R: Real> = Khatib<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "gain_ratio"];
+    const FREE_GAINS: &'static [usize] = &[0, 2];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.ratio]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Khatib<R> {
+        Khatib {
+            attractive: gains[0],
+            repulsive: gains[1],
+            ratio: gains[2],
+            form: self.form,
+        }
+    }
+}
+
+impl PairwiseFamily for BorensteinKoren {
+    type Field<R: Real> = BorensteinKoren<R>;
+    const GAIN_NAMES: &'static [&'static str] = &["attractive_gain", "repulsive_gain"];
+    const FREE_GAINS: &'static [usize] = &[0];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> BorensteinKoren<R> {
+        BorensteinKoren {
+            attractive: gains[0],
+            repulsive: gains[1],
+            attracted_inside: self.attracted_inside,
+        }
+    }
+}

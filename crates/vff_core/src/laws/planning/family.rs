@@ -1,0 +1,289 @@
+//! Planners as laws: robots in lanes, each with a planner of its own, and the numbers that a
+//! search may choose.
+
+use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::lanes::{Planar, Real, Vector2};
+use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
+use crate::laws::planning::Planner;
+use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
+use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
+use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
+use crate::laws::{Command, Law, LawFamily, Situation};
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
+
+/// A planner up to its numbers.
+pub trait PlannerFamily: Sync {
+    /// The planner at work.
+    type Planner: Planner;
+    /// Words for the numbers, in their order.
+    fn number_names(&self) -> &'static [&'static str];
+    /// Its own numbers, in that order.
+    fn numbers(&self) -> Vec<f64>;
+    /// Passes numbers that the planner allows.
+    ///
+    /// # Errors
+    /// Names the number that is not allowed.
+    fn check_numbers(&self, numbers: &[f64]) -> Result<()>;
+    /// The planner with its numbers in one scenario.
+    ///
+    /// # Errors
+    /// The planner cannot work in the scenario with these numbers.
+    fn planner(&self, numbers: &[f64], scenario: &Scenario) -> Result<Self::Planner>;
+}
+
+/// A family of planners as a family of laws: the force `m (v* - V)/interval` reaches the desired
+/// velocity at the next sample, as far as the limits of the robot allow.
+#[derive(Clone, Copy, Debug)]
+pub struct Planned<F>(pub F);
+
+/// Planners of robots side by side, one a lane.
+#[derive(Clone, Debug)]
+pub struct LanePlanners<P> {
+    planners: Vec<P>,
+    mass: f64,
+}
+
+impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
+    const THINKS: bool = true;
+
+    #[inline]
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let mut wanted = Vector2::<R>::zeros();
+        for (lane, planner) in self.planners.iter_mut().enumerate() {
+            let robot = RobotState {
+                position: Vector2::splat(situation.robot.position.lane(lane)),
+                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
+            };
+            let [x, y] = planner.desired_velocity(&Situation {
+                bodies: situation.bodies,
+                robot,
+                interval: situation.interval,
+                stop: situation.stop,
+            });
+            wanted.x = wanted.x.replace(lane, x);
+            wanted.y = wanted.y.replace(lane, y);
+        }
+        let change = wanted - situation.robot.velocity;
+        Command {
+            force: change * R::splat(self.mass / situation.interval),
+            stabilizing: Vector2::zeros(),
+            lyapunov: R::splat(f64::NAN),
+        }
+    }
+}
+
+impl<F: PlannerFamily> LawFamily for Planned<F> {
+    type Law<R: Real, const RECORD: bool> = LanePlanners<F::Planner>;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        self.0.number_names()
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.0.numbers()
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        // Any number of a planner may change its way without obstacles.
+        const ALL: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+        &ALL[..self.0.number_names().len()]
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        self.0.check_numbers(gains)
+    }
+
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<Self::Law<R, RECORD>> {
+        let planner = |lane| {
+            let numbers: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
+            self.0.planner(&numbers, scenario)
+        };
+        Ok(LanePlanners {
+            planners: (0..R::WIDTH).map(planner).collect::<Result<_>>()?,
+            mass: scenario.robot.mass,
+        })
+    }
+}
+
+/// Words of a planner's numbers with values that break a rule.
+fn above_zero_or_infinite(name: &str, value: f64) -> Result<()> {
+    if value > 0.0 {
+        return Ok(());
+    }
+    let rule = "be positive, or infinite";
+    Err(Failure::invalid(name, rule, Given::Number(value)))
+}
+
+impl PlannerFamily for VelocityObstacle {
+    type Planner = VelocityObstaclePlanner;
+
+    fn number_names(&self) -> &'static [&'static str] {
+        &["margin", "horizon", "risk_weight", "sector"]
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        let (mut risk, mut sector) = (1.0, 1.0);
+        match self.selection {
+            Selection::ToGoal => {}
+            Selection::Fastest { sector: own } => sector = own,
+            Selection::TimeAndRisk { risk: own } => risk = own,
+        }
+        vec![self.margin, self.horizon, risk, sector]
+    }
+
+    fn check_numbers(&self, numbers: &[f64]) -> Result<()> {
+        not_negative("margin", numbers[0])?;
+        above_zero_or_infinite("horizon", numbers[1])?;
+        not_negative("risk_weight", numbers[2])?;
+        if !(0.0..=std::f64::consts::PI).contains(&numbers[3]) {
+            let rule = "be an angle from 0 to pi";
+            let given = Given::Number(numbers[3]);
+            return Err(Failure::invalid("sector", rule, given));
+        }
+        Ok(())
+    }
+
+    fn planner(&self, numbers: &[f64], scenario: &Scenario) -> Result<VelocityObstaclePlanner> {
+        let selection = match self.selection {
+            Selection::ToGoal => Selection::ToGoal,
+            Selection::Fastest { .. } => Selection::Fastest { sector: numbers[3] },
+            Selection::TimeAndRisk { .. } => Selection::TimeAndRisk { risk: numbers[2] },
+        };
+        let settings = VelocityObstacle {
+            margin: numbers[0],
+            horizon: numbers[1],
+            selection,
+            ..*self
+        };
+        Ok(VelocityObstaclePlanner::new(settings, scenario))
+    }
+}
+
+impl PlannerFamily for ReciprocalAvoidance {
+    type Planner = ReciprocalPlanner;
+
+    fn number_names(&self) -> &'static [&'static str] {
+        &["horizon", "margin", "turn", "reach"]
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        vec![self.horizon, self.margin, self.turn, self.reach]
+    }
+
+    fn check_numbers(&self, numbers: &[f64]) -> Result<()> {
+        positive("horizon", numbers[0])?;
+        not_negative("margin", numbers[1])?;
+        not_negative("turn", numbers[2])?;
+        positive("reach", numbers[3])?;
+        Ok(())
+    }
+
+    fn planner(&self, numbers: &[f64], scenario: &Scenario) -> Result<ReciprocalPlanner> {
+        let settings = ReciprocalAvoidance {
+            horizon: numbers[0],
+            margin: numbers[1],
+            turn: numbers[2],
+            reach: numbers[3],
+            share: self.share,
+        };
+        Ok(ReciprocalPlanner::new(settings, scenario))
+    }
+}
+
+impl FieldDStar {
+    /// A planner with these numbers.
+    fn of_numbers(numbers: &[f64]) -> Result<Self> {
+        Self {
+            resolution: numbers[0],
+            margin: numbers[1],
+            horizon: numbers[2],
+            room: numbers[3],
+            look_ahead: numbers[4],
+        }
+        .checked()
+    }
+}
+
+impl PlannerFamily for FieldDStar {
+    type Planner = FieldDStarPlanner;
+
+    fn number_names(&self) -> &'static [&'static str] {
+        &["resolution", "margin", "horizon", "room", "look_ahead"]
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        vec![
+            self.resolution,
+            self.margin,
+            self.horizon,
+            self.room,
+            self.look_ahead,
+        ]
+    }
+
+    fn check_numbers(&self, numbers: &[f64]) -> Result<()> {
+        Self::of_numbers(numbers).map(|_| ())
+    }
+
+    fn planner(&self, numbers: &[f64], scenario: &Scenario) -> Result<FieldDStarPlanner> {
+        FieldDStarPlanner::new(Self::of_numbers(numbers)?, scenario)
+    }
+}
+
+impl RapidlyExploringRandomTree {
+    /// The same with other numbers.
+    fn with_numbers(self, numbers: &[f64]) -> Result<Self> {
+        Self {
+            step: numbers[0],
+            goal_probability: numbers[1],
+            waypoint_probability: numbers[2],
+            margin: numbers[3],
+            horizon: numbers[4],
+            room: numbers[5],
+            look_ahead: numbers[6],
+            ..self
+        }
+        .checked()
+    }
+}
+
+impl PlannerFamily for RapidlyExploringRandomTree {
+    type Planner = TreePlanner;
+
+    fn number_names(&self) -> &'static [&'static str] {
+        &[
+            "step",
+            "goal_probability",
+            "waypoint_probability",
+            "margin",
+            "horizon",
+            "room",
+            "look_ahead",
+        ]
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        vec![
+            self.step,
+            self.goal_probability,
+            self.waypoint_probability,
+            self.margin,
+            self.horizon,
+            self.room,
+            self.look_ahead,
+        ]
+    }
+
+    fn check_numbers(&self, numbers: &[f64]) -> Result<()> {
+        self.with_numbers(numbers).map(|_| ())
+    }
+
+    fn planner(&self, numbers: &[f64], scenario: &Scenario) -> Result<TreePlanner> {
+        TreePlanner::new(self.with_numbers(numbers)?, scenario)
+    }
+}

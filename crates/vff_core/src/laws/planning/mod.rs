@@ -1,0 +1,18 @@
+//! Planners of the first category: they choose a velocity from where everything is and how it
+//! moves now, as if it went on like that.
+
+pub mod family;
+pub mod footprint;
+pub mod grid;
+pub mod half_planes;
+pub mod outline;
+pub mod path;
+
+use crate::laws::Situation;
+
+/// A planner at work in one scenario; it owns its state between control steps.
+pub trait Planner {
+    /// Velocity in m/s that the robot should have at the next sample. A planner that finds no
+    /// way asks for standstill, unless its own documentation says more.
+    fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2];
+}

@@ -1,0 +1,246 @@
+//! Optimal reciprocal collision avoidance, van den Berg, Guy, Lin and Manocha (2011).
+
+use crate::lanes::{Planar, Vector2};
+use crate::laws::Situation;
+use crate::laws::planning::Planner;
+use crate::laws::planning::half_planes::{HalfPlane, Solver};
+use crate::laws::planning::outline::{Legs, Outline};
+use crate::world::geometry::Body;
+use crate::world::obstacle::Shape;
+use crate::world::scenario::Scenario;
+
+type Vector = Vector2<f64>;
+
+/// Parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReciprocalAvoidance {
+    /// Time `tau` within which no contact may come, in s.
+    pub horizon: f64,
+    /// Share of the avoidance that the robot takes: 1/2 among robots of the same kind, 1 among
+    /// people who do not give way.
+    pub share: f64,
+    /// Obstacles whose surface is farther away than this are not looked at, in m.
+    pub reach: f64,
+    /// Distance that is kept between the surfaces, in m.
+    pub margin: f64,
+    /// Angle by which the wanted velocity is turned to the left of the goal, in rad: without it
+    /// a robot that meets somebody head-on would only slow down.
+    pub turn: f64,
+}
+
+impl Default for ReciprocalAvoidance {
+    fn default() -> Self {
+        Self {
+            horizon: 2.0,
+            share: 1.0,
+            reach: 5.0,
+            margin: 0.0,
+            turn: 0.01,
+        }
+    }
+}
+
+/// The velocities that avoid an outline for the time of the horizon, by the share of the change
+/// of velocity that is needed.
+///
+/// `u` leads from the relative velocity to the nearest point of the edge of the velocity obstacle
+/// `VO = {v: t v in the outline for a t in [0, tau]}`, and the line passes through
+/// `V + share u`, at right angles to `u`. Obstacles that are touched must be left within
+/// `interval`.
+#[must_use]
+pub fn avoiding(
+    outline: &Outline,
+    velocity: Vector,
+    horizon: f64,
+    interval: f64,
+    share: f64,
+) -> HalfPlane {
+    let relative = velocity - outline.velocity;
+    let (direction, change) = match outline.legs() {
+        None => leave(&outline.scaled(1.0 / interval), relative),
+        Some(legs) => pass(&outline.scaled(1.0 / horizon), &legs, relative),
+    };
+    HalfPlane {
+        point: velocity + change * share,
+        direction,
+    }
+}
+
+/// Direction of the line and change of velocity at a rounded front.
+fn front(normal: Vector, change: f64) -> (Vector, Vector) {
+    (-normal.left_normal(), normal * change)
+}
+
+/// Out of an outline by the shortest way.
+fn leave(scaled: &Outline, relative: Vector) -> (Vector, Vector) {
+    let (point, inside) = scaled.nearest(relative);
+    let way = if inside {
+        point - relative
+    } else {
+        relative - point
+    };
+    let length = way.dot(&way).sqrt();
+    if length == 0.0 {
+        // Exactly on the set: any direction is as short as any other.
+        return front(Vector2::new(1.0, 0.0), scaled.radius);
+    }
+    let depth = if inside {
+        scaled.radius + length
+    } else {
+        scaled.radius - length
+    };
+    front(way * (1.0 / length), depth)
+}
+
+/// To the nearest edge of the velocity obstacle of an outline ahead: front or one of the legs.
+fn pass(scaled: &Outline, legs: &Legs, relative: Vector) -> (Vector, Vector) {
+    let left_depth = -legs.left.perp(&relative);
+    let right_depth = legs.right.perp(&relative);
+    let (point, inside) = scaled.nearest(relative);
+    let way = relative - point;
+    let length = way.dot(&way).sqrt();
+    if !inside && length > 0.0 {
+        let normal = way * (1.0 / length);
+        let (left_normal, right_normal) = (legs.left.left_normal(), -legs.right.left_normal());
+        if left_normal.perp(&normal) > 0.0 && normal.perp(&right_normal) > 0.0 {
+            return front(normal, scaled.radius - length);
+        }
+    }
+    // The set is convex: its nearest edge is the one that is least deep, from behind the outline too.
+    let (depth, normal) = front_face(scaled, relative);
+    if depth < left_depth.min(right_depth) {
+        return front(normal, depth);
+    }
+    let direction = if left_depth < right_depth {
+        legs.left
+    } else {
+        -legs.right
+    };
+    let change = direction * relative.dot(&direction) - relative;
+    (direction, change)
+}
+
+/// Depth below the nearest face that looks to the robot, and its normal.
+fn front_face(scaled: &Outline, place: Vector) -> (f64, Vector) {
+    let corners = scaled.corners();
+    let mut best = (f64::INFINITY, Vector2::new(1.0, 0.0));
+    for (index, &from) in corners.iter().enumerate() {
+        let edge = corners[(index + 1) % corners.len()] - from;
+        let length = edge.dot(&edge).sqrt();
+        if length == 0.0 {
+            continue;
+        }
+        let normal = -edge.left_normal() * (1.0 / length);
+        let depth = scaled.radius + normal.dot(&(from - place));
+        // Faces whose rounded side the origin sees.
+        if normal.dot(&from) + scaled.radius < 0.0 && depth < best.0 {
+            best = (depth, normal);
+        }
+    }
+    best
+}
+
+/// The planner at work in one scenario.
+#[derive(Clone, Debug)]
+pub struct ReciprocalPlanner {
+    settings: ReciprocalAvoidance,
+    goal: Vector,
+    robot_radius: f64,
+    max_speed: f64,
+    /// Cosine and sine of the turn.
+    turn: Vector,
+    neighbors: Vec<(f64, usize)>,
+    planes: Vec<HalfPlane>,
+    solver: Solver,
+}
+
+impl ReciprocalPlanner {
+    /// The planner for one scenario.
+    #[must_use]
+    pub fn new(settings: ReciprocalAvoidance, scenario: &Scenario) -> Self {
+        let (sine, cosine) = settings.turn.sin_cos();
+        let count = scenario.obstacle_count();
+        Self {
+            settings,
+            goal: Vector::splat(scenario.goal),
+            robot_radius: scenario.robot.radius,
+            max_speed: scenario.robot.max_speed,
+            turn: Vector2::new(cosine, sine),
+            neighbors: Vec::with_capacity(count),
+            planes: Vec::with_capacity(count),
+            solver: Solver::default(),
+        }
+    }
+
+    /// Velocity straight to the goal, slightly turned, that does not overshoot it.
+    fn wanted(&self, situation: &Situation<'_, f64>) -> Vector {
+        let to_goal = self.goal - situation.robot.position;
+        let distance = to_goal.dot(&to_goal).sqrt();
+        if distance == 0.0 {
+            return Vector::zeros();
+        }
+        let speed = self.max_speed.min(distance / situation.interval);
+        let straight = to_goal * (speed / distance);
+        straight * self.turn.x + straight.left_normal() * self.turn.y
+    }
+
+    fn outline(&self, body: &Body, position: Vector) -> Outline {
+        Outline::new(body, position, self.robot_radius, self.settings.margin)
+    }
+}
+
+impl Planner for ReciprocalPlanner {
+    /// The permitted velocity nearest to the one towards the goal. Rectangles are never traded
+    /// for people: where nothing is permitted, only the half-planes of people are violated.
+    fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
+        let Situation {
+            bodies,
+            robot,
+            interval,
+            ..
+        } = *situation;
+        self.neighbors.clear();
+        for (index, body) in bodies.iter().enumerate() {
+            if !body.state.present {
+                continue;
+            }
+            let outline = self.outline(body, robot.position);
+            let (point, inside) = outline.nearest(Vector::zeros());
+            let gap = if inside {
+                0.0
+            } else {
+                point.dot(&point).sqrt() - outline.radius
+            };
+            if gap < self.settings.reach {
+                // Rectangles come first: they cannot be violated.
+                let soft = matches!(body.shape, Shape::Disc { .. });
+                let order = if soft { gap.max(0.0) } else { -1.0 };
+                self.neighbors.push((order, index));
+            }
+        }
+        self.neighbors.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.planes.clear();
+        for &(_, index) in &self.neighbors {
+            let outline = self.outline(&bodies[index], robot.position);
+            let share = match bodies[index].shape {
+                Shape::Disc { .. } => self.settings.share,
+                Shape::Rectangle { .. } => 1.0,
+            };
+            let plane = avoiding(
+                &outline,
+                robot.velocity,
+                self.settings.horizon,
+                interval,
+                share,
+            );
+            self.planes.push(plane);
+        }
+        let hard = self.neighbors.iter().take_while(|(order, _)| *order < 0.0);
+        let hard = hard.count();
+        let wanted = self.wanted(situation);
+        let velocity = self
+            .solver
+            .nearest(&self.planes, hard, self.max_speed, wanted);
+        [velocity.x, velocity.y]
+    }
+}

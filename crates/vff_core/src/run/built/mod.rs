@@ -1,0 +1,140 @@
+//! Robots as built: a law that sees what is measured, and wheels that do what they can.
+//!
+//! A law is asked once a control period, as in [`super::simulate`]; between two samples the robot
+//! moves as a point mass, on wheels with controllers of their own, or as a two-wheel robot that
+//! follows the point mass which the law drives. With ideal motion and exact sensing a run is that
+//! of [`super::simulate`], bit for bit.
+
+mod driven;
+mod history;
+mod many;
+mod motion;
+mod omni;
+mod run;
+mod sight;
+mod two_wheels;
+
+pub use history::BuiltTrajectory;
+pub use many::{Histories, repeat_built};
+pub use run::{evaluate_built, simulate_built};
+
+use crate::error::{Failure, Given, Result, positive};
+use crate::robots::differential::{Tracking, VirtualTorque};
+use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
+use crate::sensing::Vision;
+use crate::world::scenario::Scenario;
+
+/// How a robot is built, beside what its scenario says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Built {
+    /// Motion step in s, at which a two-wheel robot is also steered.
+    pub step: f64,
+    /// End the run at the first contact.
+    pub stop_on_contact: bool,
+    /// Wheels with controllers, as many as the robot has; ideal ones otherwise.
+    pub wheels: Option<Vec<WheelDrive>>,
+    /// Kinematics of the wheels of a holonomic robot.
+    pub omni: OmniKinematics,
+    /// Slip of wheels with controllers.
+    pub slip: Slip,
+    /// How a two-wheel robot is steered.
+    pub steered: Steered,
+    /// Camera that sees the robot.
+    pub robot_vision: Option<Vision>,
+    /// Camera that sees moving obstacles.
+    pub obstacle_vision: Option<Vision>,
+    /// How far a measured pose corrects the one from the wheels.
+    pub fusion: PoseFusion,
+}
+
+impl Default for Built {
+    /// Ideal wheels, and what the scenario measures.
+    fn default() -> Self {
+        Self {
+            step: 0.01,
+            stop_on_contact: false,
+            wheels: None,
+            omni: OmniKinematics::default(),
+            slip: Slip::default(),
+            steered: Steered::default(),
+            robot_vision: None,
+            obstacle_vision: None,
+            fusion: PoseFusion::default(),
+        }
+    }
+}
+
+impl Built {
+    /// Passes what suits a scenario.
+    ///
+    /// # Errors
+    /// The step is not positive, the number of wheels is not that of the robot, or both cameras and
+    /// a measurement are given.
+    fn suiting(&self, scenario: &Scenario) -> Result<&Self> {
+        positive("step", self.step)?;
+        let driven = if scenario.differential.is_some() {
+            2
+        } else {
+            3
+        };
+        if let Some(wheels) = self.wheels.as_ref().filter(|wheels| wheels.len() != driven) {
+            let rule = "hold one wheel for each of the robot: 3 of a holonomic one, 2 of the other";
+            let given = Given::Count(wheels.len() as u64);
+            return Err(Failure::invalid("wheels", rule, given));
+        }
+        let sees = self.robot_vision.is_some() || self.obstacle_vision.is_some();
+        if sees && scenario.measurement.is_some() {
+            let rule = "be None where a camera measures";
+            let given = Given::Found("a Measurement".into());
+            return Err(Failure::invalid("measurement", rule, given));
+        }
+        Ok(self)
+    }
+
+    /// The same without errors of measurement.
+    fn seeing_all(&self) -> Self {
+        Self {
+            robot_vision: None,
+            obstacle_vision: None,
+            ..self.clone()
+        }
+    }
+}
+
+/// How a two-wheel robot is steered.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Steered {
+    /// It follows the point mass that the law drives.
+    Following(Tracking),
+    /// It turns toward the force of the law.
+    Torque(VirtualTorque),
+}
+
+impl Default for Steered {
+    fn default() -> Self {
+        Self::Following(Tracking::default())
+    }
+}
+
+/// How a two-wheel robot joins the pose that its wheels tell with the measured one; a share of the
+/// difference is taken over at every measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseFusion {
+    /// Share of the difference of positions.
+    pub position: f64,
+    /// Share of the difference of headings.
+    pub heading: f64,
+    /// Distance in m from the center of the robot to the second mark, which tells the heading.
+    pub mark: f64,
+}
+
+impl Default for PoseFusion {
+    /// The mark is that of Zeng (2011), section 7.3.1; the shares are not in the source.
+    fn default() -> Self {
+        Self {
+            position: 0.3,
+            heading: 0.1,
+            mark: 0.1,
+        }
+    }
+}

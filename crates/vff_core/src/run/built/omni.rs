@@ -1,0 +1,79 @@
+//! Three omni-wheels that follow the velocity of the point mass which a law drives.
+
+use crate::error::Result;
+use crate::lanes::{Planar, Vector2};
+use crate::robots::wheels::{OmniKinematics, WheelDrive};
+use crate::run::built::Built;
+use crate::run::built::driven::{DrivenWheels, WheelSize};
+use crate::run::built::motion::{Moving, Order, PointMass, Reading, WHEELS};
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
+
+/// The robot. It takes its heading for that of the start: nothing measures it.
+#[derive(Clone, Debug)]
+pub(super) struct OmniRobot {
+    reference: PointMass,
+    kinematics: OmniKinematics,
+    wheels: DrivenWheels,
+    wanted_heading: f64,
+    position: Vector2<f64>,
+    heading: f64,
+    step: f64,
+}
+
+impl OmniRobot {
+    pub fn new(scenario: &Scenario, drives: &[WheelDrive], built: &Built) -> Result<Self> {
+        let kinematics = built.omni.checked()?;
+        let size = WheelSize {
+            radius: kinematics.wheel_radius,
+            resistance: scenario.robot.wheels.resistance,
+        };
+        let heading = scenario.rules.heading;
+        Ok(Self {
+            reference: PointMass::new(scenario, built.step),
+            kinematics,
+            wheels: DrivenWheels::new(drives, built.slip, size, built.step)?,
+            wanted_heading: heading,
+            position: Vector2::splat(scenario.start),
+            heading,
+            step: built.step,
+        })
+    }
+}
+
+impl Moving for OmniRobot {
+    fn wheels(&self) -> usize {
+        WHEELS
+    }
+
+    fn hold(&mut self, order: &Order) {
+        self.reference.hold(order.force);
+    }
+
+    fn step(&mut self) -> Reading {
+        self.reference.advance();
+        let [x, y] = self.reference.state.velocity.lane(0);
+        let kinematics = self.kinematics;
+        let wanted = kinematics.wheel_speeds_in_world([x, y, 0.0], self.wanted_heading);
+        let (mut position, mut heading, period) = (self.position, self.heading, self.wheels.period);
+        let mut velocity = Vector2::zeros();
+        self.wheels.step(wanted, |rolling, _| {
+            let turn = kinematics.body_velocity(rolling)[2] * period;
+            let [x, y, _] = kinematics.world_velocity(rolling, heading + 0.5 * turn);
+            velocity = Vector2::new(x, y);
+            position += velocity * period;
+            heading += turn;
+        });
+        let way = position - self.position;
+        (self.position, self.heading) = (position, heading);
+        Reading {
+            robot: RobotState { position, velocity },
+            speed: way.dot(&way).sqrt() / self.step,
+            heading,
+            wheel_speeds: self.wheels.speeds,
+            currents: self.wheels.currents,
+            loss: self.wheels.loss,
+            reference: self.reference.state.position,
+        }
+    }
+}

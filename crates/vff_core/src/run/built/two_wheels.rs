@@ -1,0 +1,241 @@
+//! A two-wheel robot that follows the point mass which a law drives, or turns with a virtual
+//! torque; Zeng (2011), sections 7.2 and 2.2.5.
+
+use crate::error::Result;
+use crate::lanes::{Planar, Vector2};
+use crate::robots::differential::{
+    DifferentialLimits, Pose, Reference, TorqueSteering, Tracker, Twist,
+};
+use crate::robots::wheels::DifferentialKinematics;
+use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
+use crate::run::built::driven::{DrivenWheels, WheelSize};
+use crate::run::built::motion::{Fix, Moving, Order, PointMass, Reading, WHEELS};
+use crate::run::built::{Built, PoseFusion, Steered};
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
+
+/// Driven wheels.
+pub(super) const DRIVEN: usize = 2;
+
+/// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
+const WHEEL_STANDSTILL: f64 = 1e-9;
+
+/// What turns an order into a twist.
+#[derive(Clone, Debug)]
+enum Steering {
+    /// Follows the point mass.
+    Follow(Box<Tracker>),
+    /// Turns toward the force.
+    Torque(TorqueSteering),
+}
+
+/// The robot.
+#[derive(Clone, Debug)]
+pub(super) struct TwoWheels {
+    ideal: DifferentialWheels,
+    limits: DifferentialLimits,
+    kinematics: DifferentialKinematics,
+    /// Wheels with controllers; ideal ones do at once what they are told.
+    wheels: Option<DrivenWheels>,
+    reference: PointMass,
+    steering: Steering,
+    fusion: PoseFusion,
+    goal: [f64; 2],
+    step: f64,
+    force: [f64; 2],
+    pose: Pose,
+    /// The pose as the robot knows it.
+    known: Pose,
+    /// Whether it knows it exactly.
+    exact: bool,
+    /// Commanded twist, within all limits.
+    twist: Twist,
+    wheel_speeds: [f64; WHEELS],
+}
+
+impl TwoWheels {
+    pub fn new(scenario: &Scenario, robot: &DifferentialDriveRobot, built: &Built) -> Result<Self> {
+        let limits = DifferentialLimits::from(robot);
+        let pose = Pose {
+            position: scenario.start,
+            heading: scenario.rules.heading,
+        };
+        let size = WheelSize {
+            radius: robot.wheels.radius,
+            resistance: robot.wheels.resistance,
+        };
+        let driven = |drives: &Vec<_>| DrivenWheels::new(drives, built.slip, size, built.step);
+        let steering = match &built.steered {
+            Steered::Following(tracking) => {
+                let tracking = tracking.checked()?;
+                Steering::Follow(Box::new(Tracker::new(&tracking, &limits, built.step)))
+            }
+            Steered::Torque(law) => {
+                let law = law.checked()?;
+                Steering::Torque(TorqueSteering::new(&law, robot, &limits, built.step))
+            }
+        };
+        Ok(Self {
+            ideal: robot.wheels,
+            limits,
+            kinematics: DifferentialKinematics {
+                wheel_radius: robot.wheels.radius,
+                span: robot.wheels.span,
+            },
+            wheels: built.wheels.as_ref().map(driven).transpose()?,
+            reference: PointMass::new(scenario, built.step),
+            steering,
+            fusion: built.fusion,
+            goal: scenario.goal,
+            step: built.step,
+            force: [0.0; 2],
+            pose,
+            known: pose,
+            exact: true,
+            twist: Twist::default(),
+            wheel_speeds: [0.0; WHEELS],
+        })
+    }
+
+    /// Takes over a share of the difference from the measured pose.
+    fn correct(&mut self, fix: &Fix) {
+        let measured = fix.position.lane(0);
+        for (known, measured) in self.known.position.iter_mut().zip(measured) {
+            *known += self.fusion.position * (measured - *known);
+        }
+        if let Some(heading) = fix.heading {
+            let (sin, cos) = (heading - self.known.heading).sin_cos();
+            self.known.heading += self.fusion.heading * sin.atan2(cos);
+        }
+    }
+
+    /// Twist to ask for until the next step.
+    fn wish(&mut self) -> Twist {
+        let position = self.reference.state.position.lane(0);
+        self.reference.advance();
+        match &mut self.steering {
+            Steering::Follow(tracker) => {
+                let reference = Reference {
+                    position,
+                    velocity: self.reference.state.velocity.lane(0),
+                    acceleration: self.reference.acceleration.lane(0),
+                };
+                tracker.command(&self.known, &reference, self.goal)
+            }
+            Steering::Torque(torque) => torque.command(&self.known, self.twist, self.force),
+        }
+    }
+
+    /// Moves with the commanded twist; returns the twist that it really has at the end.
+    fn roll(&mut self) -> Twist {
+        let (step, kinematics) = (self.step, self.kinematics);
+        let Some(wheels) = &mut self.wheels else {
+            self.pose = self.pose.after(self.twist, step);
+            self.known = self.known.after(self.twist, step);
+            return self.twist;
+        };
+        let wanted = spread(kinematics.wheel_speeds([self.twist.speed, self.twist.turn_rate]));
+        let period = wheels.period;
+        let (mut pose, mut known, mut twist) = (self.pose, self.known, Twist::default());
+        let turned = |speeds: [f64; WHEELS]| {
+            let [speed, turn_rate] = kinematics.body_velocity([speeds[0], speeds[1]]);
+            Twist { speed, turn_rate }
+        };
+        wheels.step(wanted, |rolling, speeds| {
+            twist = turned(rolling);
+            pose = pose.after(twist, period);
+            known = known.after(turned(speeds), period);
+        });
+        (self.pose, self.known) = (pose, known);
+        twist
+    }
+
+    /// Wheel speeds in rad/s, mean currents in A and loss in J of the step.
+    fn motors(&mut self) -> ([f64; WHEELS], [f64; WHEELS], f64) {
+        if let Some(wheels) = &self.wheels {
+            return (wheels.speeds, wheels.currents, wheels.loss);
+        }
+        let twist = [self.twist.speed, self.twist.turn_rate];
+        let speeds = spread(self.kinematics.wheel_speeds(twist));
+        let currents = ideal_currents(&self.ideal, &self.wheel_speeds, &speeds, self.step);
+        let squared: f64 = currents.iter().map(|current| current * current).sum();
+        (
+            speeds,
+            currents,
+            squared * self.ideal.resistance * self.step,
+        )
+    }
+}
+
+/// The two wheels among the most that a robot may have.
+fn spread([right, left]: [f64; DRIVEN]) -> [f64; WHEELS] {
+    [right, left, 0.0]
+}
+
+impl Moving for TwoWheels {
+    fn wheels(&self) -> usize {
+        DRIVEN
+    }
+
+    fn hold(&mut self, order: &Order) {
+        self.force = order.force.lane(0);
+        self.reference.hold(order.force);
+        self.exact = order.fix.is_none();
+        if let Some(fix) = &order.fix {
+            self.correct(fix);
+        }
+        if let Steering::Follow(tracker) = &mut self.steering {
+            tracker.permit_goal_phase(order.clear);
+        }
+    }
+
+    fn step(&mut self) -> Reading {
+        if self.exact {
+            self.known = self.pose;
+        }
+        let before = self.pose.position;
+        let wish = self.wish();
+        self.twist = self.limits.toward(self.twist, wish, self.step);
+        let twist = self.roll();
+        let (wheel_speeds, currents, loss) = self.motors();
+        self.wheel_speeds = wheel_speeds;
+        let (sin, cos) = self.pose.heading.sin_cos();
+        let position = self.pose.position;
+        let way = (position[0] - before[0]).hypot(position[1] - before[1]);
+        Reading {
+            robot: RobotState {
+                position: Vector2::splat(position),
+                velocity: Vector2::splat([twist.speed * cos, twist.speed * sin]),
+            },
+            speed: way / self.step,
+            heading: self.pose.heading,
+            wheel_speeds,
+            currents,
+            loss,
+            reference: self.reference.state.position,
+        }
+    }
+}
+
+/// Motor currents in A from the wheel speeds before and after a step, (E.3.2) with 1 A/V:
+/// `i = J/K theta'' + B/K theta' + tau/K sgn(theta')`.
+fn ideal_currents(
+    wheels: &DifferentialWheels,
+    before: &[f64; WHEELS],
+    after: &[f64; WHEELS],
+    step: f64,
+) -> [f64; WHEELS] {
+    let mut currents = [0.0; WHEELS];
+    for wheel in 0..DRIVEN {
+        let speed = after[wheel];
+        let friction = if speed.abs() < WHEEL_STANDSTILL {
+            0.0
+        } else {
+            wheels.static_friction[wheel].copysign(speed)
+        };
+        currents[wheel] = wheels.inertia[wheel] * (speed - before[wheel]) / step
+            + wheels.viscous_friction[wheel] * speed
+            + friction;
+    }
+    currents
+}

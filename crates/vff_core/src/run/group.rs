@@ -1,0 +1,324 @@
+//! Gain sets side by side in lanes, lane groups in step, through one scenario.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use crate::error::{Failure, Result};
+use crate::lanes::{Lanes, Real};
+use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
+use crate::run::Interrupted;
+use crate::run::options::Options;
+use crate::run::outcome::{RunSummary, RunTotals};
+use crate::run::plan::{Instructions, MAX_GAINS, Plan, Width, key_of};
+use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
+use crate::run::rollout::{Member, run_team};
+use crate::world::scenario::Scenario;
+
+/// Receives each run: its index, its totals, and its least distance to an obstacle.
+pub(crate) type Keep<'a> = &'a mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -> f64);
+
+/// A law of any kind up to its gains.
+///
+/// The kernels of a law are compiled where it is turned into this, that is in this crate, or for
+/// laws of other crates there.
+#[derive(Clone)]
+pub struct AnyLaw(Arc<dyn Driven>);
+
+impl From<&AnyLaw> for AnyLaw {
+    fn from(law: &AnyLaw) -> Self {
+        law.clone()
+    }
+}
+
+impl AnyLaw {
+    /// A law of another crate, whose gain sets run one after the other.
+    #[must_use]
+    pub fn one_by_one<F: LawFamily + Send + 'static>(law: F) -> Self {
+        Self::driven_by::<_, One>(law)
+    }
+
+    pub(crate) fn driven_by<F: LawFamily + Send + 'static, K: Kernels>(law: F) -> Self {
+        Self(Arc::new(Driver::<F, K>(law, PhantomData)))
+    }
+
+    pub(crate) fn driven(&self) -> &dyn Driven {
+        &*self.0
+    }
+
+    /// Words for the gains, in their order.
+    #[must_use]
+    pub fn gain_names(&self) -> &'static [&'static str] {
+        self.0.gain_names()
+    }
+
+    /// Passes a law whose gains are allowed.
+    ///
+    /// # Errors
+    /// Names the gain that is not.
+    pub fn checked(self) -> Result<Self> {
+        self.0.check_gains(&self.0.gains())?;
+        Ok(self)
+    }
+}
+
+/// A law of any kind at work on one robot.
+pub(crate) trait Steering {
+    /// Force for the time until the next sample.
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
+}
+
+impl<L: Law<f64>> Steering for L {
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        Law::command(self, situation)
+    }
+}
+
+/// A law whose gain sets can be run.
+pub(crate) trait Driven: Send + Sync {
+    /// Words for the gains, in their order.
+    fn gain_names(&self) -> &'static [&'static str];
+    /// Its own gains, in that order.
+    fn gains(&self) -> Vec<f64>;
+    /// Gains that act on a robot without obstacles, ascending.
+    fn free_gains(&self) -> &'static [usize];
+    /// Passes a set of gains that the law allows.
+    fn check_gains(&self, gains: &[f64]) -> Result<()>;
+    /// Runs gain sets and hands every run over.
+    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// What it asks for at first, with its own gains.
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
+    /// Every force term with its own gains; `None` for laws that are no sum of terms.
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
+    /// It at work in a scenario, with its own gains, to be asked once a control period.
+    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>>;
+    /// One run with its own gains and everything recorded.
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)>;
+}
+
+/// A law and the kernels that are compiled for it.
+struct Driver<F, K>(F, PhantomData<fn() -> K>);
+
+/// Kernels that are compiled for a law.
+pub(crate) trait Kernels: 'static {
+    /// Runs gain sets in the kernel that suits the plan.
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+}
+
+/// One, four and eight gain sets side by side, with and without the Lyapunov function.
+pub(crate) struct EveryWidth;
+
+impl Kernels for EveryWidth {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        // One job for each kind of run: in one body an unoptimized build would need more stack
+        // than a thread has.
+        match (group.plan.width, group.plan.descent) {
+            (Width::One, false) => group.dispatch::<F, f64, (), false>(law, keep),
+            (Width::One, true) => group.dispatch::<F, f64, DescentCounter<f64>, true>(law, keep),
+            (Width::Four, false) => group.dispatch::<F, Lanes<4>, (), false>(law, keep),
+            (Width::Eight | Width::Sixteen, false) => {
+                group.dispatch::<F, Lanes<8>, (), false>(law, keep)
+            }
+            (_, true) => group.dispatch::<F, Lanes<8>, DescentCounter<Lanes<8>>, true>(law, keep),
+        }
+    }
+}
+
+/// One and eight gain sets side by side, for laws without a Lyapunov function.
+pub(crate) struct OneAndEight;
+
+impl Kernels for OneAndEight {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        match group.plan.width {
+            Width::One => group.dispatch::<F, f64, (), false>(law, keep),
+            _ => group.dispatch::<F, Lanes<8>, (), false>(law, keep),
+        }
+    }
+}
+
+/// One after the other, for laws that think longer than a robot moves.
+pub(crate) struct One;
+
+impl Kernels for One {
+    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch::<F, f64, (), false>(law, keep)
+    }
+}
+
+impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
+    fn gain_names(&self) -> &'static [&'static str] {
+        self.0.gain_names()
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.0.gains()
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        self.0.free_gains()
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        self.0.check_gains(gains)
+    }
+
+    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        if (group.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        let exact = group.scenario.measurement.is_none();
+        let plan = Plan {
+            shortcuts: group.plan.shortcuts && exact && self.0.keeps_to_regions(),
+            ..*group.plan
+        };
+        let group = &Group {
+            plan: &plan,
+            ..*group
+        };
+        K::run(&self.0, group, keep)
+    }
+
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
+        let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
+        Ok(Law::command(&mut law, situation))
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        self.0.terms(scenario, situation)
+    }
+
+    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>> {
+        let law = self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?;
+        Ok(Box::new(law))
+    }
+
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)> {
+        let mut team = [Member {
+            law: self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?,
+            recorder: TrajectoryRecorder::new(scenario),
+        }];
+        let mut summary = None;
+        run_team(
+            scenario,
+            (&mut team, false),
+            &Plan::single(*options),
+            interrupted,
+            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
+        )?;
+        let [member] = team;
+        let summary = summary.ok_or(Failure::Interrupted)?;
+        Ok((summary, member.recorder.finish()))
+    }
+}
+
+/// Gain sets of one task in one scenario.
+pub(crate) struct Group<'a> {
+    pub scenario: &'a Scenario,
+    /// Gain sets in the order of their names.
+    pub points: &'a [f64],
+    pub plan: &'a Plan,
+    pub interrupted: Interrupted<'a>,
+}
+
+impl Group<'_> {
+    fn dispatch<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool>(
+        &self,
+        law: &F,
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        let processor = match self.plan.instructions {
+            Instructions::Widest => pulp::Arch::new(),
+            Instructions::Baseline => pulp::Arch::Scalar,
+        };
+        processor.dispatch(Job::<F, Kind<R, C, RECORD>> {
+            group: self,
+            law,
+            keep,
+            kind: PhantomData,
+        })
+    }
+}
+
+/// A law for a lane group; the last gain set fills lanes that are left over.
+#[inline(always)]
+fn law_of<F: LawFamily, R: Real, const RECORD: bool>(
+    law: &F,
+    sets: &[f64],
+    scenario: &Scenario,
+) -> Result<F::Law<R, RECORD>> {
+    let dimension = law.gain_names().len();
+    let last = sets.len() / dimension - 1;
+    let mut gains = [R::zero(); MAX_GAINS];
+    for (axis, gain) in gains[..dimension].iter_mut().enumerate() {
+        *gain = R::from_fn(|lane| sets[lane.min(last) * dimension + axis]);
+    }
+    law.with_gains(&gains[..dimension], scenario)
+}
+
+/// Whether gain sets differ only in gains that act near obstacles.
+fn shares_free_gains<F: LawFamily>(law: &F, points: &[f64]) -> bool {
+    let mut sets = points.chunks_exact(LawFamily::gain_names(law).len());
+    let key = |set: &[f64]| key_of(LawFamily::free_gains(law), set);
+    let first = sets.next().map(key);
+    sets.all(|set| Some(key(set)) == first)
+}
+
+/// A task that is compiled once for each instruction set; the widest one that the processor has
+/// is chosen at run time. The arithmetic is the same, bit for bit.
+struct Job<'a, 'b, 'c, F, K> {
+    group: &'a Group<'b>,
+    law: &'a F,
+    keep: Keep<'c>,
+    kind: PhantomData<K>,
+}
+
+/// Width, recorder, and whether the Lyapunov function is wanted.
+struct Kind<R, C, const RECORD: bool>(PhantomData<(R, C)>);
+
+impl<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::NullaryFnOnce
+    for Job<'_, '_, '_, F, Kind<R, C, RECORD>>
+{
+    type Output = Result<()>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let group = self.group;
+        let dimension = LawFamily::gain_names(self.law).len();
+        let member = |sets: &[f64]| -> Result<_> {
+            Ok(Member {
+                law: law_of::<F, R, RECORD>(self.law, sets, group.scenario)?,
+                recorder: C::default(),
+            })
+        };
+        let mut team: Vec<_> = group
+            .points
+            .chunks(R::WIDTH * dimension)
+            .map(member)
+            .collect::<Result<_>>()?;
+        let count = group.points.len() / dimension;
+        let led = group.plan.shortcuts && shares_free_gains(self.law, group.points);
+        run_team(
+            group.scenario,
+            (&mut team, led),
+            group.plan,
+            group.interrupted,
+            |index, runs, lane, recorder| {
+                if index < count {
+                    let totals = runs.totals(lane, recorder);
+                    (self.keep)(index, &totals, &|obstacle| {
+                        runs.min_distance(obstacle, lane)
+                    });
+                }
+            },
+        )
+    }
+}

@@ -1,0 +1,125 @@
+//! Runs: control period, integrators, outcomes; one run, or many at once.
+
+mod batch;
+pub mod built;
+pub mod follower;
+pub(crate) mod group;
+pub mod metrics;
+mod nominal;
+mod options;
+mod outcome;
+mod plan;
+mod record;
+mod rollout;
+mod runs;
+mod scene;
+pub mod skirt;
+mod table;
+
+pub use batch::{BatchOptions, run_batch};
+pub use group::AnyLaw;
+pub use options::{Integrator, Options};
+pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
+pub use plan::{Instructions, Width};
+pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
+pub use table::BatchTable;
+
+pub(crate) use group::Group;
+pub(crate) use nominal::{Ways, nominal_runs};
+pub(crate) use plan::{Key, Plan, key_of};
+pub(crate) use table::min_clearance;
+
+use crate::error::{Failure, Given, Result};
+use crate::lanes::{Planar, Vector2};
+use crate::laws::{FieldTerms, Situation, Stop};
+use crate::world::geometry::{Body, RobotState};
+use crate::world::scenario::Scenario;
+
+/// Asked now and then whether to stop.
+pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// One run with everything recorded.
+///
+/// # Errors
+/// An option is out of range, the law cannot work in the scenario, the state became non-finite,
+/// or the caller asked to stop.
+pub fn simulate(
+    scenario: &Scenario,
+    law: impl Into<AnyLaw>,
+    options: &Options,
+    interrupted: Interrupted<'_>,
+) -> Result<(RunSummary, Trajectory)> {
+    let law: AnyLaw = law.into();
+    scenario.of_point_mass()?;
+    law.driven().record(scenario, options, interrupted)
+}
+
+/// Everything at one instant, for a law that is asked for the first time.
+fn at_state<T>(
+    scenario: &Scenario,
+    [position, velocity]: [[f64; 2]; 2],
+    time: f64,
+    answer: impl FnOnce(&Situation<'_, f64>) -> T,
+) -> Result<T> {
+    crate::error::finite_pair("position", position)?;
+    crate::error::finite_pair("velocity", velocity)?;
+    crate::error::not_negative("time", time)?;
+    let bodies: Vec<Body> = scenario
+        .obstacles
+        .iter()
+        .map(|placed| scene::body_at(placed, time, &mut 0))
+        .collect();
+    let robot = RobotState {
+        position: Vector2::splat(position),
+        velocity: Vector2::splat(velocity),
+    };
+    Ok(answer(&Situation {
+        bodies: &bodies,
+        robot,
+        interval: scenario.rules.control_period,
+        stop: Stop::never(),
+    }))
+}
+
+/// Force that a law asks for at one state, as at its first control step, in N.
+///
+/// # Errors
+/// A value is not finite, the time is negative, or the law cannot work in the scenario.
+pub fn command_at(
+    scenario: &Scenario,
+    law: impl Into<AnyLaw>,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    time: f64,
+) -> Result<[f64; 2]> {
+    let law: AnyLaw = law.into();
+    let command = at_state(scenario, [position, velocity], time, |situation| {
+        law.driven().command(scenario, situation)
+    })??;
+    Ok(command.force.lane(0))
+}
+
+/// Every force term at one state, of a law that is a sum of terms.
+///
+/// # Errors
+/// A value is not finite, the time is negative, or the law is a planner.
+pub fn terms_at(
+    scenario: &Scenario,
+    law: impl Into<AnyLaw>,
+    position: [f64; 2],
+    velocity: [f64; 2],
+    time: f64,
+) -> Result<FieldTerms> {
+    let law: AnyLaw = law.into();
+    let terms = at_state(scenario, [position, velocity], time, |situation| {
+        law.driven().terms(scenario, situation)
+    })?;
+    terms.ok_or_else(|| {
+        let rule = "be a sum of attraction and repulsion, such as VirtualForceField or Masoud";
+        Failure::invalid(
+            "law",
+            rule,
+            Given::Found(format!("one with the gains {}", law.gain_names().join(", ")).into()),
+        )
+    })
+}

@@ -1,0 +1,135 @@
+//! Runs without obstacles: they depend on few of the gains, and on the way.
+
+use std::collections::HashMap;
+
+use numeric::threads::try_map;
+
+use crate::error::Result;
+use crate::run::Interrupted;
+use crate::run::group::{Driven, Group};
+use crate::run::metrics::Nominal;
+use crate::run::outcome::RunTotals;
+use crate::run::plan::{Key, Plan, key_of};
+use crate::world::scenario::Scenario;
+
+/// Distinct ways of some scenarios.
+pub(crate) struct Ways {
+    /// Scenarios without obstacles.
+    pub scenarios: Vec<Scenario>,
+    /// Way of each scenario.
+    of: Vec<usize>,
+}
+
+impl Ways {
+    pub fn new(scenarios: &[Scenario]) -> Self {
+        let mut ways: Vec<Scenario> = Vec::new();
+        let way_of = |scenario: &Scenario| {
+            let nominal = scenario.nominal();
+            let known = ways.iter().position(|other| *other == nominal);
+            known.unwrap_or_else(|| {
+                ways.push(nominal);
+                ways.len() - 1
+            })
+        };
+        let of = scenarios.iter().map(way_of).collect();
+        Self {
+            scenarios: ways,
+            of,
+        }
+    }
+
+    /// Way of a scenario.
+    pub fn of(&self, scenario: usize) -> usize {
+        self.of[scenario]
+    }
+}
+
+/// Runs of some gain sets, all different, along one way.
+pub(crate) fn nominal_runs(
+    way: &Scenario,
+    law: &dyn Driven,
+    points: &[f64],
+    plan: &Plan,
+    interrupted: Interrupted<'_>,
+) -> Result<Vec<Nominal>> {
+    let mut runs = Vec::with_capacity(points.len() / law.gain_names().len());
+    let group = Group {
+        scenario: way,
+        points,
+        plan,
+        interrupted,
+    };
+    let mut keep = |_: usize, run: &RunTotals, _: &dyn Fn(usize) -> f64| {
+        runs.push(Nominal {
+            arrival_time: run.arrival_time,
+            energy: run.energy,
+        });
+    };
+    law.run(&group, &mut keep)?;
+    Ok(runs)
+}
+
+/// Runs without obstacles of many gain sets.
+pub(crate) struct NominalRuns {
+    /// Index of the run of each gain set.
+    of: Vec<usize>,
+    /// Runs along each way.
+    runs: Vec<Vec<Nominal>>,
+}
+
+impl NominalRuns {
+    /// Errors carry the index of the gain set.
+    pub fn new(
+        ways: &Ways,
+        law: &dyn Driven,
+        points: &[f64],
+        plan: &Plan,
+        interrupted: Interrupted<'_>,
+    ) -> Result<Self> {
+        let dimension = law.gain_names().len();
+        let mut known: HashMap<Key, usize> = HashMap::new();
+        let (mut first, mut sets) = (Vec::new(), Vec::new());
+        let mut last = None;
+        let index_of = |(index, set): (usize, &[f64])| {
+            let key = key_of(law.free_gains(), set);
+            // Neighbours mostly share the run.
+            if let Some((_, run)) = last.filter(|(other, _)| *other == key) {
+                return run;
+            }
+            let run = *known.entry(key).or_insert_with(|| {
+                first.push(index);
+                sets.extend_from_slice(set);
+                first.len() - 1
+            });
+            last = Some((key, run));
+            run
+        };
+        let of = points
+            .chunks_exact(dimension)
+            .enumerate()
+            .map(index_of)
+            .collect();
+        let plan = Plan {
+            descent: false,
+            shortcuts: false,
+            width: super::Width::for_sets(first.len()),
+            ..*plan
+        };
+        let team = plan.team(0);
+        let along = |way: &Scenario| -> Result<Vec<Nominal>> {
+            let chunks: Vec<&[f64]> = sets.chunks(team * dimension).collect();
+            let parts = try_map(chunks.len(), |part| {
+                nominal_runs(way, law, chunks[part], &plan, interrupted)
+                    .map_err(|error| error.of_run(|run| first[part * team + run]))
+            })?;
+            Ok(parts.concat())
+        };
+        let runs = ways.scenarios.iter().map(along).collect::<Result<_>>()?;
+        Ok(Self { of, runs })
+    }
+
+    /// Run of a gain set along a way.
+    pub fn of(&self, way: usize, set: usize) -> Nominal {
+        self.runs[way][self.of[set]]
+    }
+}

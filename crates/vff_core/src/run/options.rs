@@ -1,0 +1,102 @@
+//! How a run is integrated.
+
+use crate::error::{Failure, Given, Result, positive};
+use crate::world::scenario::Scenario;
+
+/// Largest number of motion steps of one run.
+const MAX_STEPS: f64 = 1e8;
+
+/// Largest deviation of a control period from a whole number of steps, relative.
+const WHOLE_STEPS: f64 = 1e-9;
+
+/// Motion integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Velocity first, then position with the new velocity.
+    SemiImplicitEuler,
+    /// Runge-Kutta of order 4, the speed limit applied in every stage.
+    Rk4,
+}
+
+/// Options of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Integrator.
+    pub integrator: Integrator,
+    /// Motion step in s.
+    pub step: f64,
+    /// The force is computed every control period and held; otherwise at every step or stage.
+    pub hold: bool,
+    /// End the run at the first contact.
+    pub stop_on_contact: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let integrator = Integrator::SemiImplicitEuler;
+        Self {
+            integrator,
+            step: 0.01,
+            hold: true,
+            stop_on_contact: false,
+        }
+    }
+}
+
+/// Steps of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clock {
+    /// Motion step in s.
+    pub step: f64,
+    /// Steps between two samples of the force.
+    pub steps_per_sample: usize,
+    /// Steps in all.
+    pub steps: usize,
+    /// Time between two samples of the force, in s.
+    pub interval: f64,
+}
+
+impl Clock {
+    /// Time after a number of steps, in s.
+    #[inline(always)]
+    pub fn time(&self, steps: usize) -> f64 {
+        steps as f64 * self.step
+    }
+}
+
+impl Options {
+    /// Steps for a scenario.
+    pub(crate) fn clock(&self, scenario: &Scenario) -> Result<Clock> {
+        let step = positive("step", self.step)?;
+        let period = scenario.rules.control_period;
+        let count = (scenario.rules.time_limit / step - WHOLE_STEPS).ceil();
+        if count > MAX_STEPS {
+            let rule = "be so long that the time limit is at most 1e8 steps";
+            return Err(Failure::invalid("step", rule, Given::Number(step)));
+        }
+        let (mut steps_per_sample, mut interval) = (1, step);
+        if self.hold {
+            let whole = (period / step).round();
+            if whole < 1.0 || (whole * step - period).abs() > WHOLE_STEPS * period {
+                let rule = "divide the control period when the force is held";
+                return Err(Failure::invalid("step", rule, Given::Number(step)));
+            }
+            (steps_per_sample, interval) = (count_of(whole), period);
+        } else if scenario.measurement.is_some() {
+            let rule = "be true with a measurement, which is taken every control period";
+            return Err(Failure::invalid("hold", rule, Given::Found("False".into())));
+        }
+        Ok(Clock {
+            step,
+            steps_per_sample,
+            steps: count_of(count).max(1),
+            interval,
+        })
+    }
+}
+
+/// A checked, whole, not negative number as a count.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MAX_STEPS or a period
+fn count_of(whole: f64) -> usize {
+    whole as usize
+}

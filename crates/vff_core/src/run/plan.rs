@@ -1,0 +1,126 @@
+//! How the runs of a task are carried out: lanes, instructions, teams, what they have in common.
+
+use crate::error::{Failure, Given, Result};
+use crate::run::options::Options;
+
+/// Number of gain sets that are stepped side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// One.
+    One,
+    /// Four.
+    Four,
+    /// Eight.
+    Eight,
+    /// Sixteen.
+    Sixteen,
+}
+
+impl Width {
+    /// Width by its number of lanes.
+    ///
+    /// # Errors
+    /// There is no such width.
+    pub fn of(lanes: usize) -> Result<Self> {
+        match lanes {
+            1 => Ok(Self::One),
+            4 => Ok(Self::Four),
+            8 => Ok(Self::Eight),
+            16 => Ok(Self::Sixteen),
+            other => {
+                let given = Given::Count(other as u64);
+                Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))
+            }
+        }
+    }
+
+    /// Width that suits a number of gain sets.
+    #[must_use]
+    pub fn for_sets(count: usize) -> Self {
+        match count {
+            0 | 1 => Self::One,
+            2..=4 => Self::Four,
+            5..=8 => Self::Eight,
+            _ => Self::Sixteen,
+        }
+    }
+
+    pub(crate) fn lanes(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+}
+
+/// Which instructions of the processor a batch may use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instructions {
+    /// The widest vectors that the processor has.
+    #[default]
+    Widest,
+    /// Those that every processor of its family has.
+    Baseline,
+}
+
+/// Most gains of a law.
+pub(crate) const MAX_GAINS: usize = 8;
+
+/// Gain sets of a task when there are many: groups of eight in step, which share the motion of
+/// the obstacles.
+const LARGE_TEAM: usize = 64;
+
+/// Gain sets of a task when there are few.
+const SMALL_TEAM: usize = 16;
+
+/// Runs from which on the teams are large.
+const MANY_RUNS: usize = 4096;
+
+/// How the runs of a task are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    pub run: Options,
+    pub width: Width,
+    pub instructions: Instructions,
+    /// Count the control periods over which the Lyapunov function does not grow.
+    pub descent: bool,
+    /// End runs that can neither arrive nor touch anything any more, and make the part of the way
+    /// that all runs of a task have in common only once. Changes no bit of a run that arrives.
+    pub shortcuts: bool,
+}
+
+impl Plan {
+    /// One run by itself.
+    pub fn single(run: Options) -> Self {
+        Self {
+            run,
+            width: Width::One,
+            instructions: Instructions::default(),
+            descent: false,
+            shortcuts: false,
+        }
+    }
+
+    /// Number of gain sets of a task.
+    pub fn team(&self, runs: usize) -> usize {
+        match self.width {
+            Width::Sixteen if self.descent || runs < MANY_RUNS => SMALL_TEAM,
+            Width::Sixteen => LARGE_TEAM,
+            width => width.lanes(),
+        }
+    }
+}
+
+/// The gains that act without obstacles, as bits.
+pub(crate) type Key = [u64; MAX_GAINS];
+
+/// Key of a gain set.
+pub(crate) fn key_of(free_gains: &[usize], set: &[f64]) -> Key {
+    let mut key = [0; MAX_GAINS];
+    for (slot, axis) in key.iter_mut().zip(free_gains) {
+        *slot = set[*axis].to_bits();
+    }
+    key
+}

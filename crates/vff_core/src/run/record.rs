@@ -1,0 +1,211 @@
+//! What is kept of a run while it goes on.
+
+use crate::lanes::{Planar, Real, Vector2};
+use crate::laws::Command;
+use crate::world::geometry::Body;
+use crate::world::scenario::Scenario;
+
+/// Listens to a run.
+pub trait Recorder<R: Real> {
+    /// Whether it wants to know the state at every step.
+    const EVERY_STEP: bool = false;
+    /// A force was computed; `running`: for whom it counts.
+    fn sample(&mut self, _command: &Command<R>, _running: R::Mask) {}
+    /// State at the begin of a step.
+    fn row(
+        &mut self,
+        _time: f64,
+        _position: Vector2<R>,
+        _velocity: Vector2<R>,
+        _currents: &[R; 3],
+        _command: &Command<R>,
+        _bodies: &[Body],
+    ) {
+    }
+    /// State at the end of the first run.
+    fn end(
+        &mut self,
+        _time: f64,
+        _position: Vector2<R>,
+        _velocity: Vector2<R>,
+        _currents: &[R; 3],
+        _bodies: impl FnOnce() -> Vec<Body>,
+    ) {
+    }
+    /// Share of the control periods over which the Lyapunov function did not grow.
+    fn descent_share(&self, _lane: usize) -> f64 {
+        f64::NAN
+    }
+}
+
+/// Keeps nothing.
+impl<R: Real> Recorder<R> for () {}
+
+/// Counts the control periods over which the Lyapunov function did not grow.
+#[derive(Clone, Debug)]
+pub struct DescentCounter<R> {
+    last: R,
+    periods: R,
+    descents: R,
+}
+
+impl<R: Real> Default for DescentCounter<R> {
+    fn default() -> Self {
+        Self {
+            last: R::splat(f64::NAN),
+            periods: R::zero(),
+            descents: R::zero(),
+        }
+    }
+}
+
+impl<R: Real> Recorder<R> for DescentCounter<R> {
+    fn sample(&mut self, command: &Command<R>, running: R::Mask) {
+        let value = command.lyapunov;
+        // False where either value is NaN.
+        let fell = value.le(self.last);
+        let counted = running & (fell | self.last.lt(value));
+        let one = R::splat(1.0);
+        self.periods = R::select(counted, self.periods + one, self.periods);
+        self.descents = R::select(running & fell, self.descents + one, self.descents);
+        self.last = value;
+    }
+
+    fn descent_share(&self, lane: usize) -> f64 {
+        self.descents.lane(lane) / self.periods.lane(lane)
+    }
+}
+
+/// Columns of a recorded run; vectors of the plane are interleaved, obstacles vary fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    /// Instants in s.
+    pub time: Vec<f64>,
+    /// Positions in m.
+    pub position: Vec<f64>,
+    /// Velocities in m/s.
+    pub velocity: Vec<f64>,
+    /// Commanded forces in N.
+    pub force: Vec<f64>,
+    /// Stabilizing forces in N.
+    pub stabilizing: Vec<f64>,
+    /// Lyapunov function in N^2.
+    pub lyapunov: Vec<f64>,
+    /// Motor currents in A.
+    pub wheel_current: Vec<f64>,
+    /// Obstacle positions in m; NaN while absent.
+    pub obstacle_position: Vec<f64>,
+    /// Distances `d` in m; NaN while absent.
+    pub distance: Vec<f64>,
+}
+
+/// Keeps everything of one run.
+#[derive(Clone, Debug)]
+pub struct TrajectoryRecorder {
+    columns: Trajectory,
+    command: Command<f64>,
+}
+
+impl TrajectoryRecorder {
+    /// Recorder for a scenario.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        // Room for an ordinary run, so that it does not grow in the loop.
+        let rows = 1200;
+        let obstacles = scenario.obstacle_count();
+        let columns = Trajectory {
+            time: Vec::with_capacity(rows),
+            position: Vec::with_capacity(2 * rows),
+            velocity: Vec::with_capacity(2 * rows),
+            force: Vec::with_capacity(2 * rows),
+            stabilizing: Vec::with_capacity(2 * rows),
+            lyapunov: Vec::with_capacity(rows),
+            wheel_current: Vec::with_capacity(3 * rows),
+            obstacle_position: Vec::with_capacity(2 * rows * obstacles),
+            distance: Vec::with_capacity(rows * obstacles),
+        };
+        let command = Command {
+            force: Vector2::zeros(),
+            stabilizing: Vector2::zeros(),
+            lyapunov: f64::NAN,
+        };
+        Self { columns, command }
+    }
+
+    /// The columns.
+    #[must_use]
+    pub fn finish(self) -> Trajectory {
+        self.columns
+    }
+}
+
+impl Recorder<f64> for TrajectoryRecorder {
+    const EVERY_STEP: bool = true;
+
+    fn sample(&mut self, command: &Command<f64>, _running: bool) {
+        self.command = *command;
+    }
+
+    fn end(
+        &mut self,
+        time: f64,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
+        currents: &[f64; 3],
+        bodies: impl FnOnce() -> Vec<Body>,
+    ) {
+        let command = self.command;
+        self.row(time, position, velocity, currents, &command, &bodies());
+    }
+
+    fn row(
+        &mut self,
+        time: f64,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
+        currents: &[f64; 3],
+        command: &Command<f64>,
+        bodies: &[Body],
+    ) {
+        let columns = &mut self.columns;
+        columns.time.push(time);
+        columns.position.extend(position.lane(0));
+        columns.velocity.extend(velocity.lane(0));
+        columns.force.extend(command.force.lane(0));
+        columns.stabilizing.extend(command.stabilizing.lane(0));
+        columns.lyapunov.push(command.lyapunov);
+        columns.wheel_current.extend(currents);
+        for body in bodies {
+            if body.state.present {
+                columns.obstacle_position.extend(body.state.position);
+                columns
+                    .distance
+                    .push(body.offset(position).distance_squared.sqrt());
+            } else {
+                columns.obstacle_position.extend([f64::NAN; 2]);
+                columns.distance.push(f64::NAN);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Mask;
+
+    #[test]
+    fn counts_only_periods_with_two_values() {
+        let mut counter = DescentCounter::<f64>::default();
+        for value in [3.0, 2.0, 2.5, f64::NAN, 1.0, 0.5] {
+            let command = Command {
+                force: Vector2::zeros(),
+                stabilizing: Vector2::zeros(),
+                lyapunov: value,
+            };
+            counter.sample(&command, bool::splat(true));
+        }
+        // 3 -> 2 fell, 2 -> 2.5 grew, 1 -> 0.5 fell.
+        assert_eq!(counter.descent_share(0), 2.0 / 3.0);
+    }
+}

@@ -1,0 +1,308 @@
+//! The time loop: one kernel for one robot and for robots side by side.
+
+use crate::error::{Failure, Result};
+use crate::lanes::{Mask, Real, Vector2};
+use crate::laws::{Law, Situation, Stop};
+use crate::run::Interrupted;
+use crate::run::options::{Clock, Integrator, Options};
+use crate::run::plan::Plan;
+use crate::run::record::Recorder;
+use crate::run::runs::Runs;
+use crate::run::scene::{Scene, body_at};
+use crate::sensing::sampled::{Measured, Sensor};
+use crate::world::geometry::{Body, RobotState};
+use crate::world::scenario::Scenario;
+
+/// Blocks of steps between two questions whether to stop; about a millisecond.
+const BLOCKS_PER_QUESTION: usize = 512;
+
+/// Most steps for which the motion of the obstacles is worked out ahead.
+const STEPS_PER_BLOCK: usize = 64;
+
+/// A lane group with its law and its recorder.
+pub(crate) struct Member<L, C> {
+    /// Drives the robots of the group.
+    pub law: L,
+    /// Listens to their runs.
+    pub recorder: C,
+}
+
+/// Runs lane groups through a scenario, in step, so that they share the motion of the obstacles.
+///
+/// A group's state stays in registers for all steps of a control period. At the end every run is
+/// handed over with its index: its group's state, its lane there and its recorder. A team that is
+/// `led` behaves alike until an obstacle acts: its first group goes ahead for all.
+///
+/// # Errors
+/// An option is out of range, the state of a run became non-finite, or the caller asked to stop.
+#[inline(always)]
+pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
+    scenario: &Scenario,
+    (team, mut led): (&mut [Member<L, C>], bool),
+    plan: &Plan,
+    interrupted: Interrupted<'_>,
+    mut keep: impl FnMut(usize, &Runs<'_, R>, usize, &C),
+) -> Result<()> {
+    let options = &plan.run;
+    let clock = options.clock(scenario)?;
+    let staged = options.integrator == Integrator::Rk4 && !options.hold;
+    let mut scene = Scene::new(
+        scenario,
+        clock.steps_per_sample.min(STEPS_PER_BLOCK),
+        staged,
+    );
+    let mut sensor = Sensor::new(scenario);
+    let mut seen = scene.frames[0].clone();
+    let mut groups: Vec<Runs<'_, R>> = team
+        .iter()
+        .map(|_| Runs::new(scenario, clock, &seen).heeding(Stop(interrupted)))
+        .collect();
+    // Positions between two samples are wanted only for robots that are measured late.
+    let late = groups.first().is_some_and(|runs| runs.past.is_some());
+    let longest = if late { 1 } else { STEPS_PER_BLOCK };
+    let mut until_question = BLOCKS_PER_QUESTION;
+    let mut first = 0;
+    while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
+        let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
+        let steps = until_sample.min(clock.steps - first).min(longest);
+        let samples = until_sample == clock.steps_per_sample;
+        scene.advance(&clock, first);
+        let block = Block {
+            scene: &scene,
+            first,
+            steps,
+        };
+        let measured = sensor
+            .as_mut()
+            .filter(|_| samples)
+            .map(|sensor| sensor.measure(clock.time(first), &scene.frames[0], &mut seen));
+        let known = if sensor.is_some() {
+            &seen
+        } else {
+            &scene.frames[0]
+        };
+        if led && samples && groups[0].feels_any(known) {
+            led = false;
+            follow(&mut groups);
+        }
+        let active = if led { 1 } else { groups.len() };
+        let members = groups.iter_mut().zip(team.iter_mut()).take(active);
+        for (index, (runs, member)) in members.enumerate() {
+            if samples && runs.running.any() {
+                let time = clock.time(first);
+                if plan.shortcuts {
+                    runs.end_hopeless(&scene.frames[0], time);
+                }
+                sample(runs, member, known, measured, &scene.frames[0], time)
+                    .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
+            }
+            if runs.running.any() {
+                run_block(runs, member, &block, options);
+                runs.remember();
+            }
+        }
+        first += steps;
+        until_question -= 1;
+        if L::THINKS || until_question == 0 {
+            until_question = BLOCKS_PER_QUESTION;
+            if interrupted() {
+                return Err(Failure::Interrupted);
+            }
+        }
+    }
+    if led {
+        follow(&mut groups);
+    }
+    for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
+        let time = clock.time(first);
+        runs.check_finite(time)
+            .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
+        runs.end(runs.running, time);
+        member.recorder.end(
+            runs.first_end(),
+            runs.position,
+            runs.velocity,
+            &runs.currents,
+            || {
+                let end = runs.first_end();
+                scenario
+                    .obstacles
+                    .iter()
+                    .map(|placed| body_at(placed, end, &mut 0))
+                    .collect()
+            },
+        );
+        for lane in 0..R::WIDTH {
+            keep(index * R::WIDTH + lane, runs, lane, &member.recorder);
+        }
+    }
+    Ok(())
+}
+
+/// Brings all groups to where the first one is.
+#[cold]
+fn follow<R: Real>(groups: &mut [Runs<'_, R>]) {
+    if let Some((first, others)) = groups.split_first_mut() {
+        for runs in others {
+            runs.clone_from(first);
+        }
+    }
+}
+
+/// Steps that all groups take with the same obstacles.
+struct Block<'a> {
+    scene: &'a Scene<'a>,
+    /// Step at which it begins.
+    first: usize,
+    /// Number of its steps.
+    steps: usize,
+}
+
+/// A sample of the force for the runs of a group.
+#[inline(always)]
+fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
+    runs: &mut Runs<'_, R>,
+    member: &mut Member<L, C>,
+    known: &[Body],
+    measured: Option<Measured>,
+    actual: &[Body],
+    time: f64,
+) -> Result<()> {
+    let clock = runs.clock;
+    runs.check_finite(time)?;
+    runs.rest(time);
+    if !runs.running.any() {
+        return Ok(());
+    }
+    let robot = observe(runs, measured);
+    let command = member.law.command(&Situation {
+        bodies: known,
+        robot,
+        interval: clock.interval,
+        stop: runs.stop,
+    });
+    runs.check_force(command.force, time)?;
+    runs.command = command;
+    runs.acceleration = runs.scenario.robot.acceleration(command.force);
+    runs.push = runs.acceleration * R::splat(clock.step);
+    runs.count_sample();
+    runs.look_ahead(actual);
+    member.recorder.sample(&command, runs.running);
+    Ok(())
+}
+
+/// Steps of a group under the held force.
+#[inline(always)]
+fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
+    runs: &mut Runs<'_, R>,
+    member: &mut Member<L, C>,
+    block: &Block<'_>,
+    options: &Options,
+) {
+    let clock = runs.clock;
+    for step in 0..block.steps {
+        let time = clock.time(block.first + step);
+        record(runs, member, time, &block.scene.frames[step]);
+        let before = runs.position;
+        match options.integrator {
+            Integrator::SemiImplicitEuler => semi_implicit_euler(runs),
+            Integrator::Rk4 if options.hold => rk4_held(runs),
+            Integrator::Rk4 => rk4(runs, &mut member.law, block.scene),
+        }
+        let later = clock.time(block.first + step + 1);
+        runs.account(&block.scene.frames[step + 1], before, later, C::EVERY_STEP);
+        if options.stop_on_contact {
+            runs.stop_at_contact(later);
+        }
+        if !runs.running.any() {
+            break;
+        }
+    }
+}
+
+#[inline(always)]
+fn record<R: Real, L, C: Recorder<R>>(
+    runs: &Runs<'_, R>,
+    member: &mut Member<L, C>,
+    time: f64,
+    bodies: &[Body],
+) {
+    member.recorder.row(
+        time,
+        runs.position,
+        runs.velocity,
+        &runs.currents,
+        &runs.command,
+        bodies,
+    );
+}
+
+/// State of the robots as the controller knows it.
+#[inline(always)]
+fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> RobotState<R> {
+    let (present, velocity) = (runs.position, runs.velocity);
+    let past = runs.past.as_ref();
+    let position = past.map_or(present, |past| past.delayed(present));
+    let robot = RobotState { position, velocity };
+    measured.map_or(robot, |measured| {
+        measured.of_robot(robot, &mut runs.last_measured)
+    })
+}
+
+#[inline(always)]
+fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
+    let robot = &runs.scenario.robot;
+    (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
+    runs.position += runs.velocity * R::splat(runs.clock.step);
+}
+
+/// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
+fn rk4_held<R: Real>(runs: &mut Runs<'_, R>) {
+    let robot = &runs.scenario.robot;
+    let Clock { step, .. } = runs.clock;
+    let at = |share: f64| runs.velocity + runs.acceleration * R::splat(share * step);
+    let middle = robot.limited_velocity(at(0.5)).0;
+    let (last, speed) = robot.limited_velocity(at(1.0));
+    let weighted = runs.velocity + middle * R::splat(4.0) + last;
+    runs.position += weighted * R::splat(step / 6.0);
+    (runs.velocity, runs.speed) = (last, speed);
+}
+
+/// Force of a later stage; out of line, or the kernel would hold four copies of the law.
+#[inline(never)]
+fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) -> Vector2<R> {
+    law.command(situation).force
+}
+
+/// Runge-Kutta of order 4 with the force evaluated in every stage.
+fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_>) {
+    let first = runs.acceleration;
+    let robot = &runs.scenario.robot;
+    let Clock { step, interval, .. } = runs.clock;
+    let stop = runs.stop;
+    let (start, velocity) = (runs.position, runs.velocity);
+    let mut push = |bodies: &[Body], position, velocity| {
+        let state = RobotState { position, velocity };
+        robot.acceleration(stage_force(
+            law,
+            &Situation {
+                bodies,
+                robot: state,
+                interval,
+                stop,
+            },
+        ))
+    };
+    let limited = |velocity| robot.limited_velocity(velocity).0;
+    let (half, whole) = (R::splat(0.5 * step), R::splat(step));
+    let v2 = limited(velocity + first * half);
+    let second = push(&scene.middle, start + velocity * half, v2);
+    let v3 = limited(velocity + second * half);
+    let third = push(&scene.middle, start + v2 * half, v3);
+    let v4 = limited(velocity + third * whole);
+    let fourth = push(&scene.frames[1], start + v3 * whole, v4);
+    let (sixth, two) = (R::splat(step / 6.0), R::splat(2.0));
+    runs.position = start + (velocity + (v2 + v3) * two + v4) * sixth;
+    let gain = (first + (second + third) * two + fourth) * sixth;
+    (runs.velocity, runs.speed) = robot.limited_velocity(velocity + gain);
+}

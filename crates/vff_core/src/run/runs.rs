@@ -1,0 +1,425 @@
+//! State of the robots of one lane group, and what is counted of their runs.
+
+use crate::error::{Failure, Result};
+use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::laws::{Command, Stop};
+use crate::robots::WheelModel;
+use crate::run::options::Clock;
+use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
+use crate::run::record::Recorder;
+use crate::run::scene::body_at;
+use crate::sensing::sampled::Past;
+use crate::world::geometry::Body;
+use crate::world::scenario::Scenario;
+
+/// A robot slower than this is at rest, in m/s.
+const REST_SPEED: f64 = 1e-3;
+
+/// Room for rounding where a distance bound spares work, in m.
+const BOUND_MARGIN: f64 = 1e-6;
+
+/// State of the robots of one lane group.
+#[derive(Clone)]
+pub(crate) struct Runs<'a, R: Real> {
+    pub scenario: &'a Scenario,
+    pub clock: Clock,
+    /// Whether to stop, for a law that thinks long.
+    pub stop: Stop<'a>,
+    pub position: Vector2<R>,
+    pub velocity: Vector2<R>,
+    pub speed: R,
+    /// Motor currents in A of the last step, for a recorder.
+    pub currents: [R; 3],
+    pub running: R::Mask,
+    /// The held force, and what it accelerates with, in m/s^2.
+    pub command: Command<R>,
+    pub acceleration: Vector2<R>,
+    /// Change of velocity in one step of the held force, in m/s.
+    pub push: Vector2<R>,
+    /// Measured position at the sample before, if it was measured with an error.
+    pub last_measured: Option<Vector2<R>>,
+    /// Positions at the last motion steps, if they are measured late.
+    pub past: Option<Past<R>>,
+    goal: Vector2<R>,
+    wheels: WheelModel,
+    wheel_speeds: [R; 3],
+    squared_current: R,
+    path: R,
+    /// Whether any robot can arrive before the next sample.
+    near_goal: bool,
+    /// Whether the least distance to each obstacle can change before the next sample.
+    watched: Vec<bool>,
+    /// Instant from which no obstacle moves any more, in s.
+    all_stand_from: f64,
+    /// Last sample at which each robot was not at rest, in s.
+    moved: R,
+    end_time: R,
+    arrival_time: R,
+    stopped: R::Mask,
+    /// Whether an obstacle was touched that was not touched before.
+    touched: bool,
+    force_evaluations: R,
+    min_distance_squared: Vec<R>,
+    contact_time: Vec<R>,
+    contact_speed: Vec<R>,
+}
+
+impl<'a, R: Real> Runs<'a, R> {
+    pub fn new(scenario: &'a Scenario, clock: Clock, bodies: &[Body]) -> Self {
+        let count = scenario.obstacles.len();
+        let velocity = Vector2::zeros();
+        let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
+        let unset = R::splat(f64::NAN);
+        let mut runs = Self {
+            scenario,
+            clock,
+            stop: Stop::never(),
+            position: Vector2::splat(scenario.start),
+            velocity,
+            speed: R::zero(),
+            currents: [R::zero(); 3],
+            running: R::Mask::splat(true),
+            command: Command {
+                force: Vector2::zeros(),
+                stabilizing: Vector2::zeros(),
+                lyapunov: R::splat(f64::NAN),
+            },
+            acceleration: Vector2::zeros(),
+            push: Vector2::zeros(),
+            last_measured: None,
+            past: Past::new(scenario, clock.step),
+            goal: Vector2::splat(scenario.goal),
+            wheels,
+            wheel_speeds: wheels.speeds(velocity),
+            squared_current: R::zero(),
+            path: R::zero(),
+            near_goal: true,
+            watched: vec![true; count],
+            all_stand_from: scenario.stands_from(),
+            moved: R::zero(),
+            end_time: unset,
+            arrival_time: unset,
+            stopped: R::Mask::none(),
+            touched: false,
+            force_evaluations: R::zero(),
+            min_distance_squared: vec![R::splat(f64::INFINITY); count],
+            contact_time: vec![unset; count],
+            contact_speed: vec![unset; count],
+        };
+        for (index, body) in bodies.iter().enumerate() {
+            runs.watch(index, body, 0.0, runs.running);
+        }
+        runs.remember();
+        runs
+    }
+
+    /// Keeps the present positions for robots that are measured late.
+    pub fn remember(&mut self) {
+        if let Some(past) = &mut self.past {
+            past.push(self.position);
+        }
+    }
+
+    /// The same; a law that thinks long asks whether to stop.
+    pub fn heeding(self, stop: Stop<'a>) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Counts a sample of the force.
+    #[inline(always)]
+    pub fn count_sample(&mut self) {
+        let one = R::splat(1.0);
+        self.force_evaluations += R::select(self.running, one, R::zero());
+    }
+
+    /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
+    /// the currents are looked at afterwards.
+    #[inline(always)]
+    pub fn account(&mut self, bodies: &[Body], before: Vector2<R>, time: f64, record: bool) {
+        let speeds = self.wheels.speeds(self.velocity);
+        let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
+        self.wheel_speeds = speeds;
+        if record {
+            self.currents = currents;
+        }
+        let [first, second, third] = currents;
+        let squared = first * first + second * second + third * third;
+        let way = self.speed * R::splat(self.clock.step);
+        if self.near_goal {
+            let to_goal = self.goal - self.position;
+            let tolerance = self.scenario.rules.arrival_tolerance;
+            let near = to_goal.dot(&to_goal).le(R::splat(tolerance * tolerance));
+            let arrived = self.running & near;
+            if arrived.any() {
+                self.arrive(before, time, arrived, squared, way);
+            }
+        }
+        self.squared_current += R::select(self.running, squared, R::zero());
+        self.path += R::select(self.running, way, R::zero());
+        for (index, body) in bodies.iter().enumerate() {
+            if self.watched[index] {
+                self.watch(index, body, time, self.running);
+            }
+        }
+    }
+
+    /// Least distance and contact of some lanes with an obstacle.
+    #[inline(always)]
+    fn watch(&mut self, index: usize, body: &Body, time: f64, lanes: R::Mask) {
+        if !body.state.present {
+            return;
+        }
+        let squared = body.offset(self.position).distance_squared;
+        let least = &mut self.min_distance_squared[index];
+        *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
+        let reach = self.scenario.obstacles[index].contact_distance;
+        let touching = lanes & squared.le(R::splat(reach * reach));
+        if touching.any() {
+            self.touch(index, time, touching);
+        }
+    }
+
+    /// Finds out what cannot happen before the next sample, so that it need not be looked for:
+    /// nothing moves farther than its largest speed takes it.
+    #[inline(always)]
+    pub fn look_ahead(&mut self, bodies: &[Body]) {
+        let Clock {
+            interval,
+            steps_per_sample,
+            ..
+        } = self.clock;
+        if steps_per_sample == 1 {
+            return;
+        }
+        let own = self.scenario.robot.max_speed;
+        let to_goal = self.goal - self.position;
+        let reach = self.scenario.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
+        let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
+        self.near_goal = (near & self.running).any();
+        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+            let body = &bodies[index];
+            self.watched[index] = match placed.speed_bound {
+                Some(speed) if body.state.present => {
+                    let way = R::splat((own + speed) * interval + BOUND_MARGIN);
+                    let least = self.min_distance_squared[index].sqrt() + way;
+                    let squared = body.offset(self.position).distance_squared;
+                    (squared.lt(least * least) & self.running).any()
+                }
+                _ => true,
+            };
+        }
+    }
+
+    #[cold]
+    fn touch(&mut self, index: usize, time: f64, touching: R::Mask) {
+        for lane in 0..R::WIDTH {
+            if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
+                let speed = self.speed.lane(lane);
+                self.contact_time[index] = self.contact_time[index].replace(lane, time);
+                self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
+                self.touched = true;
+            }
+        }
+    }
+
+    /// Ends the runs of lanes that entered the circle around the goal in this step, at the
+    /// instant of entry, linear inside the step.
+    #[cold]
+    #[inline(never)]
+    fn arrive(&mut self, before: Vector2<R>, time: f64, arrived: R::Mask, squared: R, way: R) {
+        let tolerance = self.scenario.rules.arrival_tolerance;
+        let after = self.position;
+        let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
+        let (from, to) = (length(self.goal - before), length(self.goal - after));
+        let share = (from - R::splat(tolerance)) / (from - to);
+        let entry = before + (after - before) * share;
+        self.position = Vector2::select(arrived, entry, after);
+        self.squared_current += R::select(arrived, squared * share, R::zero());
+        self.path += R::select(arrived, way * share, R::zero());
+        for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
+            let instant = (time - self.clock.step) + share.lane(lane) * self.clock.step;
+            self.arrival_time = self.arrival_time.replace(lane, instant);
+            self.end_time = self.end_time.replace(lane, instant);
+            // Only this lane is watched at its own instant.
+            let others = (0..R::WIDTH).filter(|other| *other != lane);
+            let only = others.fold(R::Mask::splat(true), Mask::without);
+            for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+                self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
+            }
+        }
+        self.running = self.running & !arrived;
+    }
+
+    /// Ends the runs of lanes that have been at rest for too long.
+    #[inline(always)]
+    pub fn rest(&mut self, time: f64) {
+        let still = self.speed.lt(R::splat(REST_SPEED));
+        self.moved = R::select(still, self.moved, R::splat(time));
+        let long = R::splat(self.scenario.rules.rest_time).le(R::splat(time) - self.moved);
+        let ended = self.running & long;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
+    /// Whether any robot is in the active region of an obstacle.
+    #[inline(always)]
+    pub fn feels_any(&self, bodies: &[Body]) -> bool {
+        bodies.iter().any(|body| {
+            let reach = body.regions.active_radius;
+            let squared = body.offset(self.position).distance_squared;
+            body.state.present && squared.lt(R::splat(reach * reach)).any()
+        })
+    }
+
+    /// Ends the runs of lanes that stand in a critical region for good: obstacle and robot at
+    /// rest, and nothing else that moves.
+    #[inline(always)]
+    pub fn end_hopeless(&mut self, bodies: &[Body], time: f64) {
+        let still = self.running & self.speed.lt(R::splat(REST_SPEED));
+        if still.any() && time >= self.all_stand_from {
+            self.end_caught(bodies, time, still);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn end_caught(&mut self, bodies: &[Body], time: f64, still: R::Mask) {
+        // Braked within one control period, it goes no farther than that.
+        let way = self.speed * R::splat(self.clock.interval) + R::splat(BOUND_MARGIN);
+        let mut caught = R::Mask::none();
+        for body in bodies {
+            let distance = body.offset(self.position).distance_squared.sqrt();
+            caught = caught | (distance + way).lt(R::splat(body.regions.critical_radius));
+        }
+        let ended = still & caught;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of lanes that have touched an obstacle.
+    #[inline(always)]
+    pub fn stop_at_contact(&mut self, time: f64) {
+        if self.touched {
+            self.touched = false;
+            self.stop_touched(time);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn stop_touched(&mut self, time: f64) {
+        let mut touched = R::Mask::none();
+        for contact in &self.contact_time {
+            touched = touched | contact.le(R::splat(time));
+        }
+        let ended = self.running & touched;
+        if ended.any() {
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of some lanes.
+    pub fn end(&mut self, lanes: R::Mask, time: f64) {
+        self.end_time = R::select(lanes, R::splat(time), self.end_time);
+        self.running = self.running & !lanes;
+    }
+
+    /// When the run of the first lane ended, in s.
+    pub fn first_end(&self) -> f64 {
+        self.end_time.lane(0)
+    }
+
+    #[inline(always)]
+    pub fn check_finite(&self, time: f64) -> Result<()> {
+        let limit = R::splat(f64::INFINITY);
+        let finite = |vector: Vector2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
+        self.check(finite(self.position) & finite(self.velocity), time)
+    }
+
+    /// A force whose magnitude overflows has no direction left.
+    #[inline(always)]
+    pub fn check_force(&self, force: Vector2<R>, time: f64) -> Result<()> {
+        let sound = force.dot(&force).lt(R::splat(f64::INFINITY));
+        self.check(sound, time)
+    }
+
+    #[inline(always)]
+    fn check(&self, sound: R::Mask, time: f64) -> Result<()> {
+        let lost = self.running & !sound;
+        if lost.any() {
+            let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
+            return Err(Failure::NonFinite { run, time });
+        }
+        Ok(())
+    }
+
+    /// Least distance `d` to an obstacle in m; infinite if it was never present.
+    pub fn min_distance(&self, obstacle: usize, lane: usize) -> f64 {
+        self.min_distance_squared[obstacle].lane(lane).sqrt()
+    }
+
+    /// First contact with an obstacle.
+    fn contact(&self, obstacle: usize, lane: usize) -> Option<Contact> {
+        let time = self.contact_time[obstacle].lane(lane);
+        let speed = self.contact_speed[obstacle].lane(lane);
+        (!time.is_nan()).then_some(Contact { time, speed })
+    }
+
+    /// What is left of the run of a lane, whatever the number of obstacles.
+    pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
+        let mut contacts = [0, 0];
+        for obstacle in 0..self.scenario.obstacle_count() {
+            if let Some(touch) = self.contact(obstacle, lane) {
+                contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+            }
+        }
+        let arrival_time = self.arrival_time.lane(lane);
+        let outcome = if contacts != [0, 0] {
+            Outcome::Collided
+        } else if !arrival_time.is_nan() {
+            Outcome::Arrived
+        } else if self.stopped.lane(lane) {
+            Outcome::Stopped
+        } else {
+            Outcome::TimedOut
+        };
+        RunTotals {
+            outcome,
+            end_time: self.end_time.lane(lane),
+            arrival_time,
+            energy: self.squared_current.lane(lane) * self.wheels.loss_per_square(),
+            path_length: self.path.lane(lane),
+            contacts,
+            descent_share: recorder.descent_share(lane),
+            force_evaluations: count_of(self.force_evaluations.lane(lane)),
+        }
+    }
+
+    /// Everything that is left of the run of a lane.
+    pub fn summary(&self, lane: usize, recorder: &impl Recorder<R>) -> RunSummary {
+        let totals = self.totals(lane, recorder);
+        let obstacles = 0..self.scenario.obstacle_count();
+        let distance = |obstacle| self.min_distance(obstacle, lane);
+        let contact = |obstacle| self.contact(obstacle, lane);
+        RunSummary {
+            outcome: totals.outcome,
+            end_time: totals.end_time,
+            arrival_time: (!totals.arrival_time.is_nan()).then_some(totals.arrival_time),
+            energy: totals.energy,
+            path_length: totals.path_length,
+            min_distance: obstacles.clone().map(distance).collect(),
+            contact: obstacles.map(contact).collect(),
+            descent_share: totals.descent_share,
+            force_evaluations: totals.force_evaluations,
+        }
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a counted number of samples
+fn count_of(whole: f64) -> u64 {
+    whole as u64
+}

@@ -1,0 +1,168 @@
+//! Several sensors on one robot.
+
+use std::ops::Range;
+
+use crate::error::{Failure, Given, Result, finite_pair, positive};
+use crate::sensing::sonar::beam::{Beam, Pose};
+use crate::sensing::sonar::ranging::{Normals, Ranging};
+use crate::sensing::sonar::shapes::Shape;
+
+/// Which sensors fire in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Firing {
+    /// All of them, and none hears the others.
+    #[default]
+    Together,
+    /// All of them, and each hears the echoes of the others.
+    TogetherWithCrossTalk,
+    /// One after the other, the first one in step 0.
+    InTurn,
+}
+
+impl Firing {
+    /// Indices of the sensors that fire in a step.
+    #[inline]
+    #[must_use]
+    pub fn fired(self, count: usize, step: usize) -> Range<usize> {
+        match self {
+            Self::Together | Self::TogetherWithCrossTalk => 0..count,
+            Self::InTurn => step % count..step % count + 1,
+        }
+    }
+}
+
+/// Place of a sensor on the robot, x forward and y left: position in m, unit vector of the axis.
+pub type Mount = Pose;
+
+/// Equal sensors on one robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SonarArray {
+    mounts: Vec<Mount>,
+    beam: Beam,
+    ranging: Ranging,
+    firing: Firing,
+}
+
+impl SonarArray {
+    /// Sensors at their places.
+    ///
+    /// # Errors
+    /// There is no sensor, or a place or a limit cannot be.
+    pub fn new(mounts: Vec<Mount>, beam: Beam, ranging: Ranging, firing: Firing) -> Result<Self> {
+        if mounts.is_empty() {
+            let given = Given::Count(0);
+            let rule = "hold at least one sensor";
+            return Err(Failure::invalid("sensors", rule, given));
+        }
+        for (index, mount) in mounts.iter().enumerate() {
+            let owner = format!("sensors[{index}]");
+            finite_pair("position", mount.position)
+                .and_then(|_| finite_pair("direction", mount.direction))
+                .and_then(|[x, y]| positive("length of direction", x.hypot(y)))
+                .map_err(|error| error.within(&owner))?;
+        }
+        Ok(Self {
+            mounts,
+            beam,
+            ranging: ranging.checked()?,
+            firing,
+        })
+    }
+
+    /// Places of the sensors.
+    #[must_use]
+    pub fn mounts(&self) -> &[Mount] {
+        &self.mounts
+    }
+
+    /// Beam of each sensor.
+    #[must_use]
+    pub fn beam(&self) -> &Beam {
+        &self.beam
+    }
+
+    /// Limits and noise of each sensor.
+    #[must_use]
+    pub fn ranging(&self) -> &Ranging {
+        &self.ranging
+    }
+
+    /// Reading of one sensor without noise, in m; infinite without echo.
+    #[inline]
+    #[must_use]
+    pub fn echo(&self, body: &Pose, sensor: usize, shapes: &[Shape]) -> f64 {
+        let Some(mount) = self.mounts.get(sensor) else {
+            return f64::INFINITY;
+        };
+        let pose = body.carrying(mount);
+        let reach = self.ranging.reach();
+        let mut distance = self.beam.nearest(&pose, shapes, reach);
+        if self.firing == Firing::TogetherWithCrossTalk {
+            for (index, other) in self.mounts.iter().enumerate() {
+                if index != sensor {
+                    distance = distance.min(self.overheard(&pose, &body.carrying(other), shapes));
+                }
+            }
+        }
+        self.ranging.reading(distance)
+    }
+
+    /// New readings of the sensors that fire in a step, in m, infinite without echo; those of the
+    /// others stay. `noise` is asked once for every echo.
+    #[inline]
+    pub fn measure(
+        &self,
+        body: &Pose,
+        shapes: &[Shape],
+        step: usize,
+        readings: &mut [f64],
+        noise: &mut Normals,
+    ) {
+        let count = self.mounts.len().min(readings.len());
+        for sensor in self.firing.fired(count, step) {
+            let mut reading = self.echo(body, sensor, shapes);
+            if reading.is_finite() && self.ranging.noise > 0.0 {
+                reading += self.ranging.noise * noise.draw();
+            }
+            readings[sensor] = reading;
+        }
+    }
+
+    /// Half of the way from another sensor to a point of its beam and on to this one: the
+    /// shortest of those that this one can see.
+    fn overheard(&self, listener: &Pose, speaker: &Pose, shapes: &[Shape]) -> f64 {
+        let limit = (0.5 * self.beam.width()).cos();
+        let mut least = f64::INFINITY;
+        for ray in self.beam.rays() {
+            let direction = speaker.outward(*ray);
+            let out = cast(shapes, speaker.position, direction);
+            if !out.is_finite() {
+                continue;
+            }
+            let back = [
+                speaker.position[0] + out * direction[0] - listener.position[0],
+                speaker.position[1] + out * direction[1] - listener.position[1],
+            ];
+            let way = back[0].hypot(back[1]);
+            let unit = [back[0] / way, back[1] / way];
+            let seen = way > 0.0
+                && listener.inward(unit)[0] >= limit
+                && cast(shapes, listener.position, unit) >= way * (1.0 - BEHIND);
+            if seen {
+                least = least.min(0.5 * (out + way));
+            }
+        }
+        least
+    }
+}
+
+/// A point that is farther than its surface by this share is hidden; rounding stays far below.
+const BEHIND: f64 = 1e-9;
+
+/// Distance along a ray to the first shape, in m.
+fn cast(shapes: &[Shape], from: [f64; 2], direction: [f64; 2]) -> f64 {
+    shapes
+        .iter()
+        .map(|shape| shape.cast(from, direction))
+        .fold(f64::INFINITY, f64::min)
+}

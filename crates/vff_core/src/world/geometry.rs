@@ -1,0 +1,230 @@
+//! One obstacle as the force field sees it from the robot.
+
+use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::world::motion::BodyState;
+use crate::world::obstacle::{Regions, Shape};
+use numeric::angle::unsigned_angle;
+
+/// The robot and its goal are collinear with the obstacle when `pi - |Phi|` is below this, in
+/// rad; a plain equality would make results depend on the rotation of the scene.
+pub const COLLINEAR_ANGLE: f64 = 1e-9;
+
+/// An obstacle closer to the goal than this has no bearing to it, in m.
+const ON_THE_GOAL: f64 = 1e-9;
+
+/// State of the robots, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotState<R> {
+    /// Position in m.
+    pub position: Vector2<R>,
+    /// Velocity in m/s.
+    pub velocity: Vector2<R>,
+}
+
+/// An obstacle at one instant, the same for every lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// Outline.
+    pub shape: Shape,
+    /// Region radii.
+    pub regions: Regions,
+    /// State as the controller knows it.
+    pub state: BodyState,
+}
+
+/// Where the robot is relative to an obstacle: enough to tell its region.
+#[derive(Clone, Copy, Debug)]
+pub struct Offset<R> {
+    /// `D`: from the obstacle (centre of a disc, nearest contour point) to the robot, in m.
+    pub vector: Vector2<R>,
+    /// `d^2` in m^2.
+    pub distance_squared: R,
+}
+
+impl Body {
+    /// Offset of a position from this obstacle.
+    #[inline(always)]
+    pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R> {
+        let from_center = position - Vector2::splat(self.state.position);
+        let vector = match self.shape {
+            Shape::Disc { .. } => from_center,
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => {
+                let local = into_axes(from_center, axis);
+                let beyond = Vector2::new(
+                    local.x - clamped(local.x, half_length),
+                    local.y - clamped(local.y, half_width),
+                );
+                out_of_axes(beyond, axis)
+            }
+        };
+        Offset {
+            vector,
+            distance_squared: vector.dot(&vector),
+        }
+    }
+}
+
+#[inline(always)]
+fn clamped<R: Real>(value: R, limit: f64) -> R {
+    value.max(R::splat(-limit)).min(R::splat(limit))
+}
+
+#[inline(always)]
+fn into_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
+    let axis = Vector2::splat(axis);
+    Vector2::new(axis.dot(&vector), axis.perp(&vector))
+}
+
+#[inline(always)]
+fn out_of_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
+    let axis = Vector2::splat(axis);
+    axis * vector.x + axis.left_normal() * vector.y
+}
+
+/// Everything the forces of one obstacle depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach<R: Real> {
+    /// Lanes inside the active region.
+    pub active: R::Mask,
+    /// `u = D/d`.
+    pub outward: Vector2<R>,
+    /// `W`: from the obstacle to the goal, in m; zero for an obstacle on the goal.
+    pub to_goal: Vector2<R>,
+    /// `D`, in m.
+    pub offset: Vector2<R>,
+    /// `d` in m.
+    pub distance: R,
+    /// `ddot = u.(V - V_o)` in m/s.
+    pub range_rate: R,
+    /// `betadot = t.(V - V_o)/d` in rad/s, `t` left of `u`.
+    pub bearing_rate: R,
+    /// `alphadot = t_W.(-V_o)/|W|` in rad/s.
+    pub goal_bearing_rate: R,
+    /// `|Phi|`, `Phi = alpha - beta` wrapped, in rad.
+    pub angle: R,
+    /// sign of `Phi`: +1 where the shortest turn to the goal is counter-clockwise.
+    pub shortest_side: R,
+    /// Lanes where `pi - |Phi|` vanishes.
+    pub collinear: R::Mask,
+    /// `a = r2 - d` in m.
+    pub depth: R,
+    /// `c = d - r3` in m.
+    pub margin: R,
+}
+
+impl<R: Real> Approach<R> {
+    /// `Phidot = alphadot - betadot` in rad/s.
+    #[inline(always)]
+    pub fn angle_rate(&self) -> R {
+        self.goal_bearing_rate - self.bearing_rate
+    }
+
+    /// Seen by the robots from an obstacle. Values are meaningless outside the active region.
+    #[inline(always)]
+    pub fn new(
+        body: &Body,
+        offset: Offset<R>,
+        active: R::Mask,
+        robot: &RobotState<R>,
+        goal: Vector2<R>,
+    ) -> Self {
+        let distance = offset.distance_squared.sqrt();
+        let inverse = R::splat(1.0) / distance;
+        let outward = offset.vector * inverse;
+        // The nearest point of a rectangle's face slides along with the robot.
+        let (point_velocity, sliding) = point_velocity(body, robot);
+        let relative = robot.velocity - point_velocity;
+        let bearing_rate = outward.perp(&relative) * inverse;
+        // For a disc straight from its centre, so that one on the goal gives exactly zero.
+        let to_goal = match body.shape {
+            Shape::Disc { .. } => goal - Vector2::splat(body.state.position),
+            Shape::Rectangle { .. } => goal - (robot.position - offset.vector),
+        };
+        let away = to_goal
+            .dot(&to_goal)
+            .gt(R::splat(ON_THE_GOAL * ON_THE_GOAL));
+        let aim = Vector2::select(away, to_goal, Vector2::zeros());
+        let (cross, dot) = (offset.vector.perp(&aim), offset.vector.dot(&aim));
+        let behind = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
+        Self {
+            active,
+            outward,
+            to_goal: aim,
+            offset: offset.vector,
+            distance,
+            range_rate: outward.dot(&relative),
+            bearing_rate: R::select(sliding, R::zero(), bearing_rate),
+            goal_bearing_rate: goal_bearing_rate(body, aim, point_velocity),
+            angle: unsigned_angle(cross, dot),
+            shortest_side: cross.sign(),
+            collinear: behind,
+            depth: R::splat(body.regions.active_radius) - distance,
+            margin: distance - R::splat(body.regions.critical_radius),
+        }
+    }
+}
+
+/// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
+#[inline(always)]
+fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vector2<R>, point_velocity: Vector2<R>) -> R {
+    if matches!(body.shape, Shape::Disc { .. }) && body.state.velocity == [0.0; 2] {
+        return R::zero();
+    }
+    let length_squared = to_goal.dot(&to_goal);
+    let rate = -to_goal.perp(&point_velocity) / length_squared;
+    R::select(length_squared.gt(R::zero()), rate, R::zero())
+}
+
+/// Velocity of the point that distances are measured from, and where it slides along a face.
+#[inline(always)]
+fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R::Mask) {
+    match body.shape {
+        Shape::Disc { .. } => (Vector2::splat(body.state.velocity), R::Mask::none()),
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
+            let local = into_axes(robot.position - Vector2::splat(body.state.position), axis);
+            let velocity = into_axes(robot.velocity, axis);
+            let beside = local.x.abs().le(R::splat(half_length));
+            let abreast = local.y.abs().le(R::splat(half_width));
+            let slide = Vector2::new(
+                R::select(beside, velocity.x, R::zero()),
+                R::select(abreast, velocity.y, R::zero()),
+            );
+            (out_of_axes(slide, axis), beside | abreast)
+        }
+    }
+}
+
+/// Lanes whose segment from robot to goal meets the rectangle, and the cross product of the
+/// directions from the centroid to robot and goal, with their dot product.
+#[inline(always)]
+pub fn separation<R: Real>(
+    body: &Body,
+    half: [f64; 2],
+    axis: [f64; 2],
+    position: Vector2<R>,
+    goal: Vector2<R>,
+) -> (R::Mask, R, R) {
+    let center = Vector2::splat(body.state.position);
+    let from = into_axes(position - center, axis);
+    let to = into_axes(goal - center, axis);
+    // Separating axes of a segment (midpoint m, half vector h) and a box (Ericson 2005, 5.3.3).
+    let two = R::splat(0.5);
+    let middle = (from + to) * two;
+    let reach = (to - from) * two;
+    let (half_x, half_y) = (R::splat(half[0]), R::splat(half[1]));
+    let overlaps = middle.x.abs().le(half_x + reach.x.abs())
+        & middle.y.abs().le(half_y + reach.y.abs())
+        & middle
+            .perp(&reach)
+            .abs()
+            .le(half_x * reach.y.abs() + half_y * reach.x.abs());
+    (overlaps, from.perp(&to), from.dot(&to))
+}

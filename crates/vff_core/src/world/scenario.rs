@@ -1,0 +1,387 @@
+//! A scenario: robot, start, goal, obstacles and the rules of a run.
+
+use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
+use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
+use crate::sensing::measurement::Measurement;
+use crate::world::obstacle::{Obstacle, Regions, Shape};
+use crate::world::region::{self, RobotLimits, Sensing};
+
+/// Rounding of a critical radius that was computed as the contact distance, in m.
+const ROUNDING: f64 = 1e-9;
+
+/// An obstacle whose regions are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedObstacle {
+    /// Shape and motion.
+    pub obstacle: Obstacle,
+    /// Region radii.
+    pub regions: Regions,
+    /// Distance `d` at which robot and obstacle touch, in m.
+    pub contact_distance: f64,
+    /// Whether it never moves.
+    pub stationary: bool,
+    /// Largest speed at any time in m/s, `None` if there is none.
+    pub speed_bound: Option<f64>,
+}
+
+/// The rules of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Control period `T_s` in s.
+    pub control_period: f64,
+    /// Longest simulated time in s.
+    pub time_limit: f64,
+    /// Radius of the circle around the goal that counts as arrival, in m.
+    pub arrival_tolerance: f64,
+    /// Time at rest after which the robot has stopped for good, in s.
+    pub rest_time: f64,
+    /// Heading of the robot in rad.
+    pub heading: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            control_period: 0.06,
+            time_limit: 60.0,
+            arrival_tolerance: 0.12,
+            rest_time: 5.0,
+            heading: 0.0,
+        }
+    }
+}
+
+/// What is simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// What a law drives: the robot, or the one that a two-wheel robot follows.
+    pub(crate) robot: HolonomicRobot,
+    pub(crate) differential: Option<DifferentialDriveRobot>,
+    pub(crate) start: [f64; 2],
+    pub(crate) goal: [f64; 2],
+    pub(crate) obstacles: Vec<PlacedObstacle>,
+    pub(crate) rules: Rules,
+    pub(crate) measurement: Option<Measurement>,
+    pub(crate) seed: u64,
+}
+
+impl Scenario {
+    /// Checks everything and computes the regions that were not given.
+    ///
+    /// # Errors
+    /// A value is out of range, start and goal are within the arrival tolerance, the robot would
+    /// start in contact with an obstacle, the goal lies in the active region of a stationary one, or
+    /// a critical radius is below the distance at which robot and obstacle touch.
+    pub fn new(
+        robot: HolonomicRobot,
+        start: [f64; 2],
+        goal: [f64; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
+        robot.checked()?;
+        Self::placed(robot, &robot.limits(), [start, goal], obstacles, rules)
+    }
+
+    /// The same for a two-wheel robot: its regions include the time that it needs to turn, and a
+    /// law drives the robot that it follows.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_differential(
+        robot: DifferentialDriveRobot,
+        start: [f64; 2],
+        goal: [f64; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
+        let limits = robot.checked()?.limits();
+        let scenario = Self::placed(robot.reference(), &limits, [start, goal], obstacles, rules)?;
+        let differential = Some(robot);
+        Ok(Self {
+            differential,
+            ..scenario
+        })
+    }
+
+    fn placed(
+        robot: HolonomicRobot,
+        limits: &RobotLimits,
+        [start, goal]: [[f64; 2]; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+    ) -> Result<Self> {
+        finite_pair("start", start)?;
+        finite_pair("goal", goal)?;
+        positive("control_period", rules.control_period)?;
+        positive("time_limit", rules.time_limit)?;
+        positive("arrival_tolerance", rules.arrival_tolerance)?;
+        positive("rest_time", rules.rest_time)?;
+        finite("heading", rules.heading)?;
+        if (start[0] - goal[0]).hypot(start[1] - goal[1]) <= rules.arrival_tolerance {
+            let rule = "be farther from the start than the arrival tolerance";
+            return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
+        }
+        let sensing = Sensing::default();
+        let obstacles = place_all(limits, [start, goal], obstacles, &rules, &sensing)?;
+        Ok(Self {
+            robot,
+            differential: None,
+            start,
+            goal,
+            obstacles,
+            rules,
+            measurement: None,
+            seed: 0,
+        })
+    }
+
+    /// The same scenario with noisy or late measurements drawn from a seed. Regions that were not
+    /// given are sized for them.
+    ///
+    /// # Errors
+    /// The goal lies in the active region of a stationary obstacle as it is sized then.
+    pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Result<Self> {
+        if measurement != self.measurement {
+            let (robot, rules) = (self.limits(), self.rules);
+            let sensing = Sensing {
+                measurement,
+                ..Sensing::default()
+            };
+            let obstacles = self.obstacles.into_iter().map(|placed| placed.obstacle);
+            let ends = [self.start, self.goal];
+            self.obstacles = place_all(&robot, ends, obstacles, &rules, &sensing)?;
+        }
+        self.measurement = measurement;
+        self.seed = seed;
+        Ok(self)
+    }
+
+    /// Limits that size the regions.
+    fn limits(&self) -> RobotLimits {
+        let holonomic = self.robot.limits();
+        self.differential.map_or(holonomic, |robot| robot.limits())
+    }
+
+    /// The same scenario with other noise.
+    #[must_use]
+    pub fn reseeded(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// The same way without obstacles and without noise: what the nominal run uses.
+    #[must_use]
+    pub fn nominal(&self) -> Self {
+        Self {
+            obstacles: Vec::new(),
+            measurement: None,
+            seed: 0,
+            ..self.clone()
+        }
+    }
+
+    /// Number of obstacles.
+    #[must_use]
+    pub fn obstacle_count(&self) -> usize {
+        self.obstacles.len()
+    }
+
+    /// The obstacles with their regions.
+    #[must_use]
+    pub fn obstacles(&self) -> &[PlacedObstacle] {
+        &self.obstacles
+    }
+
+    /// Instant from which no obstacle moves any more, in s; infinite if there is none.
+    #[must_use]
+    pub fn stands_from(&self) -> f64 {
+        let last =
+            |time: f64, placed: &PlacedObstacle| time.max(placed.obstacle.motion.stands_from());
+        self.obstacles.iter().fold(0.0, last)
+    }
+
+    /// Control period in s.
+    #[must_use]
+    pub fn control_period(&self) -> f64 {
+        self.rules.control_period
+    }
+
+    /// Goal in m.
+    #[must_use]
+    pub fn goal(&self) -> [f64; 2] {
+        self.goal
+    }
+
+    /// Heading of the robot in rad.
+    #[must_use]
+    pub fn heading(&self) -> f64 {
+        self.rules.heading
+    }
+
+    /// The two-wheel robot, if it is one.
+    #[must_use]
+    pub fn differential(&self) -> Option<&DifferentialDriveRobot> {
+        self.differential.as_ref()
+    }
+
+    /// Passes a scenario whose robot moves as a point mass.
+    ///
+    /// # Errors
+    /// The robot has two wheels.
+    pub(crate) fn of_point_mass(&self) -> Result<()> {
+        if self.differential.is_none() {
+            return Ok(());
+        }
+        let rule = "be a HolonomicRobot here, where robots move as point masses";
+        let given = Given::Found("a DifferentialDriveRobot".into());
+        Err(Failure::invalid("robot", rule, given))
+    }
+
+    /// Mass of the robot in kg.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.robot.mass
+    }
+}
+
+fn place_all(
+    robot: &RobotLimits,
+    [start, goal]: [[f64; 2]; 2],
+    obstacles: impl IntoIterator<Item = Obstacle>,
+    rules: &Rules,
+    sensing: &Sensing,
+) -> Result<Vec<PlacedObstacle>> {
+    let obstacles = obstacles.into_iter().enumerate();
+    let obstacles = obstacles
+        .map(|(index, obstacle)| {
+            let placed = place(robot, obstacle, rules.control_period, sensing)
+                .map_err(|error| error.within(&format!("obstacles[{index}]")))?;
+            check_critical_region(&placed, index, robot, rules, sensing)?;
+            Ok(placed)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    for (index, placed) in obstacles.iter().enumerate() {
+        check_ends(placed, index, start, goal)?;
+    }
+    Ok(obstacles)
+}
+
+fn place(
+    robot: &RobotLimits,
+    obstacle: Obstacle,
+    control_period: f64,
+    sensing: &Sensing,
+) -> Result<PlacedObstacle> {
+    let limits = obstacle.limits;
+    let given = limits.critical_radius.zip(limits.active_radius);
+    let regions = if let Some((critical_radius, active_radius)) = given {
+        Regions {
+            critical_radius,
+            active_radius,
+        }
+    } else {
+        let computed = region::radii(robot, &obstacle, control_period, None, sensing)?;
+        Regions {
+            critical_radius: limits.critical_radius.unwrap_or(computed.critical_radius),
+            active_radius: limits.active_radius.unwrap_or(computed.active_radius),
+        }
+    };
+    if regions.active_radius <= regions.critical_radius {
+        let rule = format!(
+            "be larger than critical_radius, {} m",
+            metres(regions.critical_radius)
+        );
+        let given = Given::Number(regions.active_radius);
+        return Err(Failure::invalid("active_radius", rule, given));
+    }
+    let contact_distance = robot.radius + obstacle.shape.inner_radius();
+    if regions.active_radius <= contact_distance {
+        let rule = format!(
+            "be larger than the radii of robot and obstacle together, {} m",
+            metres(contact_distance)
+        );
+        let given = Given::Number(regions.active_radius);
+        return Err(Failure::invalid("active_radius", rule, given));
+    }
+    let stationary = obstacle.motion.is_stationary();
+    let speed_bound = obstacle.motion.speed_bound();
+    Ok(PlacedObstacle {
+        obstacle,
+        regions,
+        contact_distance,
+        stationary,
+        speed_bound,
+    })
+}
+
+/// Refuses a critical region in which robot and obstacle touch before it is entered.
+fn check_critical_region(
+    placed: &PlacedObstacle,
+    index: usize,
+    robot: &RobotLimits,
+    rules: &Rules,
+    sensing: &Sensing,
+) -> Result<()> {
+    let critical = placed.regions.critical_radius;
+    if critical >= placed.contact_distance - ROUNDING {
+        return Ok(());
+    }
+    let owner = format!("obstacles[{index}]");
+    let safe = region::radii(robot, &placed.obstacle, rules.control_period, None, sensing)?;
+    let rule = format!(
+        "be at least {} m, where the robot (radius {} m) touches {owner}",
+        metres(placed.contact_distance),
+        robot.radius,
+    );
+    let name = format!("{owner}.critical_radius");
+    Err(
+        Failure::invalid(name, rule, Given::Number(critical)).mended_by(format!(
+            "leave it out, or give the {} m of region_radii or more, in which the robot can stop",
+            metres(safe.critical_radius)
+        )),
+    )
+}
+
+/// A length in m as a message shows it: rounded up to 0.1 mm, so that it does as a least value.
+fn metres(length: f64) -> f64 {
+    (length * 1e4 - 1e-4).ceil() / 1e4
+}
+
+fn check_ends(
+    placed: &PlacedObstacle,
+    index: usize,
+    start: [f64; 2],
+    goal: [f64; 2],
+) -> Result<()> {
+    let state = placed.obstacle.motion.at(0.0, &mut 0);
+    let side = match placed.obstacle.shape {
+        Shape::Disc { .. } => "center",
+        Shape::Rectangle { .. } => "contour",
+    };
+    let refuse = |name: &str, rule: &str, given, distance: f64, least: f64| {
+        let rule = format!(
+            "{rule}: at least {} m from the {side} of obstacles[{index}]",
+            metres(least)
+        );
+        let away = metres(least - distance).max(1e-4);
+        let near = (distance * 1e4).round() / 1e4;
+        Failure::invalid(name, rule, Given::Pair(given))
+            .mended_by(format!("it is {near} m away, move it by {away} m or more"))
+    };
+    let distance = placed.obstacle.distance(state.position, start);
+    if state.present && distance <= placed.contact_distance {
+        let (rule, least) = (
+            "not be in contact with an obstacle",
+            placed.contact_distance,
+        );
+        return Err(refuse("start", rule, start, distance, least));
+    }
+    let distance = placed.obstacle.distance(state.position, goal);
+    let least = placed.regions.active_radius;
+    if placed.stationary && distance < least {
+        let rule = "lie outside the active region of every stationary obstacle";
+        return Err(refuse("goal", rule, goal, distance, least));
+    }
+    Ok(())
+}

@@ -1,0 +1,236 @@
+//! Whole runs of the follower.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use numeric::parallel::Work;
+use vff_core::error::Failure;
+use vff_core::laws::impedance::{BankOptions, Form, Rotation};
+use vff_core::run::follower::{
+    Drive, FixNoise, Follower, Layouts, Leader, Mover, Scene, Setting, Settings, record, run_batch,
+    touching_layouts,
+};
+use vff_core::sensing::sonar::{Pose, Rectangle, Shape};
+
+const LAYOUTS: usize = 150;
+
+fn quiet(threads: usize) -> Work<'static> {
+    Work {
+        threads: Some(threads),
+        interrupted: &|| false,
+        progress: &|_| (),
+    }
+}
+
+fn with_form(form: Form) -> Settings {
+    let mut settings = Settings::default();
+    settings.impedance.form = form;
+    settings
+}
+
+fn collisions(settings: &Settings, layouts: &Layouts, seeds: &[u64]) -> f64 {
+    let outcomes = run_batch(settings, layouts, seeds, quiet(2)).unwrap();
+    let touched = outcomes
+        .iter()
+        .filter(|each| each.contact.is_some())
+        .count();
+    touched as f64 / seeds.len() as f64
+}
+
+fn dynamic() -> (Layouts, Vec<u64>) {
+    let layouts = Layouts::of(Setting::OneDynamic);
+    let seeds = touching_layouts(&Settings::default(), &layouts, 0, LAYOUTS, quiet(2)).unwrap();
+    (layouts, seeds)
+}
+
+#[test]
+fn deviations_are_those_of_the_table_and_bilinear_between() {
+    let noise = FixNoise::default();
+    let degrees = |bearing: f64| bearing.to_radians();
+    assert_eq!(noise.at(3.0, 0.0), [0.09, degrees(0.15)]);
+    assert_eq!(noise.at(2.0, -degrees(60.0)), [0.13, degrees(0.54)]);
+    let [range, bearing] = noise.at(1.5, degrees(15.0));
+    assert!((range - (0.02 + 0.03 + 0.05 + 0.08) / 4.0).abs() < 1e-12);
+    assert!((bearing - degrees((0.08 + 0.2 + 0.05 + 0.34) / 4.0)).abs() < 1e-12);
+    assert_eq!(noise.at(9.0, 3.0), noise.at(4.0, degrees(60.0)));
+    assert_eq!(noise.at(0.1, 0.0), noise.at(1.0, 0.0));
+    assert!(FixNoise::new(vec![1.0, 1.0], vec![0.0], vec![[0.0; 2]; 2]).is_err());
+}
+
+#[test]
+fn wheels_turn_toward_the_virtual_velocity_and_keep_their_limit() {
+    let drive = Drive::default();
+    assert_eq!(drive.wheels([0.5, 0.0]), [0.5, 0.5]);
+    let [left, right] = drive.wheels([0.0, 0.3]);
+    assert!(left < 0.0 && (left + right).abs() < 1e-12 && right <= 0.72);
+    let turning = 4.0 * std::f64::consts::FRAC_PI_2 * 0.205;
+    assert!((right - turning.min(0.72)).abs() < 1e-12);
+    // Behind: it turns on the spot and never goes back.
+    let [left, right] = drive.wheels([-0.3, 0.01]);
+    assert!(left + right >= -1e-12);
+    assert_eq!(drive.wheels([0.01, 0.01])[0], drive.wheels([0.01, 0.01])[1]);
+}
+
+#[test]
+fn a_circle_closes() {
+    let drive = Drive::default();
+    let mut pose = Pose::at([0.0, 0.0], 0.4);
+    let steps = 10_000;
+    // Once around: the wheels differ by omega times their distance.
+    let step = 1e-3;
+    let omega = std::f64::consts::TAU / (f64::from(steps) * step);
+    let wheels = [0.3 - 0.205 * omega, 0.3 + 0.205 * omega];
+    for _ in 0..steps {
+        pose = drive.moved(&pose, wheels, step);
+    }
+    assert!(pose.position[0].hypot(pose.position[1]) < 1e-9);
+    assert!((pose.direction[1].atan2(pose.direction[0]) - 0.4).abs() < 1e-9);
+}
+
+#[test]
+fn it_follows_a_leader_at_its_standoff() {
+    let mut settings = Settings::default();
+    settings.fixes.noise = FixNoise::none();
+    let scene = Layouts::of(Setting::Tracking).scene(0);
+    let follower = Follower::new(&settings).unwrap();
+    let (outcome, rows) = record(&follower, &scene, 0, &|| false).unwrap();
+    assert!(outcome.contact.is_none());
+    assert_eq!(outcome.least_clearance, f64::INFINITY);
+    // It overshoots its standoff and does not go back.
+    assert!((0.4..1.0).contains(&outcome.source_distance));
+    assert_eq!(rows.time.len(), 1041);
+    assert!(rows.position.iter().all(|[_, y]| y.abs() < 1e-12));
+    let fastest = rows
+        .wheel_speed
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |most, speed| most.max(*speed));
+    assert!(fastest <= 0.72 + 1e-12);
+}
+
+#[test]
+fn mirrored_layout_gives_the_mirrored_run() {
+    let mut settings = Settings::default();
+    settings.fixes.noise = FixNoise::none();
+    settings.sensors.ranging.noise = 0.0;
+    // Case II is looked for at the right first: a mirrored run needs a box that one pair sees.
+    settings.bank.pairing.gap = 0.0;
+    settings.bank.pairing.share = 0.0;
+    let follower = Follower::new(&settings).unwrap();
+    let run = |side: f64| {
+        let body = Rectangle::upright([2.0, 0.35 * side], [0.5, 0.6]);
+        let scene = Scene {
+            leader: Leader::going([1.2, 0.0], [6.0, 0.0], 0.3).unwrap(),
+            obstacles: vec![Mover::standing(Shape::Rectangle(body))],
+            duration: 15.0,
+        };
+        record(&follower, &scene, 0, &|| false).unwrap()
+    };
+    let ((one, rows), (other, mirrored)) = (run(1.0), run(-1.0));
+    assert!((one.path_length - other.path_length).abs() < 1e-6);
+    for (here, there) in rows.position.iter().zip(&mirrored.position) {
+        assert!((here[0] - there[0]).abs() < 1e-6 && (here[1] + there[1]).abs() < 1e-6);
+    }
+    assert!(rows.position.iter().any(|[_, y]| y.abs() > 0.05));
+}
+
+#[test]
+fn a_record_is_the_run_and_a_batch_is_its_runs() {
+    let (layouts, seeds) = dynamic();
+    let settings = Settings::default();
+    let follower = Follower::new(&settings).unwrap();
+    let one = run_batch(&settings, &layouts, &seeds, quiet(1)).unwrap();
+    let three = run_batch(&settings, &layouts, &seeds, quiet(3)).unwrap();
+    assert_eq!(one, three);
+    for (seed, outcome) in seeds.iter().zip(&one).take(20) {
+        let (recorded, rows) = record(&follower, &layouts.scene(*seed), *seed, &|| false).unwrap();
+        assert_eq!(recorded, *outcome);
+        let least = rows.clearance.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!((least - outcome.least_clearance).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn every_kept_layout_touches_without_repulsion() {
+    let (layouts, seeds) = dynamic();
+    assert_eq!(collisions(&with_form(Form::Off), &layouts, &seeds), 1.0);
+    assert!(seeds.is_sorted_by(|one, next| one < next));
+    // Nothing ever touches without obstacles.
+    let none = Layouts::of(Setting::Tracking);
+    let found = touching_layouts(&Settings::default(), &none, 0, 1, quiet(1));
+    assert!(matches!(found, Err(Failure::InvalidParameter { .. })));
+}
+
+#[test]
+fn active_law_collides_less_and_printed_forms_collide_more() {
+    let (layouts, seeds) = dynamic();
+    let active = collisions(&Settings::default(), &layouts, &seeds);
+    let conventional = collisions(&with_form(Form::Conventional), &layouts, &seeds);
+    assert!(active + 0.15 < conventional, "{active} {conventional}");
+    let mut rear = Settings::default();
+    rear.sensors.rear = true;
+    assert!(collisions(&rear, &layouts, &seeds) < active);
+    let twice = collisions(&with_form(Form::ActiveTwiceScaled), &layouts, &seeds);
+    assert!(twice > active + 0.2, "{twice}");
+    let rotated = Settings {
+        bank: BankOptions {
+            rotation: Rotation::Printed,
+            ..BankOptions::default()
+        },
+        ..Settings::default()
+    };
+    let printed = collisions(&rotated, &layouts, &seeds);
+    assert!(printed > 0.95, "{printed}");
+}
+
+#[test]
+fn printed_translation_depends_on_the_origin_of_the_world() {
+    let (layouts, seeds) = dynamic();
+    let rate = |origin| {
+        let mut settings = Settings::default();
+        settings.bank.translated_by = Some(origin);
+        collisions(&settings, &layouts, &seeds)
+    };
+    let rates = [[0.0, 0.0], [-10.0, -10.0], [5.0, 5.0]].map(rate);
+    let (least, most) = rates
+        .iter()
+        .fold((1.0_f64, 0.0_f64), |(least, most), rate| {
+            (least.min(*rate), most.max(*rate))
+        });
+    assert!(most - least > 0.3, "{rates:?}");
+}
+
+#[test]
+fn batch_stops_when_told_and_counts() {
+    let (layouts, seeds) = dynamic();
+    let done = AtomicUsize::new(0);
+    let batch = Work {
+        threads: Some(2),
+        interrupted: &|| false,
+        progress: &|runs| {
+            done.fetch_add(runs, Ordering::Relaxed);
+        },
+    };
+    run_batch(&Settings::default(), &layouts, &seeds, batch).unwrap();
+    assert_eq!(done.load(Ordering::Relaxed), seeds.len());
+    let stopped = Work {
+        interrupted: &|| true,
+        ..quiet(1)
+    };
+    let found = run_batch(&Settings::default(), &layouts, &seeds, stopped);
+    assert_eq!(found, Err(Failure::Interrupted));
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let mut settings = Settings::default();
+    settings.sensors.rays = 0;
+    assert!(Follower::new(&settings).is_err());
+    let settings = Settings {
+        step: 0.0,
+        ..Settings::default()
+    };
+    assert!(Follower::new(&settings).is_err());
+    let mut layouts = Layouts::of(Setting::OneDynamic);
+    layouts.speeds = [0.5, 0.2];
+    assert!(layouts.checked().is_err());
+}
