@@ -38,7 +38,7 @@ def grids_of_the_package(step: float, threads: int | None) -> nav.GainSearch:
     return nav.optimize_gains(SCENES, step=step, local_starts=0, threads=threads)
 
 
-def grids_of_numba(rounds: tuple[nav.SearchRound, ...]) -> list[Array]:
+def grids_of_numba(rounds: tuple[nav.gains.SearchRound, ...]) -> list[Array]:
     return [peer_gains_numba.scores(each.axes) for each in rounds]
 
 

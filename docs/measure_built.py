@@ -14,7 +14,7 @@ from pathlib import Path
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import Share, compare_paired, wilson
+from hrsafety.navigation.metrics import Share, compare_paired, wilson
 
 PAGE = Path(__file__).resolve().parent / "guides" / "built.md"
 MARKS = ("<!-- tables of measure_built.py begin -->\n", "<!-- tables of measure_built.py end -->\n")
@@ -102,18 +102,18 @@ def crowds() -> list[str]:
 
 def cameras() -> list[str]:
     """Return the table of the holonomic robot as built, with two estimators and two rules."""
-    error = nav.PositionNoise(distribution="gaussian", scale=0.0032)
-    estimators = {"differences": nav.Differences(), "Kalman filter": nav.Kalman()}
+    error = nav.sensing.PositionNoise(distribution="gaussian", scale=0.0032)
+    estimators = {"differences": nav.sensing.Differences(), "Kalman filter": nav.sensing.Kalman()}
     rules = {name: SIDES[name] for name in ("afresh", "kept beyond 3.05")}
     columns = [f"{estimator}, {side}" for estimator in estimators for side in rules]
     lines = [f"| | {' | '.join(columns)} |", "|---|" + "---|" * len(columns)]
     for name in ("c1", "c2", "c3", "c4"):
         cells = []
         for estimator in estimators.values():
-            camera = nav.Vision(error=error, estimator=estimator)
-            built = nav.AsBuilt(wheels=nav.HOLONOMIC_WHEELS, robot_vision=camera, obstacle_vision=camera)
+            camera = nav.sensing.Vision(error=error, estimator=estimator)
+            built = nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS, robot_vision=camera, obstacle_vision=camera)
             for side in rules.values():
-                runs = nav.repeat(scenarios.configuration(name), law("New", side), seeds=SEEDS, built=built)
+                runs = nav.metrics.repeat(scenarios.configuration(name), law("New", side), seeds=SEEDS, built=built)
                 cells.append(cell(runs.outcome.tolist()))
         lines.append(f"| {name} | {' | '.join(cells)} |")
     return [*lines, ""]

@@ -22,7 +22,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import Mean, Share
+from hrsafety.navigation.metrics import Mean, Share
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 MARKS = ("<!-- tables of measure_laws.py begin -->\n", "<!-- tables of measure_laws.py end -->\n")

@@ -21,9 +21,9 @@ import numpy as np
 import hrsafety
 from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
-from hrsafety.navigation.statistics import wilson
+from hrsafety.navigation.metrics import wilson
 from hrsafety.navigation.trajectory import Outcome
-from hrsafety.reactive.fixes import STATUS_WORDS as FIX_WORDS
+from hrsafety.reactive.sound.fixes import STATUS_WORDS as FIX_WORDS
 
 PAGE = Path(__file__).resolve().parent / "limits.md"
 PARTS = ("corridors", "statuses")

@@ -18,7 +18,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import wilson
+from hrsafety.navigation.metrics import wilson
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 MARKS = ("<!-- tables of measure_shares.py begin -->\n", "<!-- tables of measure_shares.py end -->\n")

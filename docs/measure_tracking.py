@@ -29,11 +29,14 @@ MILLIMETER = 1e-3
 LEVELS = (0.3, 0.1, 0.01, MILLIMETER, 1e-4)
 SMALL = 1e-5
 WIDE = nav.DifferentialDriveRobot(max_speed=50.0, max_acceleration=1e6, max_angular_acceleration=1e9, wheel_span=0.01)
-LAWS: dict[str, nav.Tracking] = {"full speed": nav.FullSpeedTracking(), "nonlinear": nav.NonlinearTracking()}
-PRINTED: dict[str, nav.Tracking] = {
-    "nonlinear, printed turn rate": nav.NonlinearTracking(reference_turn="printed"),
-    "nonlinear, printed axes": nav.NonlinearTracking(error_frame="world"),
-    "nonlinear, both as printed": nav.NonlinearTracking(error_frame="world", reference_turn="printed"),
+LAWS: dict[str, nav.tracking.Tracking] = {
+    "full speed": nav.tracking.FullSpeedTracking(),
+    "nonlinear": nav.tracking.NonlinearTracking(),
+}
+PRINTED: dict[str, nav.tracking.Tracking] = {
+    "nonlinear, printed turn rate": nav.tracking.NonlinearTracking(reference_turn="printed"),
+    "nonlinear, printed axes": nav.tracking.NonlinearTracking(error_frame="world"),
+    "nonlinear, both as printed": nav.tracking.NonlinearTracking(error_frame="world", reference_turn="printed"),
 }
 
 
@@ -42,16 +45,16 @@ def table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
     return [f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(row)} |" for row in rows), ""]
 
 
-def spectral_radius(law: nav.Tracking, speed: float, turn: float, period: float) -> float:
+def spectral_radius(law: nav.tracking.Tracking, speed: float, turn: float, period: float) -> float:
     """Return the largest modulus of the eigenvalues of one simulated period, from central differences."""
-    reference: nav.Reference = nav.LineReference(start=(0.0, 0.0), velocity=(speed, 0.0))
+    reference: nav.tracking.Reference = nav.tracking.LineReference(start=(0.0, 0.0), velocity=(speed, 0.0))
     if turn:
-        reference = nav.CircleReference(
+        reference = nav.tracking.CircleReference(
             center=(0.0, speed / turn), radius=speed / turn, speed=speed, start_angle=-math.pi / 2
         )
 
     def after(state: Array) -> Array:
-        run = nav.track(
+        run = nav.tracking.track(
             reference, law, position=-state[:2], heading=-state[2], speed=speed, turn_rate=turn, robot=WIDE,
             control_period=period, step=period, duration=period,
         )  # fmt: skip
@@ -82,13 +85,13 @@ def starts(count: int, reach: float, seed: int) -> Array:
     return np.random.default_rng(seed).uniform(-top, top, (count, 5))
 
 
-def lines(count: int, low: float, high: float, seed: int) -> list[nav.Reference]:
+def lines(count: int, low: float, high: float, seed: int) -> list[nav.tracking.Reference]:
     """Return references in any direction at shares of the largest speed."""
     generator = np.random.default_rng(seed)
     speed = MAX_SPEED * generator.uniform(low, high, count)
     angle = generator.uniform(-math.pi, math.pi, count)
     return [
-        nav.LineReference(start=(0.0, 0.0), velocity=(v * math.cos(a), v * math.sin(a)))
+        nav.tracking.LineReference(start=(0.0, 0.0), velocity=(v * math.cos(a), v * math.sin(a)))
         for v, a in zip(speed, angle, strict=True)
     ]
 
@@ -102,7 +105,7 @@ def convergence() -> list[str]:
             for period in PERIODS:
                 cells = []
                 for low, high in spreads:
-                    found = nav.track_batch(
+                    found = nav.tracking.track_batch(
                         lines(STARTS, low, high, 2), law, starts=starts(STARTS, 2.0, 1), levels=(MILLIMETER,),
                         control_period=period, duration=120.0,
                     ).settling_time[:, 0]  # fmt: skip
@@ -121,10 +124,10 @@ def curves() -> list[str]:
     """Return errors on a circle after a minute."""
     cases = [(0.2, 0.5), (0.4, 1.0), (0.6, 1.0), (0.6, 2.0)]
 
-    def error(law: nav.Tracking, speed: float, radius: float, period: float) -> float:
-        circle = nav.CircleReference(center=(0.0, 0.0), radius=radius, speed=speed)
+    def error(law: nav.tracking.Tracking, speed: float, radius: float, period: float) -> float:
+        circle = nav.tracking.CircleReference(center=(0.0, 0.0), radius=radius, speed=speed)
         start: dict[str, Any] = {"position": (radius, 0.0), "heading": math.pi / 2, "turn_rate": speed / radius}
-        run = nav.track(circle, law, speed=speed, control_period=period, duration=60.0, **start)
+        run = nav.tracking.track(circle, law, speed=speed, control_period=period, duration=60.0, **start)
         return float(run.error[-1000:].max())
 
     def rows() -> Iterator[list[str]]:
@@ -143,10 +146,10 @@ def goals() -> list[str]:
 
     def rows() -> Iterator[list[str]]:
         for heading in (None, 0.7):
-            law = nav.ExponentialTracking(goal_heading=heading)
+            law = nav.tracking.ExponentialTracking(goal_heading=heading)
             for period in PERIODS:
-                found = nav.track_batch(
-                    nav.LineReference(start=(0.0, 0.0)), law, starts=starts(POSES, 5.0, 3), levels=LEVELS,
+                found = nav.tracking.track_batch(
+                    nav.tracking.LineReference(start=(0.0, 0.0)), law, starts=starts(POSES, 5.0, 3), levels=LEVELS,
                     control_period=period, duration=60.0, goal=(0.0, 0.0),
                 )  # fmt: skip
                 with np.errstate(divide="ignore"):  # a start below both

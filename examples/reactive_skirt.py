@@ -18,5 +18,5 @@ for count, share in zip(study.counts, study.contacts, strict=True):
     print(f"{count:2} sensors: {share.value:5.1%}")
 print(f"smallest number that keeps contacts below 5 %: {study.sensors}")
 
-plotting.skirt_ring(study.skirts[0], directions=reactive.MOTION_DIRECTIONS).savefig("ring.png")
-plotting.skirt_sensor_counts([study]).savefig("sensors.png")
+plotting.reactive.skirt_ring(study.skirts[0], directions=reactive.skirt.MOTION_DIRECTIONS).savefig("ring.png")
+plotting.reactive.skirt_sensor_counts([study]).savefig("sensors.png")

@@ -149,9 +149,9 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "tree without draws": "nav.RapidlyExploringRandomTree(draws=0)",
         "cells of no size": "nav.FieldDStar(resolution=0.0)",
         "law by its name": 'nav.simulate(scene, "virtual_force_field")',
-        "camera of 0 frames per second": "nav.Vision(period=0.0)",
-        "camera that is early": "nav.Vision(delay=-0.03)",
-        "frames lost with certainty": "nav.Vision(drop_probability=1.0)",
+        "camera of 0 frames per second": "nav.sensing.Vision(period=0.0)",
+        "camera that is early": "nav.sensing.Vision(delay=-0.03)",
+        "frames lost with certainty": "nav.sensing.Vision(drop_probability=1.0)",
     },
     "Runs": {
         "arguments exchanged": "nav.simulate(law, scene)",
@@ -169,19 +169,19 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "three lanes": "nav.simulate_batch([scene], law, lanes=3)",
         "arena without laws": "nav.arena({}, [scene])",
         "unknown law in an arena": 'nav.arena({"field": law}, [scene]).standing("Field")',
-        "no seeds": "nav.repeat(scene, law, seeds=0)",
-        "position of one number": "nav.command(law, scene, position=(3.0,), velocity=(0.0, 0.0))",
+        "no seeds": "nav.metrics.repeat(scene, law, seeds=0)",
+        "position of one number": "nav.laws.command(law, scene, position=(3.0,), velocity=(0.0, 0.0))",
         "unknown search method": 'nav.optimize_gains([scene], law, method="cmaes")',
         "bounds exchanged": 'nav.optimize_gains([scene], law, bounds={"attractive_gain": (50.0, 0.0)})',
         "unknown objective": 'nav.optimize_gains([scene], law, objective="time")',
         "grid of three numbers for four gains": "nav.optimize_gains([scene], law, grid=(4, 4, 4))",
         "search seed of 65 bits": "nav.optimize_gains([scene], law, grid=(1, 1, 1, 1), seed=2**64)",
-        "constraint without bound": 'nav.GainConstraint(metric="min_clearance")',
-        "camera of 1e308 frames per second": "nav.observe(nav.Vision(period=1e-308), [0.0, 1.0], "
+        "constraint without bound": 'nav.gains.GainConstraint(metric="min_clearance")',
+        "camera of 1e308 frames per second": "nav.sensing.observe(nav.sensing.Vision(period=1e-308), [0.0, 1.0], "
         "[[0.0, 0.0], [1.0, 0.0]])",
-        "camera of 1e12 frames per second": "nav.observe(nav.Vision(period=1e-12), [0.0, 1.0], "
+        "camera of 1e12 frames per second": "nav.sensing.observe(nav.sensing.Vision(period=1e-12), [0.0, 1.0], "
         "[[0.0, 0.0], [1.0, 0.0]])",
-        "seeds without end": "nav.repeat(scene, law, seeds=2**53)",
+        "seeds without end": "nav.metrics.repeat(scene, law, seeds=2**53)",
         "refinements without end": "nav.optimize_gains([scene], law, refinements=2**31)",
     },
     "Impacts": {
@@ -195,17 +195,17 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "one sample": "impact.hic([0.0], [50.0])",
         "window of nothing": "impact.hic([0.0, 0.001], [0.0, 50.0], window=0.0)",
         "acceleration with a gap": 'impact.hic([0.0, 0.001, 0.002], [0.0, float("nan"), 0.0])',
-        "unknown channel class": "impact.channel_corner(500)",
-        "channel class as text": "impact.channel_filter([0.0, 0.001], [0.0, 1.0], 'CFC60')",
+        "unknown channel class": "impact.criteria.channel_corner(500)",
+        "channel class as text": "impact.criteria.channel_filter([0.0, 0.001], [0.0, 1.0], 'CFC60')",
         "limits of nothing": "impact.FoamLimits(peak_head_acceleration_g=None, max_compression=None)",
         "negative limit": "impact.FoamLimits(peak_head_acceleration_g=-10.0)",
         "design against a plain number": "impact.design_foam(arm, 10.0, closing_speed=1.0)",
         "batch of unequal columns": "impact.metrics_batch(manipulator=arm, head=head, foam_stiffness=[1e4, 2e4], "
         "foam_damping=[1.0, 2.0, 3.0], closing_speed=1.0)",
         "batch without a foam": "impact.metrics_batch(manipulator=arm, head=head, closing_speed=1.0)",
-        "drop from below": "impact.drop_trajectory([0.0, 0.1], height=-0.1, mass=1.0, stiffness=1e4, "
+        "drop from below": "impact.identification.drop_trajectory([0.0, 0.1], height=-0.1, mass=1.0, stiffness=1e4, "
         "damping_ratio=0.1)",
-        "static test of unequal length": "impact.fit_static([1.0, 2.0], [0.001, 0.002, 0.003])",
+        "static test of unequal length": "impact.identification.fit_static([1.0, 2.0], [0.001, 0.002, 0.003])",
         "unknown method": 'impact.simulate(arm, foam, head, closing_speed=1.0, method="rk45")',
         "foam thinner than its linear range": "impact.Foam(stiffness=24300.0, damping=71.9, thickness=0.01, "
         "linear_range=0.02)",
@@ -213,8 +213,8 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "milliseconds in a recording": "impact.recorded_metrics(np.arange(0.0, 100.0, 1.0), "
         "np.sin(np.linspace(0.0, np.pi, 100)))",
         "closing speed of 1e308 m/s": "impact.simulate(arm, foam, head, closing_speed=1e308)",
-        "forces of 1e200 N": "impact.fit_static([1e200, 2e200, 3e200], [0.001, 0.002, 0.003])",
-        "signal for a channel class": "impact.channel_filter(np.linspace(0.0, 0.1, 101), np.zeros(101), np.ones(3))",
+        "forces of 1e200 N": "impact.identification.fit_static([1e200, 2e200, 3e200], [0.001, 0.002, 0.003])",
+        "signal for a channel class": "impact.criteria.channel_filter(np.arange(9) / 1e4, np.ones(9), np.ones(3))",
         "masked acceleration": "impact.hic([0.0, 0.001, 0.002], np.ma.masked_greater([0.0, 50.0, 1e6], 1e3))",
     },
     "Avoidance from sensors": {
@@ -236,10 +236,10 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "2**53 rays": "reactive.Sonar(rays=2**53)",
         "2**63 rays": "reactive.Sonar(rays=2**63)",
         "a thousand million rays": "reactive.Sonar(rays=10**9)",
-        "temperature not a number": 'reactive.speed_of_sound(float("nan"))',
-        "below absolute zero": "reactive.speed_of_sound(-400.0)",
+        "temperature not a number": 'reactive.sonar.speed_of_sound(float("nan"))',
+        "below absolute zero": "reactive.sonar.speed_of_sound(-400.0)",
         "layouts without end": 'reactive.experiment("static", layouts=2**31)',
-        "deviation of 1e200 s": "reactive.jittered_fixes(microphones, range=1.0, bearing=0.0, runs=2, "
+        "deviation of 1e200 s": "reactive.sound.jittered_fixes(microphones, range=1.0, bearing=0.0, runs=2, "
         "arrival_deviation=1e200)",
         "WAV with a wrong chunk size": 'reactive.read_recording("chunk.wav")',
     },

@@ -190,10 +190,11 @@ def with_article(noun: str) -> str:
     return f"an {noun}" if noun[:1] in tuple("AEIOUaeiou") else f"a {noun}"
 
 
-def instance(name: str, value: object, kind: type[Kind]) -> Kind:
-    """Return ``value`` if it is of the kind, or say that it should have been."""
-    if not isinstance(value, kind):
-        raise InvalidParameterError(name, f"be {with_article(kind.__name__)}", value)
+def instance(name: str, value: object, *kinds: type[Kind]) -> Kind:
+    """Return ``value`` if it is of one of the kinds, or say that it should have been."""
+    if not isinstance(value, kinds):
+        words = " or ".join(kind.__name__ for kind in kinds)
+        raise InvalidParameterError(name, f"be {with_article(words)}", value)
     return value
 
 

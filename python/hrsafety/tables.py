@@ -281,7 +281,7 @@ def with_units(result: object, units: Mapping[str, str]) -> Columns:
     --------
     >>> from hrsafety import navigation as nav
     >>> from hrsafety.tables import with_units
-    >>> reference = nav.WheelReference.sine(duration=1.0)
+    >>> reference = nav.robots.WheelReference.sine(duration=1.0)
     >>> list(with_units(reference, {"angle": "rad", "speed": "rad/s"}))
     ['angle_rad', 'speed_rad_per_s']
     """

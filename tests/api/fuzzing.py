@@ -28,7 +28,9 @@ ARRAY = reactive.MicrophoneArray()
 TIME = np.linspace(0.0, 0.02, 21)
 PULSE = 10.0 * np.sin(np.pi * TIME / 0.02)
 FLIGHT = np.arange(0.0, 0.2, 1e-3)
-DROP = impact.drop_trajectory(FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0)
+DROP = impact.identification.drop_trajectory(
+    FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
+)
 PARTS: dict[str, Any] = {
     "manipulator": impact.MANIPULATOR_1,
     "foam": impact.FOAM_1,
@@ -73,7 +75,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "Reciprocal": (nav.OptimalReciprocalCollisionAvoidance, {"horizon": 5.0}),
     "simulate": (nav.simulate, {"scenario": SHORT, "law": FIELD, "step": 0.01, "hold": True}),
-    "simulate_built": (nav.simulate_built, {"scenario": SHORT, "law": FIELD, "step": 0.01}),
+    "simulate_built": (nav.built.simulate_built, {"scenario": SHORT, "law": FIELD, "step": 0.01}),
     "simulate_batch": (
         nav.simulate_batch,
         {
@@ -85,23 +87,23 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "lanes": None,
         },
     ),
-    "repeat": (nav.repeat, {"scenario": SHORT, "law": FIELD, "seeds": 2, "threads": 1}),
-    "command": (nav.command, {"law": FIELD, "scenario": SHORT, "position": (3.0, 0.7), "velocity": (0.0, 0.1)}),
-    "force_field": (nav.force_field, {"law": FIELD, "scenario": SHORT, "position": [[3.0, 0.7], [2.0, 1.5]]}),
+    "repeat": (nav.metrics.repeat, {"scenario": SHORT, "law": FIELD, "seeds": 2, "threads": 1}),
+    "command": (nav.laws.command, {"law": FIELD, "scenario": SHORT, "position": (3.0, 0.7), "velocity": (0.0, 0.1)}),
+    "force_field": (nav.laws.force_field, {"law": FIELD, "scenario": SHORT, "position": [[3.0, 0.7], [2.0, 1.5]]}),
     "region_radii": (
         nav.region_radii,
         {"robot": nav.HolonomicRobot(), "obstacle": nav.Disc(center=(1.0, 0.0), radius=0.2), "control_period": 0.06},
     ),
-    "Vision": (nav.Vision, {"period": 0.06, "delay": 0.1, "drop_probability": 0.1, "compensated": False}),
+    "Vision": (nav.sensing.Vision, {"period": 0.06, "delay": 0.1, "drop_probability": 0.1, "compensated": False}),
     "observe": (
-        nav.observe,
-        {"vision": nav.Vision(), "time": TIME, "position": np.zeros((21, 2)), "seed": 0, "stream": 0},
+        nav.sensing.observe,
+        {"vision": nav.sensing.Vision(), "time": TIME, "position": np.zeros((21, 2)), "seed": 0, "stream": 0},
     ),
-    "Camera": (nav.Camera, {"focal_length": 0.005, "image_size_px": (64, 48)}),
+    "Camera": (nav.sensing.Camera, {"focal_length": 0.005, "image_size_px": (64, 48)}),
     "track": (
-        nav.track,
+        nav.tracking.track,
         {
-            "reference": nav.CircleReference(center=(0.0, 0.0), radius=2.0, speed=0.5),
+            "reference": nav.tracking.CircleReference(center=(0.0, 0.0), radius=2.0, speed=0.5),
             "position": (0.0, 0.0),
             "control_period": 0.06,
             "step": 0.01,
@@ -109,12 +111,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         },
     ),
     "WheelReference.sine": (
-        nav.WheelReference.sine,
+        nav.robots.WheelReference.sine,
         {"speed": 1.0, "frequency": 0.5, "duration": 0.1, "period": 1e-3},
     ),
     "open_loop_tests": (
-        nav.open_loop_tests,
-        {"drive": nav.HOLONOMIC_WHEELS[0], "commands": [0.3], "repeats": 1, "duration": 0.1, "seed": 0},
+        nav.robots.open_loop_tests,
+        {"drive": nav.robots.HOLONOMIC_WHEELS[0], "commands": [0.3], "repeats": 1, "duration": 0.1, "seed": 0},
     ),
     "Foam": (impact.Foam, {"stiffness": 24e3, "damping": 50.0}),
     "impact.simulate": (impact.simulate, {**PARTS, "duration": 0.01, "step": 1e-3, "method": "exact"}),
@@ -122,8 +124,8 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "metrics_batch": (impact.metrics_batch, {**PARTS, "closing_speed": [0.5, 1.0], "threads": 1, "lanes": None}),
     "gradients": (impact.gradients, dict(PARTS)),
     "hic": (impact.hic, {"time": TIME, "acceleration_g": PULSE}),
-    "channel_filter": (impact.channel_filter, {"time": FLIGHT, "signal": np.sin(FLIGHT), "channel_class": 60}),
-    "hic_half_sine": (impact.hic_half_sine, {"peak_g": 50.0, "duration": 0.01}),
+    "channel_filter": (impact.criteria.channel_filter, {"time": FLIGHT, "signal": np.sin(FLIGHT), "channel_class": 60}),
+    "hic_half_sine": (impact.criteria.hic_half_sine, {"peak_g": 50.0, "duration": 0.01}),
     "identify_foam": (
         impact.identify_foam,
         {
@@ -137,12 +139,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "Sonar": (reactive.Sonar, {"rays": 5, "beam_width": 0.5, "most_range": 3.0, "temperature": 20.0}),
     "Sonar.readings": (reactive.Sonar().readings, {"shapes": [], "poses": (0.0, 0.0, 0.0), "seed": 0}),
-    "speed_of_sound": (reactive.speed_of_sound, {"temperature": 20.0}),
+    "speed_of_sound": (reactive.sonar.speed_of_sound, {"temperature": 20.0}),
     "doppler_frequency": (
-        reactive.doppler_frequency,
+        reactive.sound.doppler_frequency,
         {"frequency": 1000.0, "speed_of_sound": 340.0, "observer_speed": 0.1},
     ),
-    "skirt_safe_distance": (reactive.skirt_spacing, {"sensors": 9, "sensor_length": 0.046}),
+    "skirt_safe_distance": (reactive.skirt.skirt_spacing, {"sensors": 9, "sensor_length": 0.046}),
     "UltrasonicSkirt": (reactive.UltrasonicSkirt, {"sensors": 9, "rays": 5, "firing_period": 0.02}),
     "skirt_test": (reactive.skirt_test, {"layouts": 1, "repeats": 1, "seed": 0, "threads": 1}),
     "experiment": (
@@ -157,7 +159,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "estimate_delays": (reactive.estimate_delays, {"recording": HEARD, "array": ARRAY, "window": 500}),
     "locate": (reactive.locate, {"array": ARRAY, "delay_12": 1e-4, "delay_13": 2e-4, "arrival_deviation": 1e-6}),
     "locate_batch": (reactive.locate_batch, {"array": ARRAY, "delay_12": [1e-4], "delay_13": [2e-4], "threads": 1}),
-    "jittered_fixes": (reactive.jittered_fixes, {"array": ARRAY, **SOUND, "runs": 2, "seed": 0, "threads": 1}),
+    "jittered_fixes": (reactive.sound.jittered_fixes, {"array": ARRAY, **SOUND, "runs": 2, "seed": 0, "threads": 1}),
     "random_crowd": (scenarios.random_crowd, {"people": 2, "seed": 0}),
     "random_traffic": (scenarios.random_traffic, {"obstacles": 2, "seed": 0}),
     "Recording": (datasets.Recording, dict(WALK)),

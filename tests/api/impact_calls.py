@@ -169,7 +169,7 @@ CALLS: dict[str, Call] = {
             {"time": TIME, "acceleration_g": PULSE},
             {"time": (*SIGNAL, *UNSORTED), "acceleration_g": SIGNAL, "width": POSITIVE},
         )
-        for function in (impact.average_3ms, impact.clip_3ms)
+        for function in (impact.criteria.average_3ms, impact.criteria.clip_3ms)
     },
     **{
         function.__name__: (
@@ -177,10 +177,10 @@ CALLS: dict[str, Call] = {
             {"peak_g": 100.0, "duration": 0.005},
             {"peak_g": NOT_NEGATIVE, "duration": POSITIVE, "window": POSITIVE},
         )
-        for function in (impact.hic_half_sine, impact.hic_square, impact.hic_triangle)
+        for function in (impact.criteria.hic_half_sine, impact.criteria.hic_square, impact.criteria.hic_triangle)
     },
     "pd_gains": (
-        impact.pd_gains,
+        impact.identification.pd_gains,
         {"stiffness": 20e3, "damping": 250.0, "lever_arm": 0.078, "torque_constant": 0.27},
         {
             "stiffness": NOT_NEGATIVE,
@@ -214,12 +214,12 @@ CALLS: dict[str, Call] = {
         },
     ),
     "fit_open_loop": (
-        impact.fit_open_loop,
+        impact.identification.fit_open_loop,
         {"time": TIME, "angle": TIME**2},
         {"time": (*SIGNAL, *UNSORTED), "angle": SIGNAL},
     ),
     "identify_direct_drive": (
-        impact.identify_direct_drive,
+        impact.identification.identify_direct_drive,
         {
             "voltage": [0.3, 0.6, 1.0],
             "acceleration": [0.5, 1.5, 3.7],
@@ -235,7 +235,7 @@ CALLS: dict[str, Call] = {
         },
     ),
     "DirectDrive": (
-        impact.DirectDrive,
+        impact.joints.DirectDrive,
         {"proportional": 448.7, "derivative": 5.579},
         {
             **dict.fromkeys(("inertia", "lever_arm", "torque_constant", "amplifier_gain"), POSITIVE),
@@ -244,9 +244,9 @@ CALLS: dict[str, Call] = {
         },
     ),
     "simulate_direct_drive": (
-        impact.simulate_direct_drive,
+        impact.joints.simulate_direct_drive,
         {
-            "drive": impact.DirectDrive(proportional=448.7, derivative=5.579),
+            "drive": impact.joints.DirectDrive(proportional=448.7, derivative=5.579),
             "foam": impact.FOAM_1,
             "head": HEAD,
             "closing_speed": 1.25,
@@ -262,7 +262,7 @@ CALLS: dict[str, Call] = {
         },
     ),
     "tube_inertia": (
-        impact.tube_inertia,
+        impact.identification.tube_inertia,
         {"density": 2700.0, "length": 0.664, "width": 0.05, "height": 0.05, "wall": 0.0016},
         {
             **dict.fromkeys(("density", "length", "width", "height"), POSITIVE),
@@ -270,7 +270,7 @@ CALLS: dict[str, Call] = {
         },
     ),
     "drop_trajectory": (
-        impact.drop_trajectory,
+        impact.identification.drop_trajectory,
         {"time": DROP_TIME, "height": 0.05, "mass": 1.54, "stiffness": 24e3, "damping_ratio": 0.1},
         {
             "time": ((), None, "abc", DROP_TIME[::-1], [NAN, 1.0]),
@@ -391,12 +391,12 @@ RATES = ((1.0,), 1.0, None, "ab", (NAN, 1.0), (1.0, INF), (1.0, 2.0, 3.0))
 
 CALLS |= {
     "impact_point_speed": (
-        impact.impact_point_speed,
+        impact.joints.impact_point_speed,
         {"rates": (0.2, 0.1), "second_link": 0.43, "lever_arm": 0.4},
         {"rates": RATES, "second_link": NOT_NEGATIVE, "lever_arm": POSITIVE, "elbow": NUMBER},
     ),
     "dashpots_in_series": (
-        impact.dashpots_in_series,
+        impact.joints.dashpots_in_series,
         {"damping": (40.0, 10.0), "second_link": 0.43, "lever_arm": 0.4},
         {
             "damping": (*RATES, (0.0, 1.0), (1.0, -1.0)),
@@ -406,7 +406,7 @@ CALLS |= {
         },
     ),
     "uniform_links": (
-        impact.uniform_links,
+        impact.joints.uniform_links,
         {"mass": (3.0, 2.0), "length": (0.43, 0.4)},
         {
             "mass": (*RATES, (0.0, 1.0), (1.0, -1.0)),
@@ -415,7 +415,7 @@ CALLS |= {
         },
     ),
     "fit_static": (
-        impact.fit_static,
+        impact.identification.fit_static,
         {"static_force": [0.0, 24.0, 49.0, 72.0], "static_compression": [0.0, 1e-3, 2e-3, 3e-3]},
         {
             "static_force": ((), [1.0], None, "abc", [1.0, 2.0], [NAN] * 4),
@@ -424,7 +424,7 @@ CALLS |= {
         },
     ),
     "CylinderController": (
-        impact.CylinderController,
+        impact.joints.CylinderController,
         {},
         {
             **dict.fromkeys(("acceleration_gain", "velocity_gain", "proportional", "derivative"), NOT_NEGATIVE),
@@ -432,7 +432,7 @@ CALLS |= {
         },
     ),
     "CylinderController.command": (
-        impact.CylinderController().command,
+        impact.joints.CylinderController().command,
         {"desired_position": 0.1, "desired_velocity": 1.0, "position": 0.1, "velocity": 1.0},
         dict.fromkeys(("desired_position", "desired_velocity", "desired_acceleration", "position", "velocity"), NUMBER),
     ),

@@ -70,7 +70,7 @@ def crowd(people: int) -> list[nav.Human]:
     ]
 
 
-def made_up_field(*, hole: tuple[float, float] | None = (2.45, 1.4)) -> nav.ForceField:
+def made_up_field(*, hole: tuple[float, float] | None = (2.45, 1.4)) -> nav.laws.ForceField:
     x, y = np.meshgrid(np.linspace(0.0, 4.0, 33), np.linspace(-0.4, 2.6, 25))
     position = np.column_stack([x.ravel(), y.ravel()])
     offset = position - np.array(hole or (9.0, 9.0))
@@ -84,7 +84,7 @@ def made_up_field(*, hole: tuple[float, float] | None = (2.45, 1.4)) -> nav.Forc
     masked = {"attractive": attraction, "repulsive": repulsion, **terms}
     for values in masked.values():
         values[inside] = np.nan
-    return nav.ForceField(position=position, total=total, potential=potential, **masked)
+    return nav.laws.ForceField(position=position, total=total, potential=potential, **masked)
 
 
 def touched(run: nav.Trajectory, obstacle: int, instant: float) -> nav.Trajectory:

@@ -13,7 +13,7 @@ from api.spoiled import names
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
 from hrsafety.navigation.arena import Metric
-from hrsafety.navigation.statistics import Mean, compare_paired, mean_interval, wilson
+from hrsafety.navigation.metrics import Mean, compare_paired, mean_interval, wilson
 
 LAWS: dict[str, nav.Law] = {
     "field": nav.VirtualForceField(),
@@ -194,7 +194,7 @@ def test_scenarios_without_obstacles_have_no_clearance() -> None:
 
 def test_cost_of_a_step_is_a_time() -> None:
     for law in LAWS.values():
-        cost = nav.step_cost(law, SCENES["crowd 1"], repeats=2)
+        cost = nav.metrics.step_cost(law, SCENES["crowd 1"], repeats=2)
         assert isinstance(cost, float)
         assert 0.0 < cost < np.inf
 
@@ -260,7 +260,7 @@ def test_unknown_laws_and_metrics_are_refused(result: nav.ArenaResult) -> None:
 )
 def test_cost_of_nothing_is_refused(arguments: Any, argument: str) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        nav.step_cost(*arguments[:2], repeats=arguments[2] if len(arguments) > 2 else 1)
+        nav.metrics.step_cost(*arguments[:2], repeats=arguments[2] if len(arguments) > 2 else 1)
     assert names(caught.value) == argument
 
 

@@ -120,7 +120,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         for name, function in (("force_terms", nav.force_terms), ("lyapunov", nav.lyapunov))
     },
     "force_field": (
-        nav.force_field,
+        nav.laws.force_field,
         {"law": LAW, "scenario": SCENE, "position": [[3.0, 0.7], [2.0, 1.5]]},
         {
             "law": (None, SCENE),

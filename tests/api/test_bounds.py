@@ -21,7 +21,9 @@ FIELD = nav.VirtualForceField()
 ARRAY = reactive.MicrophoneArray()
 HEAR: dict[str, Any] = {"range": 1.0, "bearing": 0.0}
 FLIGHT = np.arange(0.0, 0.4, 1e-3)
-DROP = impact.drop_trajectory(FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0)
+DROP = impact.identification.drop_trajectory(
+    FLIGHT, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
+)
 DEPTH = np.linspace(0.0, 0.008, 17)
 AXIS = sweep.Axis(name="x", low=0.0, high=1.0)
 TINY: dict[str, Any] = {"grid": (2, 1, 1, 1), "refinements": 0, "local_starts": 0, "threads": 1}
@@ -59,13 +61,13 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "local_starts": (lambda count: searched(local_starts=count), HUGE),
     "grid": (lambda count: searched(grid=(count, 1, 1, 1)), HUGE),
     "evaluations": (lambda count: searched(method="cma_es", evaluations=count), HUGE),
-    "front refinements": (lambda count: nav.pareto_front([SCENE], grid=(2, 1, 1, 1), refinements=count), HUGE),
-    "seeds": (lambda count: nav.repeat(SCENE, FIELD, seeds=count), HUGE),
-    "range of seeds": (lambda count: nav.repeat(SCENE, FIELD, seeds=range(count)), (2**31, 2**53)),
-    "calibrations": (lambda count: nav.calibration_study(seeds=count), HUGE),
-    "timed runs": (lambda count: nav.step_cost(FIELD, SCENE, repeats=count), HUGE),
-    "wheel tests": (lambda count: nav.open_loop_tests(nav.HOLONOMIC_WHEELS[0], repeats=count), HUGE),
-    "pixels": (lambda count: nav.Camera(image_size_px=(count, count)), HUGE),
+    "front refinements": (lambda count: nav.gains.pareto_front([SCENE], grid=(2, 1, 1, 1), refinements=count), HUGE),
+    "seeds": (lambda count: nav.metrics.repeat(SCENE, FIELD, seeds=count), HUGE),
+    "range of seeds": (lambda count: nav.metrics.repeat(SCENE, FIELD, seeds=range(count)), (2**31, 2**53)),
+    "calibrations": (lambda count: nav.sensing.calibration_study(seeds=count), HUGE),
+    "timed runs": (lambda count: nav.metrics.step_cost(FIELD, SCENE, repeats=count), HUGE),
+    "wheel tests": (lambda count: nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0], repeats=count), HUGE),
+    "pixels": (lambda count: nav.sensing.Camera(image_size_px=(count, count)), HUGE),
     "draws": (lambda count: nav.RapidlyExploringRandomTree(draws=count), HUGE),
     "threads": (lambda count: nav.simulate_batch([SCENE], FIELD, threads=count), HUGE),
     "lanes": (lambda count: nav.simulate_batch([SCENE], FIELD, lanes=count), HUGE),
@@ -74,7 +76,7 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "bootstrap": (lambda count: impact.identify_foam(24e3 * DEPTH, DEPTH, FLIGHT, DROP, 1.54, bootstrap=count), HUGE),
     "layouts": (lambda count: reactive.experiment("static", layouts=count), HUGE),
     "samples": (lambda count: reactive.record_burst(reactive.Burst(), ARRAY, **HEAR, samples=count), HUGE),
-    "runs": (lambda count: reactive.jittered_fixes(ARRAY, **HEAR, runs=count), HUGE),
+    "runs": (lambda count: reactive.sound.jittered_fixes(ARRAY, **HEAR, runs=count), HUGE),
     "points": (lambda count: sweep.Axis(name="x", low=0.0, high=1.0, points=count), HUGE[2:]),
     "Latin rows": (lambda count: sweep.LatinHypercube([AXIS], count), HUGE[2:]),
     "Sobol rows": (lambda count: sweep.Sobol([AXIS], count), HUGE),
@@ -86,24 +88,29 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
 
 DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
     "camera period": (
-        lambda period: nav.observe(nav.Vision(period=period), [0.0, 1.0], np.zeros((2, 2))),
+        lambda period: nav.sensing.observe(nav.sensing.Vision(period=period), [0.0, 1.0], np.zeros((2, 2))),
         (1e-308, 1e-12, 1e-8),
     ),
     "camera period in a run": (
-        lambda period: nav.simulate_built(
-            SCENE, FIELD, nav.AsBuilt(obstacle_vision=nav.Vision(period=period), robot_vision=None)
+        lambda period: nav.built.simulate_built(
+            SCENE, FIELD, nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(period=period), robot_vision=None)
         ),
         (1e-308, 1e-12, 1e-8),
     ),
     "step": (lambda step: nav.simulate(SCENE, FIELD, step=step), (1e-308, 1e-12)),
     "time limit": (lambda limit: nav.simulate(replace(SCENE, time_limit=limit), FIELD), (1e308, 1e12)),
     "tracking": (
-        lambda duration: nav.track(nav.CircleReference(center=(0.0, 0.0), radius=2.0, speed=0.5), duration=duration),
+        lambda duration: nav.tracking.track(
+            nav.tracking.CircleReference(center=(0.0, 0.0), radius=2.0, speed=0.5), duration=duration
+        ),
         (1e308, 1e12),
     ),
-    "wheel reference": (lambda duration: nav.WheelReference.sine(duration=duration), (1e308, 1e12)),
-    "wheel period": (lambda period: nav.WheelReference.sine(period=period), (1e-308, 1e-12)),
-    "wheel test": (lambda duration: nav.open_loop_tests(nav.HOLONOMIC_WHEELS[0], duration=duration), (1e308, 1e12)),
+    "wheel reference": (lambda duration: nav.robots.WheelReference.sine(duration=duration), (1e308, 1e12)),
+    "wheel period": (lambda period: nav.robots.WheelReference.sine(period=period), (1e-308, 1e-12)),
+    "wheel test": (
+        lambda duration: nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0], duration=duration),
+        (1e308, 1e12),
+    ),
     "burst": (lambda duration: reactive.Burst(duration=duration), (1e308, 1e9)),
     "sample rate": (
         lambda rate: reactive.record_burst(
@@ -151,9 +158,9 @@ def test_what_is_beyond_its_bound_is_refused_at_once(call: Callable[[Any], Any],
     "call",
     [
         lambda seed: replace(SCENE, seed=seed),
-        lambda seed: nav.repeat(SCENE, FIELD, seeds=[seed]),
-        lambda seed: nav.observe(nav.Vision(), [0.0, 1.0], np.zeros((2, 2)), seed=seed),
-        lambda seed: nav.open_loop_tests(nav.HOLONOMIC_WHEELS[0], seed=seed),
+        lambda seed: nav.metrics.repeat(SCENE, FIELD, seeds=[seed]),
+        lambda seed: nav.sensing.observe(nav.sensing.Vision(), [0.0, 1.0], np.zeros((2, 2)), seed=seed),
+        lambda seed: nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0], seed=seed),
         lambda seed: reactive.Sonar().readings([], seed=seed),
         lambda seed: reactive.skirt_test(layouts=1, seed=seed),
         lambda seed: reactive.FollowerLayouts(kind="static").scene(seed),
@@ -161,7 +168,7 @@ def test_what_is_beyond_its_bound_is_refused_at_once(call: Callable[[Any], Any],
         lambda seed: reactive.experiment("static", layouts=1, first_seed=seed),
         lambda seed: reactive.Burst(seed=seed),
         lambda seed: reactive.record_burst(reactive.Burst(), ARRAY, **HEAR, seed=seed),
-        lambda seed: reactive.jittered_fixes(ARRAY, **HEAR, seed=seed),
+        lambda seed: reactive.sound.jittered_fixes(ARRAY, **HEAR, seed=seed),
         lambda seed: sweep.LatinHypercube([AXIS], 8, seed=seed),
         lambda seed: scenarios.random_crowd(1, seed=seed),
     ],
@@ -174,7 +181,7 @@ def test_seeds_that_are_none_are_refused(call: Callable[[Any], Any], seed: objec
 @pytest.mark.parametrize("temperature", [np.nan, np.inf, -400.0, -273.15])
 def test_there_is_no_sound_below_absolute_zero(temperature: float) -> None:
     with pytest.raises(InvalidParameterError, match="temperature must be finite and above"):
-        reactive.speed_of_sound(temperature)
+        reactive.sonar.speed_of_sound(temperature)
 
 
 def test_deviations_whose_square_overflows_are_refused() -> None:
@@ -196,7 +203,7 @@ def test_arrays_that_are_not_aligned_are_copied() -> None:
     table = [nav.simulate_batch([SCENE], FIELD, make(gains)).energy for make in (np.array, unaligned)]
     np.testing.assert_array_equal(*table)
     places = [[3.0, 0.7], [2.0, 1.5]]
-    fields = [nav.force_field(FIELD, SCENE, position=make(places)).total for make in (np.array, unaligned)]
+    fields = [nav.laws.force_field(FIELD, SCENE, position=make(places)).total for make in (np.array, unaligned)]
     np.testing.assert_array_equal(*fields)
     pulse = np.sin(np.linspace(0.0, np.pi, 41))
     time_ = np.linspace(0.0, 0.02, 41)
@@ -210,4 +217,4 @@ def test_errors_of_other_libraries_do_not_come_out() -> None:
     with pytest.raises(HrsafetyError, match="start_time"):
         walk.humans([1.0, 2.0], duration=1.0)  # type: ignore[arg-type]  # the failure is the test
     with pytest.raises(HrsafetyError, match="channel_class"):
-        impact.channel_filter(FLIGHT, DROP, np.ones(3))  # type: ignore[arg-type]  # the failure is the test
+        impact.criteria.channel_filter(FLIGHT, DROP, np.ones(3))  # type: ignore[arg-type]  # the failure is the test

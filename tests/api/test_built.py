@@ -39,7 +39,7 @@ def two_wheels(name: str, **changes: Any) -> nav.Scenario:
 def test_ideal_robot_is_the_point_mass_bit_for_bit(name: str, of: Any) -> None:
     measurement = None if of is None else nav.Measurement(of=of)
     scene = dataclasses.replace(scenarios.configuration(name), measurement=measurement, seed=3)
-    plain, built = nav.simulate(scene, LAW), nav.simulate_built(scene, LAW)
+    plain, built = nav.simulate(scene, LAW), nav.built.simulate_built(scene, LAW)
     for field in dataclasses.fields(plain):
         one, other = getattr(plain, field.name), getattr(built, field.name)
         if isinstance(one, np.ndarray):
@@ -49,10 +49,10 @@ def test_ideal_robot_is_the_point_mass_bit_for_bit(name: str, of: Any) -> None:
 
 
 @pytest.mark.parametrize("name", ["n1", "n2", "n3", "n4", "multiple_obstacles"])
-@pytest.mark.parametrize("wheels", [None, nav.DIFFERENTIAL_WHEELS])
+@pytest.mark.parametrize("wheels", [None, nav.robots.DIFFERENTIAL_WHEELS])
 def test_two_wheel_robot_arrives_without_a_contact_outside_critical_regions(name: str, wheels: Any) -> None:
     scene = two_wheels(name)
-    run = nav.simulate_built(scene, LAW, nav.AsBuilt(wheels=wheels))
+    run = nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(wheels=wheels))
     assert run.outcome == "arrived"
     critical = [getattr(obstacle, "critical_radius", None) for obstacle in scene.obstacles]
     assert all(least > radius for least, radius in zip(run.min_distance, critical, strict=True) if radius)
@@ -65,7 +65,7 @@ def test_two_wheel_robot_arrives_without_a_contact_outside_critical_regions(name
 def test_every_law_drives_a_two_wheel_robot(law: str) -> None:
     # c3 is left out: the laws of other authors give up there as point masses, too.
     run = nav.simulate(two_wheels("n1", time_limit=20.0), LAWS[law])
-    assert isinstance(run, nav.BuiltTrajectory)
+    assert isinstance(run, nav.built.BuiltTrajectory)
     assert np.isfinite(run.position).all()
     # The robot never moves sideways: its velocity lies along its heading.
     along = np.column_stack([np.cos(run.heading), np.sin(run.heading)])
@@ -113,15 +113,15 @@ def test_options_that_a_two_wheel_robot_cannot_have_are_refused(options: dict[st
 @pytest.mark.parametrize(
     ("built", "argument"),
     [
-        ({"wheels": nav.HOLONOMIC_WHEELS}, "wheels"),
+        ({"wheels": nav.robots.HOLONOMIC_WHEELS}, "wheels"),
         ({"wheels": ()}, "wheels"),
-        ({"robot_vision": nav.Vision()}, "measurement"),
+        ({"robot_vision": nav.sensing.Vision()}, "measurement"),
     ],
 )
 def test_what_does_not_suit_the_scenario_is_refused(built: dict[str, Any], argument: str) -> None:
     scene = two_wheels("n1", measurement=nav.Measurement())
     with pytest.raises(InvalidParameterError) as caught:
-        nav.simulate_built(scene, LAW, nav.AsBuilt(**built))
+        nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(**built))
     assert caught.value.argument == argument
 
 
@@ -140,7 +140,7 @@ def test_what_does_not_suit_the_scenario_is_refused(built: dict[str, Any], argum
 )
 def test_parts_of_another_kind_are_refused(argument: str, value: Any) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        nav.AsBuilt(**{argument: value})
+        nav.robots.AsBuilt(**{argument: value})
     assert caught.value.argument.startswith(argument)
 
 
@@ -148,35 +148,39 @@ def test_parts_of_another_kind_are_refused(argument: str, value: Any) -> None:
 @pytest.mark.parametrize("value", [-0.1, 1.1, math.nan, "1", None])
 def test_shares_are_from_0_to_1(field: str, value: Any) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        nav.PoseFusion(**{field: value})
+        nav.robots.PoseFusion(**{field: value})
     assert caught.value.argument == field
 
 
 def test_built_robot_is_a_value() -> None:
-    built = nav.AsBuilt(wheels=list(nav.DIFFERENTIAL_WHEELS), tracking=nav.VirtualTorque(), robot_vision=nav.Vision())
+    built = nav.robots.AsBuilt(
+        wheels=list(nav.robots.DIFFERENTIAL_WHEELS),
+        tracking=nav.tracking.VirtualTorque(),
+        robot_vision=nav.sensing.Vision(),
+    )
     assert pickle.loads(pickle.dumps(built)) == built
     assert hash(built) == hash(dataclasses.replace(built))
-    assert built != dataclasses.replace(built, slip=nav.Slip(creep=0.01))
+    assert built != dataclasses.replace(built, slip=nav.robots.Slip(creep=0.01))
 
 
 def test_wheels_with_controllers_lose_more_than_ideal_ones() -> None:
     # (D.3.1) adds feedback to the feed-forward that (D.3.2) counts alone.
     for scene, wheels in (
-        (scenarios.configuration("c1"), nav.HOLONOMIC_WHEELS),
-        (two_wheels("n1"), nav.DIFFERENTIAL_WHEELS),
+        (scenarios.configuration("c1"), nav.robots.HOLONOMIC_WHEELS),
+        (two_wheels("n1"), nav.robots.DIFFERENTIAL_WHEELS),
     ):
-        ideal = nav.simulate_built(scene, LAW)
-        real = nav.simulate_built(scene, LAW, nav.AsBuilt(wheels=wheels))
+        ideal = nav.built.simulate_built(scene, LAW)
+        real = nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(wheels=wheels))
         assert real.energy > ideal.energy
         assert real.arrival_time == pytest.approx(ideal.arrival_time, rel=0.01)
 
 
 def test_creeping_wheels_do_not_mislead_a_robot_that_is_seen() -> None:
-    built = nav.AsBuilt(
-        wheels=nav.DIFFERENTIAL_WHEELS,
-        slip=nav.Slip(creep=0.05),
-        robot_vision=nav.Vision(error=nav.PositionNoise(distribution="gaussian", scale=0.0032)),
+    built = nav.robots.AsBuilt(
+        wheels=nav.robots.DIFFERENTIAL_WHEELS,
+        slip=nav.robots.Slip(creep=0.05),
+        robot_vision=nav.sensing.Vision(error=nav.sensing.PositionNoise(distribution="gaussian", scale=0.0032)),
     )
-    run = nav.simulate_built(two_wheels("n3"), LAW, built)
+    run = nav.built.simulate_built(two_wheels("n3"), LAW, built)
     assert run.outcome == "arrived"
     assert not np.array_equal(run.seen_position, run.position)

@@ -18,12 +18,12 @@ VELOCITY = np.tile([1.0, 0.2], (len(TIME), 1))
 
 
 @pytest.fixture(scope="module")
-def study() -> nav.CalibrationStudy:
-    return nav.calibration_study(seeds=3)
+def study() -> nav.sensing.CalibrationStudy:
+    return nav.sensing.calibration_study(seeds=3)
 
 
-def test_errors_are_drawn_in_millimeters_at_each_height(study: nav.CalibrationStudy) -> None:
-    figure = plotting.calibration_errors(study, title="errors")
+def test_errors_are_drawn_in_millimeters_at_each_height(study: nav.sensing.CalibrationStudy) -> None:
+    figure = plotting.robots.calibration_errors(study, title="errors")
     picture, low, high, bar = figure.axes
     assert bar.get_ylabel() == "mean error (mm)"
     for axes, height in ((low, 0.3), (high, 1.4)):
@@ -38,33 +38,36 @@ def test_errors_are_drawn_in_millimeters_at_each_height(study: nav.CalibrationSt
 
 
 def test_errors_need_places() -> None:
-    empty = nav.calibration_study(seeds=1, places=np.empty((0, 3)))
+    empty = nav.sensing.calibration_study(seeds=1, places=np.empty((0, 3)))
     with pytest.raises(InvalidParameterError, match="places"):
-        plotting.calibration_errors(empty)
+        plotting.robots.calibration_errors(empty)
 
 
 def test_velocities_are_drawn_beside_the_true_ones() -> None:
-    seen = [nav.observe(nav.Vision(estimator=each), TIME, PATH) for each in (nav.Differences(), nav.Kalman())]
-    figure = plotting.velocity_estimates(TIME, VELOCITY, seen, labels=["plain", "filter"])
+    seen = [
+        nav.sensing.observe(nav.sensing.Vision(estimator=each), TIME, PATH)
+        for each in (nav.sensing.Differences(), nav.sensing.Kalman())
+    ]
+    figure = plotting.robots.velocity_estimates(TIME, VELOCITY, seen, labels=["plain", "filter"])
     for component, axes in enumerate(figure.axes):
         true, *lines = axes.get_lines()
         assert np.array_equal(true.get_ydata(), VELOCITY[:, component])
         for line, each in zip(lines, seen, strict=True):
             assert np.array_equal(line.get_ydata(), each.velocity[:, component], equal_nan=True)
     assert [line.get_label() for line in figure.axes[0].get_lines()] == ["true", "plain", "filter"]
-    assert len(plotting.velocity_estimates(TIME, VELOCITY, seen[0]).axes) == 2
+    assert len(plotting.robots.velocity_estimates(TIME, VELOCITY, seen[0]).axes) == 2
 
 
 def test_wrong_input_of_velocities_is_refused() -> None:
-    seen = nav.observe(nav.Vision(), TIME, PATH)
+    seen = nav.sensing.observe(nav.sensing.Vision(), TIME, PATH)
     with pytest.raises(InvalidParameterError, match="observations"):
-        plotting.velocity_estimates(TIME, VELOCITY, [])
+        plotting.robots.velocity_estimates(TIME, VELOCITY, [])
     with pytest.raises(InvalidParameterError, match="labels"):
-        plotting.velocity_estimates(TIME, VELOCITY, seen, labels=["one", "two"])
+        plotting.robots.velocity_estimates(TIME, VELOCITY, seen, labels=["one", "two"])
     with pytest.raises(ShapeError, match="velocity"):
-        plotting.velocity_estimates(TIME, VELOCITY[:-1], seen)
+        plotting.robots.velocity_estimates(TIME, VELOCITY[:-1], seen)
     with pytest.raises(ShapeError, match="observations"):
-        plotting.velocity_estimates(TIME[:-1], VELOCITY[:-1], seen)
+        plotting.robots.velocity_estimates(TIME[:-1], VELOCITY[:-1], seen)
 
 
 def test_camera_of_the_source_is_recovered_and_its_errors_stand_beside() -> None:
@@ -81,13 +84,13 @@ def test_camera_of_the_source_is_recovered_and_its_errors_stand_beside() -> None
 
 def test_printed_figures_of_the_camera_are_its_defaults() -> None:
     rows = {row["figure"]: row for row in reproduce.published_tables()["zeng2011:section D.4"]["rows"]}
-    camera = nav.Camera()
+    camera = nav.sensing.Camera()
     assert rows["focal_length"]["value"] == pytest.approx(1e3 * camera.focal_length)
     assert rows["radial_distortion"]["value"] == pytest.approx(1e-6 * camera.radial_distortion)
     printed = np.array([[rows[f"rotation_{i}{j}"]["value"] for j in (1, 2, 3)] for i in (1, 2, 3)])
-    assert nav.nearest_rotation(printed) == pytest.approx(np.array(camera.rotation), abs=1e-15)
+    assert nav.sensing.nearest_rotation(printed) == pytest.approx(np.array(camera.rotation), abs=1e-15)
     assert all(row["unit"] for row in rows.values())
-    assert rows["points"]["value"] == len(nav.calibration_points())
+    assert rows["points"]["value"] == len(nav.sensing.calibration_points())
 
 
 def test_page_of_the_camera_is_made(tmp_path: Path) -> None:

@@ -187,7 +187,7 @@ def test_values_are_those_of_the_library(small_example: tuple[Path, str]) -> Non
     assert found["flatness"]["low"] == dict(zip(flatness.gain_names, flatness.low.tolist(), strict=True))
     assert f"objective      performance {search.best_value:.5f}" in text
     assert study.front is not None
-    front = nav.pareto_front(study.scenarios, study.law, bounds=study.search["bounds"], **study.front)
+    front = nav.gains.pareto_front(study.scenarios, study.law, bounds=study.search["bounds"], **study.front)
     assert found["front"]["values"] == front.values.tolist()
     with (folder / "front.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

@@ -55,10 +55,10 @@ SHARED: dict[str, tuple[Any, ...]] = {
         None,
         5,
         "energy",
-        nav.GainConstraint(metric="energy", at_most=5.0),
+        nav.gains.GainConstraint(metric="energy", at_most=5.0),
         [None],
         ["energy"],
-        [nav.GainConstraint(metric="energy", at_most=5.0, scenario=1)],
+        [nav.gains.GainConstraint(metric="energy", at_most=5.0, scenario=1)],
     ),
     "seeds": (0, -1, 1.5, "2", True, 3),  # 3: nothing is measured with noise
     "seed": (*COUNT, 2**64),
@@ -85,7 +85,7 @@ BAD: dict[str, tuple[Any, dict[str, tuple[Any, ...]]]] = {
         },
     ),
     "pareto_front": (
-        nav.pareto_front,
+        nav.gains.pareto_front,
         SHARED | {"objectives": ((), ("energy",), "energy", None, 5, ("energy", "unknown"), ("energy", None))},
     ),
 }
@@ -122,7 +122,7 @@ def test_a_lower_bound_needs_two_seeds() -> None:
 
 def test_a_clearance_needs_an_obstacle() -> None:
     scenes = [SCENE, replace(SCENE, obstacles=())]
-    limit = nav.GainConstraint(metric="min_clearance", at_least=0.1)
+    limit = nav.gains.GainConstraint(metric="min_clearance", at_least=0.1)
     second = replace(limit, scenario=1)
     for options, name in (
         ({"objective": "min_clearance"}, "objective"),
@@ -154,26 +154,26 @@ CONSTRAINT: dict[str, tuple[Any, ...]] = {
 )
 def test_bad_constraint_is_refused_by_name(argument: str, value: Any) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        nav.GainConstraint(**({"metric": "energy", "at_most": 5.0} | {argument: value}))
+        nav.gains.GainConstraint(**({"metric": "energy", "at_most": 5.0} | {argument: value}))
     assert names(caught.value) == argument
 
 
 def test_constraint_needs_a_bound_and_bounds_in_order() -> None:
     for bounds in ({}, {"at_least": 2.0, "at_most": 1.0}):
         with pytest.raises(InvalidParameterError) as caught:
-            nav.GainConstraint(metric="energy", **bounds)  # type: ignore[arg-type]  # numbers only
+            nav.gains.GainConstraint(metric="energy", **bounds)  # type: ignore[arg-type]  # numbers only
         assert caught.value.argument == "at_least"
 
 
 def test_constraints_are_compared_and_pickled_by_value() -> None:
-    one = nav.GainConstraint(metric="energy", at_least=1, at_most=5, scenario=2)
+    one = nav.gains.GainConstraint(metric="energy", at_least=1, at_most=5, scenario=2)
     assert pickle.loads(pickle.dumps(one)) == one
-    assert hash(one) == hash(nav.GainConstraint(metric="energy", at_least=1.0, at_most=5.0, scenario=2))
+    assert hash(one) == hash(nav.gains.GainConstraint(metric="energy", at_least=1.0, at_most=5.0, scenario=2))
     assert isinstance(one.at_least, float)
 
 
 def test_row_of_a_front_that_does_not_exist_is_refused() -> None:
-    front = nav.pareto_front([SCENE], objectives=("arrival_time", "energy"), grid=(3, 3, 3, 3), refinements=0)
+    front = nav.gains.pareto_front([SCENE], objectives=("arrival_time", "energy"), grid=(3, 3, 3, 3), refinements=0)
     assert front.law(0).gains == tuple(front.gains[0])
     for index in (len(front), -1, 0.5):
         with pytest.raises(InvalidParameterError) as caught:

@@ -134,11 +134,11 @@ def test_global_search_resumes_bit_for_bit(method: Any, tmp_path: Path) -> None:
 
 def test_front_resumes_bit_for_bit(tmp_path: Path) -> None:
     options: dict[str, Any] = {"grid": LONG["grid"], "threads": 1}
-    whole = nav.pareto_front(SCENES, **options)
+    whole = nav.gains.pareto_front(SCENES, **options)
     file = tmp_path / "front.npz"
-    first = nav.pareto_front(SCENES, checkpoint=file, progress=Stopper("front 1", KeyboardInterrupt()), **options)
+    first = nav.gains.pareto_front(SCENES, checkpoint=file, progress=Stopper("front 1", KeyboardInterrupt()), **options)
     assert first.interrupted
-    assert_same(nav.pareto_front(SCENES, checkpoint=file, **options), whole)
+    assert_same(nav.gains.pareto_front(SCENES, checkpoint=file, **options), whole)
 
 
 def test_other_exceptions_of_progress_are_raised_and_leave_a_checkpoint(whole: nav.GainSearch, tmp_path: Path) -> None:
@@ -170,7 +170,10 @@ def test_exception_of_a_callable_is_raised_as_it_is() -> None:
 def test_what_a_callable_returns_is_checked(result: Any) -> None:
     for name, options in (
         ("objective", {"objective": lambda _table: result}),
-        ("constraints[1]", {"constraints": [nav.GainConstraint(metric="energy", at_most=9), lambda _table: result]}),
+        (
+            "constraints[1]",
+            {"constraints": [nav.gains.GainConstraint(metric="energy", at_most=9), lambda _table: result]},
+        ),
     ):
         with pytest.raises(InvalidParameterError) as caught:
             nav.optimize_gains(SCENES, **(TINY | options))  # type: ignore[arg-type]  # options of several kinds
@@ -209,7 +212,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("law.pass_behind", {"law": nav.VirtualForceField(stabilizing="off", pass_behind=False)}),
         ("objectives[0]", {"objective": "energy"}),
         ("weights[0]", {"weights": (0.5, 0.25, 0.25)}),
-        ("constraints (length)", {"constraints": [nav.GainConstraint(metric="energy", at_most=5.0)]}),
+        ("constraints (length)", {"constraints": [nav.gains.GainConstraint(metric="energy", at_most=5.0)]}),
         ("step", {"step": 0.02}),
         ("hold", {"hold": False}),
         ("integrator", {"integrator": "rk4"}),
@@ -316,7 +319,7 @@ def test_front_of_millions_of_points_stops_soon() -> None:
 
 def test_equal_points_of_a_front_are_run_once() -> None:
     above = np.nextafter(20.0, 21.0)
-    found = nav.pareto_front(
+    found = nav.gains.pareto_front(
         SCENES, grid=(5, 2, 2, 2), refinements=0, bounds={"attractive_gain": (20.0, above)}, threads=1
     )
     assert found.evaluations == 2 * 2 * 2 * 2

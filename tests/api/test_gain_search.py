@@ -15,8 +15,8 @@ from scipy import optimize, stats
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.errors import InfeasibleError
-from hrsafety.navigation.gain_confidence import confidence_of, student_quantile
-from hrsafety.navigation.gain_problem import gain_problem, noise_seeds
+from hrsafety.navigation.gains.confidence import confidence_of, student_quantile
+from hrsafety.navigation.gains.problem import gain_problem, noise_seeds
 
 SCENES = [scenarios.configuration(name) for name in ("c1", "c2", "c3")]
 LAW = nav.VirtualForceField(stabilizing="off")
@@ -38,7 +38,7 @@ def mean_scores(gains: Any) -> np.ndarray:
     return batch(gains).performance_total.reshape(-1, len(SCENES)).mean(axis=1)
 
 
-def points_of(entry: nav.SearchRound) -> np.ndarray:
+def points_of(entry: nav.gains.SearchRound) -> np.ndarray:
     return np.array(list(itertools.product(*entry.axes)))
 
 
@@ -296,7 +296,7 @@ def test_a_noisy_search_arrives_with_every_seed() -> None:
 
 
 def test_history_of_a_global_search_counts_what_keeps_the_constraints_only() -> None:
-    limit = nav.GainConstraint(metric="min_clearance", at_least=0.26)
+    limit = nav.gains.GainConstraint(metric="min_clearance", at_least=0.26)
     found = nav.optimize_gains(SCENES, constraints=[limit], method="cma_es", evaluations=2000)
     assert found.feasible
     assert (np.diff(found.convergence[:, 1]) >= 0.0).all()
@@ -306,9 +306,9 @@ def test_history_of_a_global_search_counts_what_keeps_the_constraints_only() -> 
 def test_a_front_holds_what_arrives_only() -> None:
     names = ("performance", "performance_avoidance")
     options: dict[str, Any] = {"objectives": names, "grid": (4, 4, 4, 4), "refinements": 0}
-    front = nav.pareto_front(SCENES, **options)
+    front = nav.gains.pareto_front(SCENES, **options)
     assert (batch(front.gains).outcome == "arrived").all()
-    loose = nav.pareto_front(SCENES, require_arrival=False, **options)
+    loose = nav.gains.pareto_front(SCENES, require_arrival=False, **options)
     assert not (batch(loose.gains).outcome == "arrived").all()
 
 
@@ -317,7 +317,7 @@ def test_a_front_holds_what_arrives_only() -> None:
 
 def test_constraint_that_the_free_optimum_misses_is_kept(search: nav.GainSearch) -> None:
     free = float(batch(search.best.gains).min_clearance.min())
-    limit = nav.GainConstraint(metric="min_clearance", at_least=free + 0.03)
+    limit = nav.gains.GainConstraint(metric="min_clearance", at_least=free + 0.03)
     found = nav.optimize_gains(SCENES, constraints=[limit], **SMALL)
     assert found.feasible
     assert batch(found.best.gains).min_clearance.min() >= free + 0.03 - 1e-6
@@ -327,7 +327,7 @@ def test_constraint_that_the_free_optimum_misses_is_kept(search: nav.GainSearch)
 
 def test_callable_constraint_is_the_same_as_the_named_one(search: nav.GainSearch) -> None:
     free = float(batch(search.best.gains).min_clearance.min())
-    named = nav.GainConstraint(metric="min_clearance", at_least=free + 0.03)
+    named = nav.gains.GainConstraint(metric="min_clearance", at_least=free + 0.03)
     one = nav.optimize_gains(SCENES, constraints=[named], **GRIDS_ONLY)
     other = nav.optimize_gains(
         SCENES,
@@ -340,14 +340,14 @@ def test_callable_constraint_is_the_same_as_the_named_one(search: nav.GainSearch
 
 def test_constraint_on_one_scenario(search: nav.GainSearch) -> None:
     times = batch(search.best.gains).arrival_time
-    limit = nav.GainConstraint(metric="arrival_time", at_most=float(times[1]) - 0.05, scenario=1)
+    limit = nav.gains.GainConstraint(metric="arrival_time", at_most=float(times[1]) - 0.05, scenario=1)
     found = nav.optimize_gains(SCENES, constraints=(limit,), **SMALL)
     assert found.feasible
     assert batch(found.best.gains).arrival_time[1] <= times[1] - 0.05 + 1e-6
 
 
 def test_constraint_that_cannot_hold_is_reported() -> None:
-    limit = nav.GainConstraint(metric="arrival_time", at_most=1.0)
+    limit = nav.gains.GainConstraint(metric="arrival_time", at_most=1.0)
     found = nav.optimize_gains(SCENES, constraints=[limit], **GRIDS_ONLY)
     assert not found.feasible
     assert found.violation > 0.0
@@ -418,7 +418,7 @@ def test_constraint_has_to_hold_with_every_seed(robust: nav.GainSearch) -> None:
         scenes = [replace(scene, seed=seed) for seed in seeds for scene in NOISY]
         return float(nav.simulate_batch(scenes, law, stop_on_contact=True).min_clearance.min())
 
-    limit = nav.GainConstraint(metric="min_clearance", at_least=least(robust.best) + 0.02)
+    limit = nav.gains.GainConstraint(metric="min_clearance", at_least=least(robust.best) + 0.02)
     found = nav.optimize_gains(NOISY, LAW, seeds=8, seed=3, constraints=[limit], **SMALL)
     assert (found.violation == 0.0) == (least(found.nearest) >= least(robust.best) + 0.02 - 1e-6)
     assert found.violation > 0.0 or found.best_value <= robust.best_value
@@ -519,7 +519,7 @@ def test_scipy_cannot_improve_the_best_set_much(search: nav.GainSearch) -> None:
 
 
 def test_front_of_nothing_is_empty() -> None:
-    front = nav.pareto_front(SCENES[:1], bounds={"attractive_gain": (0.0, 0.0)}, grid=(1, 3, 3, 3))
+    front = nav.gains.pareto_front(SCENES[:1], bounds={"attractive_gain": (0.0, 0.0)}, grid=(1, 3, 3, 3))
     assert len(front) == 0
     assert front.hypervolume == 0.0
     assert front.failures == front.evaluations > 0
@@ -529,8 +529,8 @@ def test_callables_in_a_front_are_named_and_maximized() -> None:
     def calm(table: nav.BatchSummary) -> np.ndarray:
         return -table.path_length.reshape(-1, len(SCENES)).mean(axis=1)
 
-    named = nav.pareto_front(SCENES, objectives=("energy", "path_length"), grid=(4, 4, 4, 4))
-    found = nav.pareto_front(SCENES, objectives=("energy", calm), grid=(4, 4, 4, 4))
+    named = nav.gains.pareto_front(SCENES, objectives=("energy", "path_length"), grid=(4, 4, 4, 4))
+    found = nav.gains.pareto_front(SCENES, objectives=("energy", calm), grid=(4, 4, 4, 4))
     assert found.objectives == ("energy", "calm")
     assert found.maximized == (False, True)
     np.testing.assert_array_equal(found.gains, named.gains)

@@ -24,7 +24,7 @@ CHANGES = (-50.0, -10.0, 0.0, 10.0, 100.0)
 
 
 @pytest.fixture(scope="module")
-def table() -> nav.GainSensitivity:
+def table() -> nav.gains.GainSensitivity:
     return nav.gain_sensitivity(SCENES, SOURCE, CHANGES)
 
 
@@ -35,7 +35,7 @@ def law_of(gains: Any) -> nav.VirtualForceField:
 # ---- sensitivity ----------------------------------------------------------------------------
 
 
-def test_every_cell_is_the_single_run_of_its_gains(table: nav.GainSensitivity) -> None:
+def test_every_cell_is_the_single_run_of_its_gains(table: nav.gains.GainSensitivity) -> None:
     for gain in range(4):
         for change in (0, 3):
             for index, scene in enumerate(SCENES):
@@ -47,14 +47,14 @@ def test_every_cell_is_the_single_run_of_its_gains(table: nav.GainSensitivity) -
                 np.testing.assert_equal(table.arrival_time[gain, change, index], found.trajectory.arrival_time)
 
 
-def test_one_gain_changes_at_a_time(table: nav.GainSensitivity) -> None:
+def test_one_gain_changes_at_a_time(table: nav.gains.GainSensitivity) -> None:
     for gain in range(4):
         expected = np.tile(SOURCE.gains, (len(CHANGES), 1))
         expected[:, gain] *= 1 + np.array(CHANGES) / 100
         np.testing.assert_allclose(table.gains[gain], expected, rtol=1e-15)
 
 
-def test_relative_sensitivity_is_the_printed_equation(table: nav.GainSensitivity) -> None:
+def test_relative_sensitivity_is_the_printed_equation(table: nav.gains.GainSensitivity) -> None:
     best = table.reference_performance.mean()
     for gain, own in enumerate(SOURCE.gains):
         for change in (1, 3, 4):
@@ -78,13 +78,13 @@ def test_a_gain_of_zero_has_no_relative_change() -> None:
     assert np.isnan(found.largest_sensitivity()[1])
 
 
-def test_summary_of_the_sensitivities(table: nav.GainSensitivity) -> None:
+def test_summary_of_the_sensitivities(table: nav.gains.GainSensitivity) -> None:
     finite = np.abs(np.delete(table.relative_sensitivity, 2, axis=1))
     np.testing.assert_array_equal(table.largest_sensitivity(), finite.max(axis=1))
     np.testing.assert_allclose(table.average_sensitivity(), finite.mean(axis=1), rtol=1e-15)
 
 
-def test_columns_hold_every_cell_once(table: nav.GainSensitivity) -> None:
+def test_columns_hold_every_cell_once(table: nav.gains.GainSensitivity) -> None:
     columns = table.columns()
     assert {len(column) for column in columns.values()} == {4 * len(CHANGES)}
     assert "min_distance_2_1" in columns
@@ -96,7 +96,7 @@ def test_columns_hold_every_cell_once(table: nav.GainSensitivity) -> None:
     assert columns["mean_performance"][row] == table.mean_performance[2, 3]
 
 
-def test_threads_do_not_change_a_bit_and_progress_ends_at_the_total(table: nav.GainSensitivity) -> None:
+def test_threads_do_not_change_a_bit_and_progress_ends_at_the_total(table: nav.gains.GainSensitivity) -> None:
     seen: list[tuple[int, int]] = []
     again = nav.gain_sensitivity(SCENES, SOURCE, CHANGES, threads=1, progress=lambda *now: seen.append(now))
     assert again.performance.tobytes() == table.performance.tobytes()
@@ -104,8 +104,8 @@ def test_threads_do_not_change_a_bit_and_progress_ends_at_the_total(table: nav.G
     assert seen[-1] == (runs, runs)
 
 
-def test_results_can_be_pickled(table: nav.GainSensitivity) -> None:
-    for found in (table, nav.gain_gradient(SCENES[:1], SOURCE)):
+def test_results_can_be_pickled(table: nav.gains.GainSensitivity) -> None:
+    for found in (table, nav.gains.gain_gradient(SCENES[:1], SOURCE)):
         copy = pickle.loads(pickle.dumps(found))
         for field in dataclasses.fields(found):  # type: ignore[arg-type]  # a dataclass
             np.testing.assert_array_equal(getattr(copy, field.name), getattr(found, field.name))
@@ -124,7 +124,7 @@ def mean_of(metric: str, gains: np.ndarray) -> float:
     [("performance", "performance_total"), ("arrival_time", "arrival_time"), ("min_clearance", "min_clearance")],
 )
 def test_slopes_are_those_of_scipy(metric: Any, column: str) -> None:
-    own = nav.gain_gradient(SCENES, SOURCE, metric=metric, relative_step=1e-3)
+    own = nav.gains.gain_gradient(SCENES, SOURCE, metric=metric, relative_step=1e-3)
     gains = np.array(SOURCE.gains)
     peer = approx_derivative(
         lambda point: mean_of(column, point), gains, method="3-point", abs_step=own.steps, bounds=(0.0, np.inf)
@@ -137,7 +137,7 @@ def test_slopes_are_those_of_scipy(metric: Any, column: str) -> None:
 
 def test_slope_at_zero_looks_upwards_as_scipy_does() -> None:
     law = replace(SOURCE, repulsive_gain=0.0)
-    own = nav.gain_gradient(SCENES[:1], law, metric="energy", steps=(0.01, 0.5, 1.0, 0.001))
+    own = nav.gains.gain_gradient(SCENES[:1], law, metric="energy", steps=(0.01, 0.5, 1.0, 0.001))
     slope = approx_derivative(
         lambda point: nav.simulate_batch(SCENES[:1], law, point[None, :]).energy[0],
         np.array(law.gains),
@@ -150,14 +150,14 @@ def test_slope_at_zero_looks_upwards_as_scipy_does() -> None:
 
 
 def test_error_covers_the_slopes_of_smaller_steps() -> None:
-    wide = nav.gain_gradient(SCENES, SOURCE, relative_step=0.02)
-    half = nav.gain_gradient(SCENES, SOURCE, relative_step=0.01)
+    wide = nav.gains.gain_gradient(SCENES, SOURCE, relative_step=0.02)
+    half = nav.gains.gain_gradient(SCENES, SOURCE, relative_step=0.01)
     assert (np.abs(half.gradient - wide.gradient) <= wide.error * (1 + 1e-9)).all()
     np.testing.assert_allclose(wide.gradient, (wide.forward + wide.backward) / 2, rtol=1e-9, atol=1e-15)
 
 
 def test_no_slope_where_a_run_fails() -> None:
-    found = nav.gain_gradient(SCENES, replace(SOURCE, attractive_gain=0.0))
+    found = nav.gains.gain_gradient(SCENES, replace(SOURCE, attractive_gain=0.0))
     assert np.isnan(found.gradient).all()
     assert np.isnan(found.value)
 
@@ -183,7 +183,7 @@ BAD: dict[str, tuple[Any, dict[str, tuple[Any, ...]]]] = {
         },
     ),
     "gain_gradient": (
-        nav.gain_gradient,
+        nav.gains.gain_gradient,
         SHARED
         | {
             "metric": (*WORD, "total"),

@@ -26,10 +26,10 @@ VALUES: list[tuple[Any, dict[str, Any]]] = [
     (impact.MANIPULATOR_1, {"mass": 10.0}),
     (impact.Head.minimum(), {"damping": 0.0}),
     (impact.FOAM_1, {"linear_range": 0.015}),
-    (impact.DirectDrive(proportional=448.7, derivative=5.579), {"voltage_limit": math.inf}),
+    (impact.joints.DirectDrive(proportional=448.7, derivative=5.579), {"voltage_limit": math.inf}),
     (impact.SetPoint.accelerating(5.0, duration=0.05), {"feed_forward": True}),
     (impact.FoamLimits(), {"peak_head_acceleration_g": 8.0}),
-    (impact.CylinderController(), {"derivative": 0.0}),
+    (impact.joints.CylinderController(), {"derivative": 0.0}),
 ]
 
 each_value = pytest.mark.parametrize(("value", "change"), VALUES, ids=[type(value).__name__ for value, _ in VALUES])
@@ -222,14 +222,14 @@ def test_speed_of_the_impact_point_is_that_of_its_links() -> None:
 
     normal = np.array([-np.sin(0.2 + elbow), np.cos(0.2 + elbow)])
     wanted = float(normal @ (place(step) - place(-step))) / (2.0 * step)
-    found = impact.impact_point_speed(rates, second_link=second, lever_arm=lever, elbow=elbow)
+    found = impact.joints.impact_point_speed(rates, second_link=second, lever_arm=lever, elbow=elbow)
     assert found == pytest.approx(wanted, rel=1e-9)  # central differences
-    straight = impact.impact_point_speed(rates, second_link=second, lever_arm=lever)
+    straight = impact.joints.impact_point_speed(rates, second_link=second, lever_arm=lever)
     assert straight == pytest.approx((second + lever) * rates[0] + lever * rates[1], rel=ROUNDING)
 
 
 def test_cylinder_is_commanded_by_its_errors_and_its_wanted_motion() -> None:
-    command = impact.CylinderController().command
+    command = impact.joints.CylinderController().command
     moving = {"desired_position": 0.2, "desired_velocity": 1.0, "position": 0.2, "velocity": 1.0}
     assert command(**moving) == pytest.approx(0.44, rel=ROUNDING)
     assert command(**moving, desired_acceleration=2.0) == pytest.approx(0.44 + 2.0 * 0.34, rel=ROUNDING)

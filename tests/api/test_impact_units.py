@@ -26,8 +26,8 @@ def test_milliseconds_are_refused_by_the_criteria() -> None:
     # What is defined by straight lines between samples stays defined, with a doubt.
     for found in (
         impact.hic(time, pulse, interpolate=True),
-        impact.clip_3ms(time, pulse),
-        impact.average_3ms(time, pulse),
+        impact.criteria.clip_3ms(time, pulse),
+        impact.criteria.average_3ms(time, pulse),
     ):
         assert "time" in subjects(found)
 
@@ -66,16 +66,18 @@ def test_wrong_units_of_parameters_are_named_in_every_result() -> None:
 
 
 def test_millimeters_in_foam_tests_are_doubted() -> None:
-    fit = impact.fit_static([0.0, 24.0, 49.0, 72.0], [0.0, 1.0, 2.0, 3.0])
+    fit = impact.identification.fit_static([0.0, 24.0, 49.0, 72.0], [0.0, 1.0, 2.0, 3.0])
     assert subjects(fit) == ["static_compression", "fitted stiffness"]
-    assert impact.fit_static([0.0, 24.0, 49.0, 72.0], [0.0, 0.001, 0.002, 0.003]).warnings == ()
+    assert impact.identification.fit_static([0.0, 24.0, 49.0, 72.0], [0.0, 0.001, 0.002, 0.003]).warnings == ()
 
 
 @pytest.mark.parametrize("ratio", [1.05, 1.2, 1e2, 1e4, 1e8])
 @pytest.mark.parametrize("contact", ["unilateral", "attached"])
 def test_overdamped_drop_creeps_to_its_rest(ratio: float, contact: str) -> None:
     time = np.linspace(0.0, 1.0, 50)
-    path = impact.drop_trajectory(time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=ratio, contact=contact)
+    path = impact.identification.drop_trajectory(
+        time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=ratio, contact=contact
+    )
     assert np.isfinite(path).all()
     rest = -1.54 * GRAVITY / 24250.0
     # In contact at the slow root: the offset from the rest shrinks by the same factor from sample to sample.
@@ -95,7 +97,7 @@ def test_numbers_that_overflow_are_refused() -> None:
         impact.metrics(ARM, FOAM, HEAD, closing_speed=1e308)
     for force, compression in (([0.0, 1e200, 2e200], [0.0, 0.001, 0.002]), ([0.0, 1.0, 2.0], [0.0, 1e200, 2e200])):
         with pytest.raises(InvalidParameterError, match="squares"):
-            impact.fit_static(force, compression)
+            impact.identification.fit_static(force, compression)
 
 
 def test_masked_values_are_refused_by_name() -> None:
@@ -113,8 +115,8 @@ def test_masked_values_are_refused_by_name() -> None:
     ("preparation", "work"),
     [
         (
-            "from hrsafety import impact",
-            "impact.drop_trajectory([0.0, 30.0], height=0.05, mass=1.54, stiffness=1e20, damping_ratio=0.1)",
+            "from hrsafety.impact import identification",
+            "identification.drop_trajectory([0.0, 30.0], height=0.05, mass=1.54, stiffness=1e20, damping_ratio=0.1)",
         ),
         (
             "import numpy as np\nfrom hrsafety import impact\n"

@@ -46,7 +46,7 @@ def expected(form: str, *, view: float = math.pi) -> np.ndarray:
 @pytest.mark.parametrize("view", [math.pi, 0.9])
 def test_force_is_that_of_the_reactive_part(form: str, view: float) -> None:
     law = nav.VirtualImpedanceLaw(form=form, view=view)
-    found = nav.command(law, SCENE, position=tuple(POSITION), velocity=tuple(VELOCITY))
+    found = nav.laws.command(law, SCENE, position=tuple(POSITION), velocity=tuple(VELOCITY))
     np.testing.assert_allclose(found, expected(form, view=view), rtol=1e-12)
 
 
@@ -56,7 +56,7 @@ def test_narrow_view_misses_what_is_beside() -> None:
 
 def test_obstacles_beyond_reach_do_not_push() -> None:
     near = nav.VirtualImpedanceLaw(reach=0.5)
-    found = nav.command(near, SCENE, position=tuple(POSITION), velocity=tuple(VELOCITY))
+    found = nav.laws.command(near, SCENE, position=tuple(POSITION), velocity=tuple(VELOCITY))
     np.testing.assert_allclose(found, 2.0 * (np.array(SCENE.goal) - POSITION) - VELOCITY, rtol=1e-12)
 
 

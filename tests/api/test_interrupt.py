@@ -32,9 +32,9 @@ PLANNED = "nav.simulate_batch(crowds, nav.FieldDStar(resolution=0.02), threads=2
 # Wheels with controllers every millisecond.
 WHEELS = """
 from hrsafety import scenarios
-scene, built = scenarios.configuration("c4"), nav.AsBuilt(wheels=nav.HOLONOMIC_WHEELS)
+scene, built = scenarios.configuration("c4"), nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
 """
-REPEATED = "nav.repeat(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
+REPEATED = "nav.metrics.repeat(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
 
 PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
 SPEEDS = "speeds = np.linspace(0.1, 2.0, 20_000_000)\n" + PARTS
@@ -43,13 +43,15 @@ BATCH = (
 )
 RECORD = "impact.simulate(*parts, closing_speed=1.25, duration=0.04, step=1e-9, method={method!r})"
 JOINT = """
-drive = impact.DirectDrive(proportional=448.7, derivative=5.579)
+drive = impact.joints.DirectDrive(proportional=448.7, derivative=5.579)
 """
-DRIVEN = """impact.simulate_direct_drive(
+DRIVEN = """impact.joints.simulate_direct_drive(
         drive, impact.FOAM_1, impact.Head.apparatus(), closing_speed=1.25, duration=2500.0, step=1e-3)"""
 DROP = """
 time_ = np.arange(0.0, 0.4, 0.001)
-drop = impact.drop_trajectory(time_, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0)
+drop = impact.identification.drop_trajectory(
+    time_, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
+)
 depth = np.linspace(0.0, 0.008, 17)
 force = 24250.0 * depth + np.sin(np.arange(17.0))
 """

@@ -80,9 +80,9 @@ def test_every_way_to_run_a_robot_is_late_alike(of: str) -> None:
     assert (gains.path_length == one.path_length[0]).all()
     assert nav.evaluate(place, LAW).trajectory.position.tolist() == run.position.tolist()
     assert nav.arena({"field": LAW}, [place]).min_clearance[0, 0] == run.min_clearance.min()
-    built = nav.simulate_built(place, LAW)
+    built = nav.built.simulate_built(place, LAW)
     assert built.position.tolist() == run.position.tolist()
-    again = nav.repeat(place, LAW, seeds=[5])
+    again = nav.metrics.repeat(place, LAW, seeds=[5])
     assert again.path_length[0] == built.path_length
     prompt = nav.simulate(replace(place, measurement=replace(measured, latency=0.0)), LAW)
     assert prompt.path_length != run.path_length

@@ -139,7 +139,7 @@ def test_gains_by_name_are_those_of_the_law_otherwise(name: str) -> None:
 @each_law
 def test_command_at_the_start_is_the_first_force_of_the_run(name: str) -> None:
     for scene in (*SCENES, TRAFFIC):
-        force = nav.command(LAWS[name], scene, position=scene.start, velocity=(0.0, 0.0))
+        force = nav.laws.command(LAWS[name], scene, position=scene.start, velocity=(0.0, 0.0))
         assert force.shape == (2,)
         assert force.tobytes() == nav.simulate(scene, LAWS[name]).force[0].tobytes()
 
@@ -150,8 +150,8 @@ def test_command_knows_the_time(name: str) -> None:
     assert len(discs) == 3
     later = replace(TRAFFIC, obstacles=tuple(replace(disc, center=_moved(disc, 3.0)) for disc in discs))
     state: dict[str, Any] = {"position": (1.0, 0.2), "velocity": (0.3, 0.0)}
-    force = nav.command(LAWS[name], TRAFFIC, time=3.0, **state)
-    assert force == pytest.approx(nav.command(LAWS[name], later, **state), abs=1e-9)
+    force = nav.laws.command(LAWS[name], TRAFFIC, time=3.0, **state)
+    assert force == pytest.approx(nav.laws.command(LAWS[name], later, **state), abs=1e-9)
 
 
 def _moved(disc: nav.MovingDisc, time: float) -> tuple[float, float]:
@@ -161,16 +161,16 @@ def _moved(disc: nav.MovingDisc, time: float) -> tuple[float, float]:
 @each_law
 def test_command_does_not_depend_on_calls_before(name: str) -> None:
     state: dict[str, Any] = {"position": (3.2, 0.62), "velocity": (-0.4, 0.1)}
-    first = nav.command(LAWS[name], C1, **state)
-    nav.command(LAWS[name], C4, position=(3.0, 0.0), velocity=(0.0, 0.1))
-    assert nav.command(LAWS[name], C1, **state).tobytes() == first.tobytes()
+    first = nav.laws.command(LAWS[name], C1, **state)
+    nav.laws.command(LAWS[name], C4, position=(3.0, 0.0), velocity=(0.0, 0.1))
+    assert nav.laws.command(LAWS[name], C1, **state).tobytes() == first.tobytes()
 
 
 def test_command_of_the_field_is_the_total_of_its_terms() -> None:
     state: dict[str, Any] = {"position": (2.95, 0.71), "velocity": (-0.5, 0.1)}
     for scene in SCENES:
         terms = nav.force_terms(nav.VirtualForceField(), scene, **state)
-        assert nav.command(nav.VirtualForceField(), scene, **state) == pytest.approx(terms.total, rel=1e-12)
+        assert nav.laws.command(nav.VirtualForceField(), scene, **state) == pytest.approx(terms.total, rel=1e-12)
 
 
 @each_planner

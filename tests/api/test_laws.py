@@ -228,7 +228,7 @@ def test_force_terms_are_those_of_sums_of_attraction_and_repulsion(kind: str) ->
     "call",
     [
         lambda law: nav.lyapunov(law, C1, **PLACE),
-        lambda law: nav.force_field(law, C1, position=[PLACE["position"]]),
+        lambda law: nav.laws.force_field(law, C1, position=[PLACE["position"]]),
     ],
     ids=["lyapunov", "force_field"],
 )
@@ -263,7 +263,7 @@ BAD_CALLS: list[tuple[dict[str, Any], str]] = [
 @each_law
 def test_command_refuses_bad_values_by_name(law: nav.Law, change: dict[str, Any], argument: str) -> None:
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:
-        nav.command(**({"law": law, "scenario": C1} | PLACE | change))
+        nav.laws.command(**({"law": law, "scenario": C1} | PLACE | change))
     assert names(caught.value) == argument
 
 
@@ -283,7 +283,7 @@ def test_grid_that_is_too_large_is_refused(numbers: dict[str, float], scene: nav
     calls: list[Any] = [
         lambda: nav.simulate(scene, law),
         lambda: nav.evaluate(scene, law),
-        lambda: nav.command(law, scene, position=scene.start, velocity=(0.0, 0.0)),
+        lambda: nav.laws.command(law, scene, position=scene.start, velocity=(0.0, 0.0)),
         lambda: nav.simulate_batch([C1, scene], law),
     ]
     for call in calls:

@@ -13,7 +13,7 @@ import pytest
 from api.spoiled import names
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
-from hrsafety.navigation.gain_problem import noise_seeds
+from hrsafety.navigation.gains.problem import noise_seeds
 
 SCENES = [scenarios.configuration(name) for name in ("c1", "c2", "c3")]
 MASOUD = nav.Masoud()
@@ -176,7 +176,7 @@ def test_tree_is_searched_with_seeds() -> None:
 
 
 def test_front_of_a_planner_trades_time_for_clearance() -> None:
-    front = nav.pareto_front(
+    front = nav.gains.pareto_front(
         SCENES[:1],
         RECIPROCAL,
         objectives=("arrival_time", "min_clearance"),
@@ -243,7 +243,7 @@ def test_relative_sensitivity_is_that_of_the_definition() -> None:
 
 
 def test_slopes_of_a_law_are_those_of_its_scores() -> None:
-    found = nav.gain_gradient(SCENES[:1], MASOUD)
+    found = nav.gains.gain_gradient(SCENES[:1], MASOUD)
     assert found.gain_names == MASOUD.GAIN_NAMES
     assert found.gradient.shape == (3,)
     for index, (name, step) in enumerate(zip(found.gain_names, found.steps, strict=True)):

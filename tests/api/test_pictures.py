@@ -93,7 +93,9 @@ def measured() -> Any:
 def followers(kind: str, seed: int) -> Any:
     scene = reactive.FollowerLayouts(kind=kind).scene(seed)  # type: ignore[arg-type]
     laws = {form: reactive.VirtualImpedance(form=form) for form in ("conventional", "active")}  # type: ignore[arg-type]
-    return plotting.follower_runs({name: reactive.follow(scene, law=law, seed=seed) for name, law in laws.items()})
+    return plotting.reactive.follower_runs(
+        {name: reactive.follow(scene, law=law, seed=seed) for name, law in laws.items()}
+    )
 
 
 def sweep_of(axes: int) -> sweep.SweepResult:
@@ -120,10 +122,10 @@ def several_laws(scene: nav.Scenario) -> dict[str, nav.Trajectory]:
     return {name: nav.simulate(scene, law) for name, law in laws.items()}
 
 
-def field_of(name: str) -> tuple[nav.ForceField, nav.Scenario]:
+def field_of(name: str) -> tuple[nav.laws.ForceField, nav.Scenario]:
     scene = scenarios.configuration(name)
     x, y = np.meshgrid(np.linspace(0.5, 4.0, 36), np.linspace(-1.3, 2.4, 38))
-    return nav.force_field(LAW, scene, position=np.column_stack([x.ravel(), y.ravel()])), scene
+    return nav.laws.force_field(LAW, scene, position=np.column_stack([x.ravel(), y.ravel()])), scene
 
 
 def sensitivity() -> Any:
@@ -142,27 +144,27 @@ def flat() -> Any:
     return plotting.flatness(searched().flatness(5), marks={"published": ((4.3, 20.3, 240.7, 0.68), 0.706)})
 
 
-def noisy() -> nav.Repeated:
+def noisy() -> nav.metrics.Repeated:
     scene = dataclasses.replace(scenarios.configuration("c2"), measurement=nav.Measurement())
-    return nav.repeat(scene, nav.VirtualForceField(side_hysteresis=3.0), seeds=20)
+    return nav.metrics.repeat(scene, nav.VirtualForceField(side_hysteresis=3.0), seeds=20)
 
 
 def wheels() -> Any:
-    tests = nav.open_loop_tests(nav.HOLONOMIC_WHEELS[0])
-    return plotting.wheel_identification(tests, nav.identify_wheel(tests))
+    tests = nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0])
+    return plotting.robots.wheel_identification(tests, nav.robots.identify_wheel(tests))
 
 
 def fixes() -> Any:
     row = reactive.MicrophoneArray()
     delay_12, delay_13 = row.delays(range=[2.0, 3.0], bearing=0.5)
     truth = [reactive.locate(row, delay_12=a, delay_13=b) for a, b in zip(delay_12, delay_13, strict=True)]
-    return plotting.sound_fixes(reactive.jittered_fixes(row, range=[2.0, 3.0], bearing=0.5), truth)
+    return plotting.reactive.sound_fixes(reactive.sound.jittered_fixes(row, range=[2.0, 3.0], bearing=0.5), truth)
 
 
 def rates() -> Any:
     laws = ("conventional", "active")
     found = {law: reactive.experiment("one_dynamic", law, layouts=50).collision_rate for law in laws}  # type: ignore[arg-type]
-    return plotting.follower_rates({"one moving box": found}, marks={"one moving box": {"active": 0.3}})
+    return plotting.reactive.follower_rates({"one moving box": found}, marks={"one moving box": {"active": 0.3}})
 
 
 PICTURES: dict[str, Callable[[], Any]] = {
@@ -204,10 +206,14 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "follower and one box": lambda: followers("one_dynamic", 3),
     "follower and two boxes": lambda: followers("two_dynamic", 3),
     "follower rates": rates,
-    "impedance forces": lambda: plotting.impedance_forces({"active": reactive.VirtualImpedance()}),
-    "skirt ring": lambda: plotting.skirt_ring(reactive.UltrasonicSkirt(), directions=reactive.MOTION_DIRECTIONS),
-    "skirt runs": lambda: plotting.skirt_runs({"to the north": reactive.skirt_run(direction="N")}),
-    "skirt clearances": lambda: plotting.skirt_clearances({"ideal": reactive.skirt_test(layouts=2)}, printed=0.775),
+    "impedance forces": lambda: plotting.reactive.impedance_forces({"active": reactive.VirtualImpedance()}),
+    "skirt ring": lambda: plotting.reactive.skirt_ring(
+        reactive.UltrasonicSkirt(), directions=reactive.skirt.MOTION_DIRECTIONS
+    ),
+    "skirt runs": lambda: plotting.reactive.skirt_runs({"to the north": reactive.skirt_run(direction="N")}),
+    "skirt clearances": lambda: plotting.reactive.skirt_clearances(
+        {"ideal": reactive.skirt_test(layouts=2)}, printed=0.775
+    ),
     "sound fixes": fixes,
     "sweep parallel": lambda: plotting.sweep_parallel(sweep_of(3), "performance_total"),
     "sweep scatter": lambda: plotting.sweep_scatter(sweep_of(2), "performance_total"),
@@ -293,7 +299,7 @@ def test_surface_of_a_valley_has_no_holes() -> None:
 def test_refined_damping_ends_curves_where_they_end() -> None:
     design = impact.design_foam(impact.MANIPULATOR_2, impact.FoamLimits(), closing_speed=1.25)
     coarse = np.linspace(0.0, 345.0, 24)
-    fine = plotting.boundaries.refined(coarse, [design.lower])
+    fine = plotting.impacts.boundaries.refined(coarse, [design.lower])
     known = np.isfinite(design.lower(fine).stiffness)
     (end,) = np.flatnonzero(known[:-1] & ~known[1:])
     assert set(coarse) <= set(fine)

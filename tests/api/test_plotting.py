@@ -360,7 +360,7 @@ def test_critical_regions_are_blank_in_the_valley():
 def test_real_fields_are_drawn():
     scenario = scene(DISC, RECTANGLE)
     x, y = np.meshgrid(np.linspace(-0.2, 4.2, 45), np.linspace(-1.0, 2.4, 35))
-    field = nav.force_field(LAW, scenario, position=np.column_stack([x.ravel(), y.ravel()]))
+    field = nav.laws.force_field(LAW, scenario, position=np.column_stack([x.ravel(), y.ravel()]))
     for term in ("total", "attractive", "repulsive", "detour"):
         assert plotting.force_field(field, scenario, term=term).axes
     for term in ("potential", "repulsive"):
@@ -370,14 +370,14 @@ def test_real_fields_are_drawn():
 @pytest.mark.parametrize("function", [plotting.force_field, plotting.potential_valley])
 def test_fields_that_cannot_be_drawn_are_refused(function):
     field = made_up_field()
-    part = nav.ForceField(*(values[:-1] for values in field))
+    part = nav.laws.ForceField(*(values[:-1] for values in field))
     with pytest.raises(InvalidParameterError, match=r"field\.position must form a complete grid"):
         function(part, scene(DISC))
-    twice = nav.ForceField(*(np.concatenate([values[:-1], values[:1]]) for values in field))
+    twice = nav.laws.ForceField(*(np.concatenate([values[:-1], values[:1]]) for values in field))
     with pytest.raises(InvalidParameterError, match=r"field\.position must form a complete grid"):
         function(twice, scene(DISC))
     with pytest.raises(InvalidParameterError, match="field must hold at least one point"):
-        function(nav.ForceField(*(values[:0] for values in field)), scene(DISC))
+        function(nav.laws.ForceField(*(values[:0] for values in field)), scene(DISC))
     with pytest.raises(InvalidParameterError, match="field must be a ForceField"):
         function(None, scene(DISC))
     with pytest.raises(InvalidParameterError, match="scenario must be a Scenario"):

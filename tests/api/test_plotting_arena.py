@@ -19,7 +19,8 @@ Image = pytest.importorskip("PIL.Image")
 from matplotlib.colors import to_rgb  # noqa: E402  # needs the check above
 from matplotlib.patches import Circle  # noqa: E402  # needs the check above
 
-from hrsafety.plotting import law_looks, style  # noqa: E402  # needs the check above
+from hrsafety.plotting import style  # noqa: E402  # needs the check above
+from hrsafety.plotting.comparisons import law_looks  # noqa: E402
 
 LAWS: dict[str, nav.Law] = {
     "field": LAW,

@@ -23,7 +23,7 @@ BOUNDS = np.array([[0.0, 50.0], [0.0, 200.0], [0.0, 500.0], [0.0, 3.0]])
 LABELS = ["$K_1$ (N/m)", "$K_3$ (N/m)", "$K_5$ (N/m²)", "$b$ (s)"]
 
 
-def settings(**changes: Any) -> nav.SearchSettings:
+def settings(**changes: Any) -> nav.gains.SearchSettings:
     values: dict[str, Any] = {
         "scenarios": PLACES,
         "law": LAW,
@@ -46,12 +46,12 @@ def settings(**changes: Any) -> nav.SearchSettings:
         "step": 0.01,
         "hold": True,
     }
-    return nav.SearchSettings(**(values | changes))
+    return nav.gains.SearchSettings(**(values | changes))
 
 
-def grid(low: Any, high: Any, *, best: float, worst: float) -> nav.SearchRound:
+def grid(low: Any, high: Any, *, best: float, worst: float) -> nav.gains.SearchRound:
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-    return nav.SearchRound(
+    return nav.gains.SearchRound(
         axes=tuple(np.linspace(a, b, 3) for a, b in zip(low, high, strict=True)),
         increments=(high - low) / 2.0,
         evaluations=81,
@@ -65,9 +65,9 @@ def grid(low: Any, high: Any, *, best: float, worst: float) -> nav.SearchRound:
     )
 
 
-def local(value: float) -> nav.LocalSearch:
+def local(value: float) -> nav.gains.LocalSearch:
     gains = np.array([10.0, 80.0, 490.0, 0.5])
-    return nav.LocalSearch(
+    return nav.gains.LocalSearch(
         start=gains, start_value=0.66, gains=gains, value=value, violation=0.0, evaluations=40, status="converged"
     )
 
@@ -96,7 +96,7 @@ def search(**changes: Any) -> nav.GainSearch:
     return nav.GainSearch(**(values | changes))
 
 
-def flat(**changes: Any) -> nav.Flatness:
+def flat(**changes: Any) -> nav.gains.Flatness:
     gains = np.stack([np.linspace(low, high, 5) for low, high in BOUNDS])
     shape = np.array([0.3, 0.66, 0.672, 0.67, 0.66])
     values: dict[str, Any] = {
@@ -111,12 +111,12 @@ def flat(**changes: Any) -> nav.Flatness:
         "high": gains[:, 3],
         "near_best_share": 0.75,
     }
-    return nav.Flatness(**(values | changes))
+    return nav.gains.Flatness(**(values | changes))
 
 
-def front(values: Any, objectives: tuple[str, ...], maximized: tuple[bool, ...]) -> nav.ParetoFront:
+def front(values: Any, objectives: tuple[str, ...], maximized: tuple[bool, ...]) -> nav.gains.ParetoFront:
     table = np.asarray(values, dtype=float).reshape(-1, len(objectives))
-    return nav.ParetoFront(
+    return nav.gains.ParetoFront(
         objectives=objectives,
         maximized=maximized,
         gains=np.tile(np.array(LAW.gains), (len(table), 1)),
@@ -149,7 +149,7 @@ def legend_texts(figure: Any) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def sensitivity() -> nav.GainSensitivity:
+def sensitivity() -> nav.gains.GainSensitivity:
     return nav.gain_sensitivity(PLACES, LAW, (-100, -50, -10, 0, 10, 100))
 
 
@@ -157,7 +157,7 @@ def sensitivity() -> nav.GainSensitivity:
 
 
 def test_sensitivity_shows_the_mean_performance_and_the_magnitude_in_percent(
-    sensitivity: nav.GainSensitivity,
+    sensitivity: nav.gains.GainSensitivity,
 ) -> None:
     upper, lower = plotting.gain_sensitivity(sensitivity).axes
     for index in range(4):
@@ -169,7 +169,7 @@ def test_sensitivity_shows_the_mean_performance_and_the_magnitude_in_percent(
     assert lower.get_ylabel() == "relative sensitivity of mean H (%),\naxis logarithmic beyond 1 %"
 
 
-def test_sensitivity_names_average_and_largest_of_each_gain(sensitivity: nav.GainSensitivity) -> None:
+def test_sensitivity_names_average_and_largest_of_each_gain(sensitivity: nav.gains.GainSensitivity) -> None:
     texts = legend_texts(plotting.gain_sensitivity(sensitivity))
     largest = 100.0 * sensitivity.largest_sensitivity()
     assert len(texts) == 4
@@ -178,7 +178,7 @@ def test_sensitivity_names_average_and_largest_of_each_gain(sensitivity: nav.Gai
         assert texts[index].endswith(f"{largest[index]:.2f} % at most")
 
 
-def test_changes_that_ruin_the_performance_are_told_at_the_foot(sensitivity: nav.GainSensitivity) -> None:
+def test_changes_that_ruin_the_performance_are_told_at_the_foot(sensitivity: nav.gains.GainSensitivity) -> None:
     upper = plotting.gain_sensitivity(sensitivity).axes[0]
     deep = sensitivity.mean_performance[sensitivity.mean_performance < 0.9 * sensitivity.mean_performance.max()]
     assert len(deep) >= 2
@@ -359,7 +359,7 @@ def test_marks_of_a_front_have_one_value_for_each_objective() -> None:
         plotting.pareto_front(TWO, marks={"published": (6.3, 4.4, 1.0)})
 
 
-def test_pictures_leave_no_trace_in_pyplot_and_render(tmp_path: Any, sensitivity: nav.GainSensitivity) -> None:
+def test_pictures_leave_no_trace_in_pyplot_and_render(tmp_path: Any, sensitivity: nav.gains.GainSensitivity) -> None:
     before = dict(matplotlib.rcParams)
     figures = [
         plotting.flatness(flat()),

@@ -20,7 +20,7 @@ def tested() -> reactive.SkirtTest:
 
 def test_ring_shows_every_sensor_its_beam_and_both_safe_distances() -> None:
     skirt = reactive.UltrasonicSkirt(triggering="printed")
-    (axes,) = plotting.skirt_ring(skirt, directions=reactive.MOTION_DIRECTIONS).axes
+    (axes,) = plotting.reactive.skirt_ring(skirt, directions=reactive.skirt.MOTION_DIRECTIONS).axes
     beams = [patch for patch in axes.patches if isinstance(patch, Wedge)]
     assert [beam.r for beam in beams] == skirt.trigger_distances.tolist()
     assert [beam.theta2 - beam.theta1 for beam in beams] == [pytest.approx(40.0)] * 9
@@ -28,11 +28,11 @@ def test_ring_shows_every_sensor_its_beam_and_both_safe_distances() -> None:
     radii = sorted(patch.radius for patch in axes.patches if isinstance(patch, Circle))
     assert radii == [pytest.approx(value) for value in (0.33, skirt.meeting_distance, 0.666)]
     words = {text.get_text() for text in axes.texts}
-    assert {str(number) for number in range(1, 10)} | set(reactive.MOTION_DIRECTIONS) <= words
+    assert {str(number) for number in range(1, 10)} | set(reactive.skirt.MOTION_DIRECTIONS) <= words
 
 
 def test_ring_without_a_meeting_distance_draws_the_one_in_use() -> None:
-    figure = plotting.skirt_ring(reactive.UltrasonicSkirt(sensors=4, layout="even"), title="four")
+    figure = plotting.reactive.skirt_ring(reactive.UltrasonicSkirt(sensors=4, layout="even"), title="four")
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [name for name in names if name.startswith("safe distance")] == ["safe distance in use, 0.666 m"]
     assert len(names) == 3, "the sensors and the beams have a name, too"
@@ -41,7 +41,7 @@ def test_ring_without_a_meeting_distance_draws_the_one_in_use() -> None:
 def test_runs_show_path_discs_and_the_ending() -> None:
     scene = reactive.SkirtScene(unseen_share=1.0)
     runs = {"seen": reactive.skirt_run(), "blind": reactive.skirt_run(scene=scene)}
-    seen, blind = plotting.skirt_runs(runs, title="two runs").axes
+    seen, blind = plotting.reactive.skirt_runs(runs, title="two runs").axes
     for axes, run in ((seen, runs["seen"]), (blind, runs["blind"])):
         path = axes.lines[0].get_xydata()
         assert np.array_equal(path[1:], run.position)
@@ -53,12 +53,12 @@ def test_runs_show_path_discs_and_the_ending() -> None:
 
 def test_more_runs_than_columns_leave_empty_panels_without_axes() -> None:
     runs = {f"run {k}": reactive.skirt_run(repeat=k) for k in range(4)}
-    figure = plotting.skirt_runs(runs)
+    figure = plotting.reactive.skirt_runs(runs)
     assert [axes.axison for axes in figure.axes] == [True] * 4 + [False] * 2
 
 
 def test_curve_is_the_share_of_the_tests_over_the_limit(tested: reactive.SkirtTest) -> None:
-    (axes,) = plotting.skirt_clearances({"ideal": tested}, most=0.3, printed=0.775).axes
+    (axes,) = plotting.reactive.skirt_clearances({"ideal": tested}, most=0.3, printed=0.775).axes
     limits, shares = axes.lines[0].get_data()
     expected = [float(np.mean(~tested.collided & (tested.min_clearance >= limit))) for limit in limits]
     assert np.asarray(shares) == pytest.approx(expected, abs=1e-15)
@@ -69,7 +69,7 @@ def test_curve_is_the_share_of_the_tests_over_the_limit(tested: reactive.SkirtTe
 def test_sensor_counts_show_every_share_the_limit_and_what_is_enough() -> None:
     enough = reactive.smallest_skirt(0.3, counts=[5, 12], layouts=3)
     none = reactive.smallest_skirt(0.3, counts=[5, 12], layouts=3, speed=0.8)
-    figure = plotting.skirt_sensor_counts([enough, none], title="counts")
+    figure = plotting.reactive.skirt_sensor_counts([enough, none], title="counts")
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert any("12 are enough" in word for word in words)
     assert any("none is enough" in word for word in words)
@@ -79,11 +79,11 @@ def test_sensor_counts_show_every_share_the_limit_and_what_is_enough() -> None:
 
 def test_what_cannot_be_drawn_is_refused(tested: reactive.SkirtTest) -> None:
     for call in (
-        lambda: plotting.skirt_runs({}),
-        lambda: plotting.skirt_clearances({}),
-        lambda: plotting.skirt_clearances({"a": tested}, most=0.0),
-        lambda: plotting.skirt_clearances({"a": tested}, most=math.inf),
-        lambda: plotting.skirt_sensor_counts([]),
+        lambda: plotting.reactive.skirt_runs({}),
+        lambda: plotting.reactive.skirt_clearances({}),
+        lambda: plotting.reactive.skirt_clearances({"a": tested}, most=0.0),
+        lambda: plotting.reactive.skirt_clearances({"a": tested}, most=math.inf),
+        lambda: plotting.reactive.skirt_sensor_counts([]),
     ):
         with pytest.raises(InvalidParameterError):
             call()

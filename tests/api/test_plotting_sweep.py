@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hrsafety import InvalidParameterError, impact, plotting, scenarios, sweep
-from hrsafety.plotting.sweep_overviews import _thinned
+from hrsafety.plotting.sweeps.overviews import _thinned
 
 IMPACT = sweep.ImpactStudy(manipulator=impact.MANIPULATOR_1, head=impact.Head.minimum(), fixed={"closing_speed": 1.25})
 STIFFNESS = sweep.Axis(name="foam_stiffness", low=5e3, high=6e4, points=6, scale="log")

@@ -65,7 +65,7 @@ def test_no_speed_is_kept_from_before_a_gap() -> None:
     assert not reactive.VirtualImpedance().outlives_gaps
     kept = reactive.VirtualImpedance(form="conventional", speed_limit=0.6, outlives_gaps=True)
     stale = reactive.experiment("static", kept, layouts=LAYOUTS)
-    pair = reactive.compare_experiments(stale, reactive.experiment("static", "conventional", layouts=LAYOUTS))
+    pair = reactive.follower.compare_experiments(stale, reactive.experiment("static", "conventional", layouts=LAYOUTS))
     assert pair.difference.low > 0.05
     assert overlap(stale.collision_rate, 200)
 
@@ -74,7 +74,7 @@ def test_no_speed_is_kept_from_before_a_gap() -> None:
 def test_active_law_collides_less_in_the_same_layouts(
     runs: dict[tuple[str, str], reactive.FollowerExperiment], kind: str
 ) -> None:
-    pair = reactive.compare_experiments(runs[kind, "conventional"], runs[kind, "active"])
+    pair = reactive.follower.compare_experiments(runs[kind, "conventional"], runs[kind, "active"])
     assert pair.difference.low > 0.1
     assert pair.collisions.p_value < 1e-6
     first, second = pair.first.collision_rate.value, pair.second.collision_rate.value
@@ -254,8 +254,8 @@ BAD: list[tuple[Callable[[], object], str]] = [
     (lambda: reactive.experiment("static", threads=0), "threads"),
     (lambda: reactive.experiment("tracking", layouts=1, touching=True), "layouts"),
     (lambda: reactive.follow(3), "scene"),  # type: ignore[arg-type]  # the failure is the test
-    (lambda: reactive.cast_rays([], [(0.0, math.nan)], [0.0]), "origins"),
-    (lambda: reactive.fix_deviations([math.inf], [0.0]), "range"),
+    (lambda: reactive.sonar.cast_rays([], [(0.0, math.nan)], [0.0]), "origins"),
+    (lambda: reactive.follower.fix_deviations([math.inf], [0.0]), "range"),
 ]
 
 
@@ -268,11 +268,11 @@ def test_bad_arguments_are_named(call: Callable[[], object], name: str) -> None:
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: reactive.cast_rays([], [0.0, 1.0], [0.0]),
-        lambda: reactive.cast_rays([], [(0.0, 1.0)], [0.0, 1.0]),
+        lambda: reactive.sonar.cast_rays([], [0.0, 1.0], [0.0]),
+        lambda: reactive.sonar.cast_rays([], [(0.0, 1.0)], [0.0, 1.0]),
         lambda: reactive.Sonar().readings([], (0.0, 0.0)),
-        lambda: reactive.collision_vector((0.0, 1.0), (0.0, 1.0, 2.0)),
-        lambda: reactive.fix_deviations([1.0], [0.0, 1.0]),
+        lambda: reactive.follower.collision_vector((0.0, 1.0), (0.0, 1.0, 2.0)),
+        lambda: reactive.follower.fix_deviations([1.0], [0.0, 1.0]),
         lambda: reactive.VirtualImpedance().damping_force([1.0, 2.0], [1.0, 2.0, 3.0]),
     ],
 )
@@ -284,9 +284,9 @@ def test_bad_shapes_are_refused(call: Callable[[], object]) -> None:
 def test_experiments_in_other_layouts_are_not_compared() -> None:
     one = reactive.experiment("static", layouts=5)
     with pytest.raises(ShapeError):
-        reactive.compare_experiments(one, reactive.experiment("static", layouts=6))
+        reactive.follower.compare_experiments(one, reactive.experiment("static", layouts=6))
     with pytest.raises(InvalidParameterError, match="second"):
-        reactive.compare_experiments(one, reactive.experiment("static", layouts=5, first_seed=100))
+        reactive.follower.compare_experiments(one, reactive.experiment("static", layouts=5, first_seed=100))
 
 
 # ---- pictures -------------------------------------------------------------------------------
@@ -297,23 +297,23 @@ def test_pictures_and_animation(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     run = reactive.follow(reactive.FollowerLayouts(kind="two_dynamic").scene(0))
     figures = [
-        plotting.follower_runs({"one": run, "two": run, "three": run}, times=[1.0, 99.0]),
-        plotting.follower_rates({"a": {"law": reactive.experiment("static", layouts=10).collision_rate}}),
-        plotting.impedance_forces({"active": reactive.VirtualImpedance()}),
+        plotting.reactive.follower_runs({"one": run, "two": run, "three": run}, times=[1.0, 99.0]),
+        plotting.reactive.follower_rates({"a": {"law": reactive.experiment("static", layouts=10).collision_rate}}),
+        plotting.reactive.impedance_forces({"active": reactive.VirtualImpedance()}),
     ]
     for figure, name in zip(figures, itertools.count(), strict=False):
         figure.savefig(tmp_path / f"{name}.png")
     pytest.importorskip("PIL")
     from PIL import Image
 
-    file = plotting.animate_follower(run, tmp_path / "run.gif", frames_per_second=2, speed=4.0)
+    file = plotting.reactive.animate_follower(run, tmp_path / "run.gif", frames_per_second=2, speed=4.0)
     with Image.open(file) as movie:
         assert getattr(movie, "n_frames", 1) > 5
     for options in ({"speed": 0.0}, {"frames_per_second": 100}, {"speed": 1e-4}):
         with pytest.raises(HrsafetyError):
-            plotting.animate_follower(run, tmp_path / "bad.gif", **options)
+            plotting.reactive.animate_follower(run, tmp_path / "bad.gif", **options)
     with pytest.raises(HrsafetyError):
-        plotting.follower_runs({})
+        plotting.reactive.follower_runs({})
 
 
 # ---- Ctrl-C ---------------------------------------------------------------------------------

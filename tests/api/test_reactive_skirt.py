@@ -32,7 +32,7 @@ def small() -> reactive.SkirtTest:
         reactive.UltrasonicSkirt(sensors=12, policy="best_direction", safe_distance=None),
         reactive.SkirtScene(disc_radius=[0.1, 0.2], unseen_share=0.5),
         reactive.SkirtMotion(speed=0.7),
-        reactive.TriOmniKinematics(wheel_radius=0.05),
+        reactive.skirt.TriOmniKinematics(wheel_radius=0.05),
     ],
     ids=lambda value: type(value).__name__,
 )
@@ -115,9 +115,9 @@ BAD_CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: reactive.SkirtScene(spacing=-1), "spacing"),
     (lambda: reactive.SkirtMotion(speed=0.0), "speed"),
     (lambda: reactive.SkirtMotion(duration=math.nan), "duration"),
-    (lambda: reactive.TriOmniKinematics(wheel_width=1.0), "wheel_width"),
-    (lambda: reactive.TriOmniKinematics(wheel_radius=-1.0), "wheel_radius"),
-    (lambda: reactive.TriOmniKinematics().wheel_speeds(["a", "b"]), "velocity"),
+    (lambda: reactive.skirt.TriOmniKinematics(wheel_width=1.0), "wheel_width"),
+    (lambda: reactive.skirt.TriOmniKinematics(wheel_radius=-1.0), "wheel_radius"),
+    (lambda: reactive.skirt.TriOmniKinematics().wheel_speeds(["a", "b"]), "velocity"),
     (lambda: reactive.skirt_test(0.33), "skirt"),  # type: ignore[arg-type]  # the point of the test
     (lambda: reactive.skirt_test(layouts=0), "layouts"),
     (lambda: reactive.skirt_test(layouts=10**6), "layouts"),
@@ -143,16 +143,16 @@ BAD_CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: reactive.smallest_skirt(0.1, speed=-0.3), "speed"),
     (lambda: reactive.smallest_skirt(0.1, chassis_radius=0.0), "chassis_radius"),
     (lambda: reactive.smallest_skirt(0.1, trigger_distance=0.0), "trigger_distance"),
-    (lambda: reactive.least_skirt_sensors(wheel_sensor_radius=0.3, sensor_radius=0.0), "sensor_radius"),
-    (lambda: reactive.skirt_spacing(3), "sensors"),
-    (lambda: reactive.skirt_spacing(10**25), "sensors"),
+    (lambda: reactive.skirt.least_skirt_sensors(wheel_sensor_radius=0.3, sensor_radius=0.0), "sensor_radius"),
+    (lambda: reactive.skirt.skirt_spacing(3), "sensors"),
+    (lambda: reactive.skirt.skirt_spacing(10**25), "sensors"),
     (lambda: reactive.UltrasonicSkirt(rays=10**25), "rays"),
     (lambda: reactive.SkirtScene(obstacles=10**25), "obstacles"),
-    (lambda: reactive.skirt_spacing(6), "sensors"),
-    (lambda: reactive.skirt_spacing(wheel_gap=1.2), "wheel_gap"),
-    (lambda: reactive.skirt_spacing(sensor_length=0.0), "sensor_length"),
-    (lambda: reactive.skirt_safe_distance(sensor_radius=0.3, gap=-0.1), "gap"),
-    (lambda: reactive.skirt_safe_distance(sensor_radius=math.nan, gap=0.1), "sensor_radius"),
+    (lambda: reactive.skirt.skirt_spacing(6), "sensors"),
+    (lambda: reactive.skirt.skirt_spacing(wheel_gap=1.2), "wheel_gap"),
+    (lambda: reactive.skirt.skirt_spacing(sensor_length=0.0), "sensor_length"),
+    (lambda: reactive.skirt.skirt_safe_distance(sensor_radius=0.3, gap=-0.1), "gap"),
+    (lambda: reactive.skirt.skirt_safe_distance(sensor_radius=math.nan, gap=0.1), "sensor_radius"),
 ]
 
 
@@ -168,9 +168,9 @@ def test_a_bad_argument_is_refused_by_name(call: Callable[[], object], argument:
     [
         lambda: reactive.UltrasonicSkirt().action([1.0] * 8),
         lambda: reactive.UltrasonicSkirt().pattern([[1.0] * 9]),
-        lambda: reactive.TriOmniKinematics().wheel_speeds([1.0, 2.0, 3.0]),
-        lambda: reactive.TriOmniKinematics().wheel_speeds([[1.0, 2.0]] * 3, [1.0, 2.0]),
-        lambda: reactive.TriOmniKinematics().body_velocity(3.0),
+        lambda: reactive.skirt.TriOmniKinematics().wheel_speeds([1.0, 2.0, 3.0]),
+        lambda: reactive.skirt.TriOmniKinematics().wheel_speeds([[1.0, 2.0]] * 3, [1.0, 2.0]),
+        lambda: reactive.skirt.TriOmniKinematics().body_velocity(3.0),
         lambda: reactive.SkirtScene(disc_radius=(0.1, 0.2, 0.3)),
     ],
 )
@@ -186,7 +186,7 @@ def test_rows_run_over_repeats_then_directions_then_layouts(small: reactive.Skir
     assert len(small) == 80
     assert small.layout.tolist() == [0] * 40 + [1] * 40
     assert small.repeat[:10].tolist() == [0, 1, 2, 3, 4] * 2
-    assert small.direction[40:80:5].tolist() == list(reactive.MOTION_DIRECTIONS)
+    assert small.direction[40:80:5].tolist() == list(reactive.skirt.MOTION_DIRECTIONS)
     assert {len(column) for column in small.columns().values()} == {80}
 
 

@@ -53,17 +53,17 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         {"range": (*ARRAY, NAN, INF, -1.0, [1.0, -1.0]), "bearing": (*ARRAY, NAN, INF)},
     ),
     "parallel_ray_bearing": (
-        reactive.parallel_ray_bearing,
+        reactive.sound.parallel_ray_bearing,
         {"array": ROW, **DELAYS},
         {"array": OTHER, "pair": (*WORD, "21"), "delay_12": ARRAY, "delay_13": ARRAY},
     ),
     "parallel_ray_bias": (
-        reactive.parallel_ray_bias,
+        reactive.sound.parallel_ray_bias,
         {"array": ROW, "range": 1.0, "bearing": 0.0},
         {"array": OTHER, "pair": WORD, "range": (*ARRAY, -1.0), "bearing": ARRAY},
     ),
     "printed_range": (
-        reactive.printed_range,
+        reactive.sound.printed_range,
         {"array": ROW, **DELAYS},
         {"array": OTHER, "delay_12": ARRAY, "delay_13": ARRAY},
     ),
@@ -113,7 +113,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         },
     ),
     "doppler_frequency": (
-        reactive.doppler_frequency,
+        reactive.sound.doppler_frequency,
         {"frequency": 440.0},
         {"frequency": POSITIVE, "observer_speed": (*NUMBER, 341.0), "source_speed": NUMBER, "speed_of_sound": POSITIVE},
     ),
@@ -140,7 +140,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         },
     ),
     "likeness": (
-        reactive.likeness,
+        reactive.sound.likeness,
         {"recording": HEARD, "array": ROW, "method": "phase"},
         {
             "recording": (None, HEARD.samples),
@@ -152,7 +152,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         },
     ),
     "jittered_fixes": (
-        reactive.jittered_fixes,
+        reactive.sound.jittered_fixes,
         {"array": ROW, "range": 1.0, "bearing": 0.0, "runs": 2},
         {
             "array": OTHER,
@@ -433,11 +433,11 @@ def test_loud_burst_is_clipped_and_counted() -> None:
 
 
 def test_similarity_is_the_inverse_of_the_mean_square() -> None:
-    curve = reactive.likeness(HEARD, ROW, method="mean_square")
+    curve = reactive.sound.likeness(HEARD, ROW, method="mean_square")
     assert np.array_equal(curve.similarity_12, 1.0 / curve.values_12)
     same = reactive.SoundRecording(samples=np.stack([HEARD.samples[0]] * 3), sample_rate=100e3)
-    equal = reactive.likeness(same, ROW, method="mean_square")
+    equal = reactive.sound.likeness(same, ROW, method="mean_square")
     assert equal.values_13.min() == 0.0
     assert equal.similarity_13[240] == math.inf
     with pytest.raises(InvalidParameterError, match="method"):
-        _ = reactive.likeness(HEARD, ROW).similarity_12
+        _ = reactive.sound.likeness(HEARD, ROW).similarity_12

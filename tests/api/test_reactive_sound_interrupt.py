@@ -21,7 +21,7 @@ JOBS = {
         "",
         "reactive.localize_bursts(reactive.Burst(), row, **places, runs=10**6, progress=lambda done, total: None)",
     ),
-    "jitter": ("", "reactive.jittered_fixes(row, **places, runs=10**8, threads=1)"),
+    "jitter": ("", "reactive.sound.jittered_fixes(row, **places, runs=10**8, threads=1)"),
     "one long record": (
         'burst = reactive.Burst(kind="sweep", duration=500.0)',
         "reactive.record_burst(burst, row, **places, noise=0.1)",

@@ -16,7 +16,9 @@ PLACES = {"range": [1.0, 2.0], "bearing": [0.0, 0.6]}
 
 
 def test_burst_has_one_panel_for_each_microphone() -> None:
-    figure = plotting.sound_burst(HEARD, arrivals=[0.0061, 0.0055, 0.005], span=(0.004, 0.012), title="a burst")
+    figure = plotting.reactive.sound_burst(
+        HEARD, arrivals=[0.0061, 0.0055, 0.005], span=(0.004, 0.012), title="a burst"
+    )
     assert len(figure.axes) == 3
     for index, axes in enumerate(figure.axes):
         line, arrival = axes.lines
@@ -29,10 +31,10 @@ def test_burst_has_one_panel_for_each_microphone() -> None:
 
 def test_likeness_is_drawn_as_share_of_its_peak() -> None:
     curves = {
-        "similarity": reactive.likeness(HEARD, ROW, method="mean_square"),
-        "correlation": reactive.likeness(HEARD, ROW),
+        "similarity": reactive.sound.likeness(HEARD, ROW, method="mean_square"),
+        "correlation": reactive.sound.likeness(HEARD, ROW),
     }
-    figure = plotting.sound_likeness(curves, lags=(-65.0, -111.0), span=20)
+    figure = plotting.reactive.sound_likeness(curves, lags=(-65.0, -111.0), span=20)
     first, second = figure.axes
     for axes, lag in ((first, -65), (second, -111)):
         for line in axes.lines[:2]:
@@ -43,12 +45,12 @@ def test_likeness_is_drawn_as_share_of_its_peak() -> None:
 
 
 def test_fixes_stand_where_they_are_seen_from_the_robot() -> None:
-    fixes = reactive.jittered_fixes(ROW, **PLACES, runs=30)
+    fixes = reactive.sound.jittered_fixes(ROW, **PLACES, runs=30)
     delay_12, delay_13 = ROW.delays(**PLACES)
     truth = [
         reactive.locate(ROW, delay_12=float(a), delay_13=float(b)) for a, b in zip(delay_12, delay_13, strict=True)
     ]
-    (axes,) = plotting.sound_fixes(fixes, truth, labels=["near", "far"]).axes
+    (axes,) = plotting.reactive.sound_fixes(fixes, truth, labels=["near", "far"]).axes
     dots = [line for line in axes.lines if line.get_marker() == "."]
     assert [len(line.get_xdata()) for line in dots] == [30, 30]
     assert np.array_equal(dots[1].get_ydata(), fixes.position[1, :, 0])
@@ -62,11 +64,15 @@ def test_fixes_stand_where_they_are_seen_from_the_robot() -> None:
 @pytest.mark.parametrize(
     ("call", "arguments", "error"),
     [
-        (plotting.sound_burst, {"recording": None}, InvalidParameterError),
-        (plotting.sound_burst, {"recording": HEARD, "arrivals": [1.0]}, InvalidParameterError),
-        (plotting.sound_burst, {"recording": HEARD, "span": (1.0, 0.0)}, InvalidParameterError),
-        (plotting.sound_likeness, {"curves": {}}, InvalidParameterError),
-        (plotting.sound_fixes, {"fixes": reactive.jittered_fixes(ROW, **PLACES), "truth": []}, ShapeError),
+        (plotting.reactive.sound_burst, {"recording": None}, InvalidParameterError),
+        (plotting.reactive.sound_burst, {"recording": HEARD, "arrivals": [1.0]}, InvalidParameterError),
+        (plotting.reactive.sound_burst, {"recording": HEARD, "span": (1.0, 0.0)}, InvalidParameterError),
+        (plotting.reactive.sound_likeness, {"curves": {}}, InvalidParameterError),
+        (
+            plotting.reactive.sound_fixes,
+            {"fixes": reactive.sound.jittered_fixes(ROW, **PLACES), "truth": []},
+            ShapeError,
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(call: Any, arguments: dict[str, Any], error: type[Exception]) -> None:

@@ -17,7 +17,7 @@ import pytest
 from hrsafety import _atomic as atomic
 from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError, MissingExtraError
-from hrsafety.navigation import statistics
+from hrsafety.navigation import metrics
 from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import Cell
 
@@ -360,7 +360,7 @@ def test_wilson_interval_equals_scipy(count: int, runs: int) -> None:
     from scipy.stats import binomtest
 
     oracle = binomtest(count, runs).proportion_ci(0.95, method="wilson")
-    share = statistics.wilson(count, runs)
+    share = metrics.wilson(count, runs)
     assert (share.low, share.high) == pytest.approx((oracle.low, oracle.high), rel=1e-9, abs=1e-12)
     assert share.low <= share.value <= share.high
 
@@ -371,7 +371,7 @@ def test_paired_test_equals_scipy(only_first: int, only_second: int) -> None:
 
     first = np.array([True] * only_first + [False] * only_second + [True, False])
     second = np.array([False] * only_first + [True] * only_second + [True, False])
-    paired = statistics.compare_paired(first, second)
+    paired = metrics.compare_paired(first, second)
     assert (paired.only_first, paired.only_second) == (only_first, only_second)
     differing = only_first + only_second
     expected = 1.0 if differing == 0 else binomtest(only_first, differing).pvalue
@@ -454,7 +454,7 @@ def test_ranking_leaves_out_single_runs_and_the_mild_noise(small_study: study.St
 def test_off_differs_from_itself_in_no_run(small_study: study.Study) -> None:
     own = [entry.against_off for entry in small_study.aggregates if entry.key.mode == "off"]
     assert own
-    assert set(own) == {statistics.Paired(0, 0, 1.0)}
+    assert set(own) == {metrics.Paired(0, 0, 1.0)}
 
 
 def test_single_runs_of_the_study_are_those_of_the_tables(small_study: study.Study, all_cells: list[Cell]) -> None:

@@ -105,8 +105,8 @@ def test_every_result_carries_the_warnings_that_matter_for_its_law() -> None:
     run = nav.simulate(noisy, LAW)
     assert [each.code for each in run.warnings] == ["region_below_safe"]
     assert nav.evaluate(noisy, LAW).warnings == run.warnings
-    assert nav.simulate_built(noisy, LAW).warnings == run.warnings
-    assert nav.repeat(noisy, LAW, seeds=2).warnings == run.warnings
+    assert nav.built.simulate_built(noisy, LAW).warnings == run.warnings
+    assert nav.metrics.repeat(noisy, LAW, seeds=2).warnings == run.warnings
     # A law that knows no critical region does not depend on its size.
     assert nav.simulate(noisy, nav.Khatib()).warnings == ()
     batch = nav.simulate_batch([scenarios.configuration("c1"), noisy, noisy], LAW)

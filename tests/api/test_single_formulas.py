@@ -18,7 +18,7 @@ EXACT = 1e-12
 
 
 def test_collision_point_lies_along_the_axis_of_its_sensor() -> None:
-    points = reactive.collision_point([(0.0, 0.15), (0.0, -0.15)], [math.pi / 6, -math.pi / 6], 2.0)
+    points = reactive.follower.collision_point([(0.0, 0.15), (0.0, -0.15)], [math.pi / 6, -math.pi / 6], 2.0)
     side = 0.15 + 2.0 * math.sin(math.pi / 6)
     np.testing.assert_allclose(points, [(math.sqrt(3.0), side), (math.sqrt(3.0), -side)], atol=EXACT)
 
@@ -28,41 +28,41 @@ def test_printed_foot_has_the_sign_of_its_second_component_wrong() -> None:
     slope = (other[1] - one[1]) / (other[0] - one[0])
     scale = slope + 1.0 / slope
     right = [(slope * one[0] - one[1]) / scale, (one[1] / slope - one[0]) / scale]
-    np.testing.assert_allclose(reactive.collision_vector(one, other, clamp=False), right, atol=EXACT)
-    printed = reactive.printed_foot(one, other)
+    np.testing.assert_allclose(reactive.follower.collision_vector(one, other, clamp=False), right, atol=EXACT)
+    printed = reactive.follower.printed_foot(one, other)
     np.testing.assert_allclose(printed, [right[0], (one[0] + one[1] / slope) / scale], atol=EXACT)
     assert abs(np.dot(right, other - one)) < EXACT
     assert abs(np.dot(printed, other - one)) > 0.1
-    assert np.isnan(reactive.printed_foot((1.0, -1.0), (1.0, 1.0))).any()
+    assert np.isnan(reactive.follower.printed_foot((1.0, -1.0), (1.0, 1.0))).any()
 
 
 def test_rotation_is_counterclockwise_and_the_printed_one_its_transpose() -> None:
     vector, heading = np.array([0.3, -0.7]), 0.9
     matrix = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
-    np.testing.assert_allclose(reactive.rotate_to_world(vector, heading), matrix @ vector, atol=EXACT)
-    printed = reactive.rotate_to_world(vector, heading, rotation="printed")
+    np.testing.assert_allclose(reactive.follower.rotate_to_world(vector, heading), matrix @ vector, atol=EXACT)
+    printed = reactive.follower.rotate_to_world(vector, heading, rotation="printed")
     np.testing.assert_allclose(printed, matrix.T @ vector, atol=EXACT)
 
 
 def test_attraction_is_the_one_of_a_run() -> None:
     run = reactive.follow(reactive.FollowerLayouts(kind="one_dynamic").scene(1), seed=1)
-    force = reactive.attraction_force(run.target[1:] - run.position[1:], run.virtual_velocity[:-1])
+    force = reactive.follower.attraction_force(run.target[1:] - run.position[1:], run.virtual_velocity[:-1])
     np.testing.assert_array_equal(force, run.attraction[1:])
 
 
 def test_formulas_refuse_what_does_not_fit() -> None:
     for call in (
-        lambda: reactive.collision_point((1.0, 2.0, 3.0), 0.0, 1.0),
-        lambda: reactive.rotate_to_world([(1.0, 0.0)] * 2, [0.0] * 3),
-        lambda: reactive.attraction_force((1.0, 0.0), [(1.0, 0.0)]),
-        lambda: reactive.printed_foot((1.0, 0.0), (1.0, 0.0, 2.0)),
+        lambda: reactive.follower.collision_point((1.0, 2.0, 3.0), 0.0, 1.0),
+        lambda: reactive.follower.rotate_to_world([(1.0, 0.0)] * 2, [0.0] * 3),
+        lambda: reactive.follower.attraction_force((1.0, 0.0), [(1.0, 0.0)]),
+        lambda: reactive.follower.printed_foot((1.0, 0.0), (1.0, 0.0, 2.0)),
     ):
         with pytest.raises(ShapeError):
             call()
     with pytest.raises(InvalidParameterError, match="rotation"):
-        reactive.rotate_to_world((1.0, 0.0), 0.0, rotation="left")  # type: ignore[arg-type]  # the failure
+        reactive.follower.rotate_to_world((1.0, 0.0), 0.0, rotation="left")  # type: ignore[arg-type]  # the failure
     with pytest.raises(InvalidParameterError, match="damping"):
-        reactive.attraction_force((1.0, 0.0), (0.0, 0.0), damping=-1.0)
+        reactive.follower.attraction_force((1.0, 0.0), (0.0, 0.0), damping=-1.0)
 
 
 # ---- sound ------------------------------------------------------------------------------------
@@ -71,13 +71,13 @@ def test_formulas_refuse_what_does_not_fit() -> None:
 def test_elevations_are_the_angles_of_the_geometry() -> None:
     row = reactive.MicrophoneArray()
     ranges, bearings = np.array([0.5, 1.0, 3.0])[:, None], np.radians([-60.0, 0.0, 25.0, 80.0])
-    angles = reactive.microphone_elevations(row, range=ranges, bearing=bearings)
+    angles = reactive.sound.microphone_elevations(row, range=ranges, bearing=bearings)
     x, y = ranges * np.cos(bearings), ranges * np.sin(bearings)
     for place, index in ((-row.spacing, 0), (0.0, 1), (row.spacing, 2)):
         np.testing.assert_allclose(angles[..., index], np.arctan2(x, y - place), atol=1e-9)
     for bad in ({"range": 0.0, "bearing": 0.0}, {"range": 1.0, "bearing": 2.0}):
         with pytest.raises(InvalidParameterError):
-            reactive.microphone_elevations(row, **bad)
+            reactive.sound.microphone_elevations(row, **bad)
 
 
 # ---- skirt ------------------------------------------------------------------------------------
@@ -96,14 +96,14 @@ def test_sensors_stand_outside_the_chassis() -> None:
 
 
 def test_radius_of_1_is_the_inverse_of_the_printed_gap() -> None:
-    gap = reactive.skirt_spacing().printed_gap
+    gap = reactive.skirt.skirt_spacing().printed_gap
     assert math.degrees(gap) == pytest.approx(40.6, abs=0.05)
-    assert reactive.skirt_closing_radius(gap=gap) == pytest.approx(0.33, abs=EXACT)
+    assert reactive.skirt.skirt_closing_radius(gap=gap) == pytest.approx(0.33, abs=EXACT)
     # a N L = 0.3888 m closes the published ring.
-    closed = reactive.skirt_closing_radius(gap=math.radians(37.5), sensor_length=0.0635)
+    closed = reactive.skirt.skirt_closing_radius(gap=math.radians(37.5), sensor_length=0.0635)
     assert closed == pytest.approx(0.33, abs=5e-5)
     with pytest.raises(InvalidParameterError, match="gap"):
-        reactive.skirt_closing_radius(gap=0.0)
+        reactive.skirt.skirt_closing_radius(gap=0.0)
 
 
 def test_printed_normal_distances_are_those_of_7_to_9() -> None:
@@ -142,17 +142,17 @@ def test_triggering_distances_are_where_d_meets_its_limit(triggering: str) -> No
 
 def test_dashpots_in_series_agree_with_the_arm_for_equal_ratios_only() -> None:
     place = {"second_link": 0.432, "lever_arm": 0.4}
-    masses = impact.uniform_links(mass=(17.4, 4.8), length=(0.432, 0.433))
+    masses = impact.joints.uniform_links(mass=(17.4, 4.8), length=(0.432, 0.433))
     stiffness = np.array([8000.0, 1500.0])
     for damping, equal in ((0.005 * stiffness, True), (np.array([40.0, 30.0]), False)):
         arm = impact.Manipulator.from_two_joints(mass_matrix=masses, damping=damping, stiffness=stiffness, **place)
-        series = impact.dashpots_in_series(damping, **place)
+        series = impact.joints.dashpots_in_series(damping, **place)
         outer, inner = damping[0], damping[1]
         reach = 0.832
         assert series == pytest.approx(outer * inner / (reach**2 * inner + 0.4**2 * outer), rel=EXACT)
         assert (abs(series / arm.damping - 1.0) < 1e-9) is equal
     with pytest.raises(InvalidParameterError, match="damping"):
-        impact.dashpots_in_series((0.0, 1.0), **place)
+        impact.joints.dashpots_in_series((0.0, 1.0), **place)
 
 
 # ---- other laws -------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ def test_components_add_up_to_the_command(law: nav.Law) -> None:
     terms = nav.force_terms(law, scene, **STATE)
     total = terms.attractive + (terms.repulsive + terms.detour).sum(axis=0)
     np.testing.assert_allclose(total, terms.total, atol=1e-9)
-    np.testing.assert_array_equal(terms.total, nav.command(law, scene, **STATE))
+    np.testing.assert_array_equal(terms.total, nav.laws.command(law, scene, **STATE))
     assert not terms.stabilizing.any()
     assert math.isnan(terms.omega)
 

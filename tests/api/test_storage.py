@@ -119,9 +119,9 @@ def test_full_disk_names_the_chunk_what_is_kept_and_how_to_resume(
 
 
 def test_full_disk_leaves_the_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from hrsafety.navigation import gain_checkpoint
+    from hrsafety.navigation.gains import checkpoint
 
-    monkeypatch.setattr(gain_checkpoint, "write_file", full)
+    monkeypatch.setattr(checkpoint, "write_file", full)
     file = tmp_path / "search.checkpoint"
     with pytest.raises(StorageError, match=r"search\.checkpoint cannot be written \(No space left on device\)"):
         nav.optimize_gains([SCENE], checkpoint=file, **TINY)

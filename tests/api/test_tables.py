@@ -27,7 +27,7 @@ CROSSING = scenarios.configuration("c3")
 NOISY = replace(CROSSING, measurement=nav.Measurement())
 LAW = nav.VirtualForceField()
 LAWS = {"field": LAW, "Khatib": nav.Khatib()}
-LINE = nav.LineReference(start=(0.0, 0.0), velocity=(0.5, 0.0))
+LINE = nav.tracking.LineReference(start=(0.0, 0.0), velocity=(0.5, 0.0))
 FEW: dict[str, Any] = {"grid": (4, 4, 4, 4), "refinements": 1, "survivors": 10, "local_starts": 1}
 LEADER = reactive.SoundLeader(start=(1.2, 0.0), end=(3.0, 0.0))
 FOLLOWED = reactive.FollowerScene(
@@ -35,23 +35,27 @@ FOLLOWED = reactive.FollowerScene(
 )
 ROW = reactive.MicrophoneArray()
 DELAYS = dict(zip(("delay_12", "delay_13"), ROW.delays(range=[1.0, 2.0, 3.0], bearing=0.5), strict=True))
-DRIVE = impact.DirectDrive(proportional=448.7, derivative=5.579)
+DRIVE = impact.joints.DirectDrive(proportional=448.7, derivative=5.579)
 PARTS = (impact.MANIPULATOR_1, impact.FOAM_1)
 
 RESULTS: dict[str, Callable[[], Table]] = {
     "Trajectory": lambda: nav.simulate(CROSSING, LAW),
-    "BuiltTrajectory": lambda: nav.simulate_built(NOISY, LAW, nav.AsBuilt(wheels=nav.HOLONOMIC_WHEELS)),
-    "TrackingRun": lambda: nav.track(LINE, position=(0.0, 0.3), duration=3.0),
-    "TrackingSummary": lambda: nav.track_batch(LINE, starts=[(0.0, 0.5, 0.0), (0.0, -0.2, 1.0)], duration=3.0),
-    "WheelRun": lambda: nav.follow_wheel(nav.HOLONOMIC_WHEELS[0], nav.WheelReference.sine(duration=1.0)),
+    "BuiltTrajectory": lambda: nav.built.simulate_built(
+        NOISY, LAW, nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
+    ),
+    "TrackingRun": lambda: nav.tracking.track(LINE, position=(0.0, 0.3), duration=3.0),
+    "TrackingSummary": lambda: nav.tracking.track_batch(LINE, starts=[(0.0, 0.5, 0.0), (0.0, -0.2, 1.0)], duration=3.0),
+    "WheelRun": lambda: nav.robots.follow_wheel(
+        nav.robots.HOLONOMIC_WHEELS[0], nav.robots.WheelReference.sine(duration=1.0)
+    ),
     "ArenaResult": lambda: nav.arena(
         {"field": LAW, "Khatib": nav.Khatib()}, {"c1": scenarios.configuration("c1"), "c3": CROSSING}
     ),
-    "Repeated": lambda: nav.repeat(NOISY, LAW, seeds=5),
+    "Repeated": lambda: nav.metrics.repeat(NOISY, LAW, seeds=5),
     "BatchSummary": lambda: nav.simulate_batch([scenarios.configuration("c2"), CROSSING], LAW),
     "GainSearch": lambda: nav.optimize_gains([CROSSING], **FEW),
     "global GainSearch": lambda: nav.optimize_gains([CROSSING], method="cma_es", evaluations=200),
-    "ParetoFront": lambda: nav.pareto_front([CROSSING], grid=(4, 4, 4, 4), refinements=0),
+    "ParetoFront": lambda: nav.gains.pareto_front([CROSSING], grid=(4, 4, 4, 4), refinements=0),
     "GainSensitivity": lambda: nav.gain_sensitivity([CROSSING], changes=(-50, 50)),
     "FollowerExperiment": lambda: reactive.experiment("static", "active", layouts=2),
     "Fixes": lambda: reactive.locate_batch(ROW, **DELAYS),
@@ -60,7 +64,7 @@ RESULTS: dict[str, Callable[[], Table]] = {
     "SkirtTest": lambda: reactive.skirt_test(layouts=1),
     "SmallestSkirt": lambda: reactive.smallest_skirt(0.2, counts=[6, 12], layouts=5),
     "ImpactResponse": lambda: impact.simulate(*PARTS, impact.Head.minimum(), closing_speed=0.8),
-    "DirectDriveResponse": lambda: impact.simulate_direct_drive(
+    "DirectDriveResponse": lambda: impact.joints.simulate_direct_drive(
         DRIVE, PARTS[1], impact.Head.apparatus(), closing_speed=1.25
     ),
     "ImpactMetricsBatch": lambda: impact.metrics_batch(

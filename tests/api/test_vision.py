@@ -13,8 +13,8 @@ from hrsafety import InvalidParameterError, ShapeError
 from hrsafety import navigation as nav
 
 NAN, INF = float("nan"), float("inf")
-EXACT = nav.PositionNoise(scale=0.0)
-WORST = nav.PositionNoise(scale=0.025, distribution="uniform")
+EXACT = nav.sensing.PositionNoise(scale=0.0)
+WORST = nav.sensing.PositionNoise(scale=0.025, distribution="uniform")
 PERIOD = 1.0 / 16.7
 TIME = np.arange(801) * 0.01
 
@@ -29,21 +29,30 @@ def walk(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     ("kind", "right", "name", "value"),
     [
-        *[(nav.PositionNoise, {}, "scale", value) for value in (-1.0, NAN, INF, "much")],
-        (nav.PositionNoise, {}, "distribution", "cauchy"),
-        *[(nav.ColorPatch, {"height": 0.3}, "height", value) for value in (NAN, INF, None)],
-        *[(nav.ColorPatch, {"height": 0.3}, "centroid_deviation_px", value) for value in (-0.1, NAN)],
-        *[(nav.ColorPatch, {"height": 0.3}, name, "here") for name in ("camera", "believed")],
-        *[(nav.AlphaBeta, {"position_gain": 0.5, "velocity_gain": 0.2}, "position_gain", v) for v in (0.0, 1.1, NAN)],
-        *[(nav.AlphaBeta, {"position_gain": 0.5, "velocity_gain": 0.2}, "velocity_gain", v) for v in (0.0, 3.0, NAN)],
-        *[(nav.Kalman, {}, name, 0.0) for name in ("acceleration_deviation", "position_deviation", "speed_deviation")],
-        *[(nav.Kalman, {}, "position_deviation", value) for value in (1e-200, 1e200, NAN)],
-        *[(nav.Vision, {}, "period", value) for value in (0.0, -1.0, NAN, INF)],
-        *[(nav.Vision, {}, "delay", value) for value in (-1.0, NAN, INF)],
-        *[(nav.Vision, {}, "drop_probability", value) for value in (-0.1, 1.0, NAN)],
-        (nav.Vision, {}, "error", 0.025),
-        (nav.Vision, {}, "estimator", "kalman"),
-        (nav.Vision, {}, "compensated", 1),
+        *[(nav.sensing.PositionNoise, {}, "scale", value) for value in (-1.0, NAN, INF, "much")],
+        (nav.sensing.PositionNoise, {}, "distribution", "cauchy"),
+        *[(nav.sensing.ColorPatch, {"height": 0.3}, "height", value) for value in (NAN, INF, None)],
+        *[(nav.sensing.ColorPatch, {"height": 0.3}, "centroid_deviation_px", value) for value in (-0.1, NAN)],
+        *[(nav.sensing.ColorPatch, {"height": 0.3}, name, "here") for name in ("camera", "believed")],
+        *[
+            (nav.sensing.AlphaBeta, {"position_gain": 0.5, "velocity_gain": 0.2}, "position_gain", v)
+            for v in (0.0, 1.1, NAN)
+        ],
+        *[
+            (nav.sensing.AlphaBeta, {"position_gain": 0.5, "velocity_gain": 0.2}, "velocity_gain", v)
+            for v in (0.0, 3.0, NAN)
+        ],
+        *[
+            (nav.sensing.Kalman, {}, name, 0.0)
+            for name in ("acceleration_deviation", "position_deviation", "speed_deviation")
+        ],
+        *[(nav.sensing.Kalman, {}, "position_deviation", value) for value in (1e-200, 1e200, NAN)],
+        *[(nav.sensing.Vision, {}, "period", value) for value in (0.0, -1.0, NAN, INF)],
+        *[(nav.sensing.Vision, {}, "delay", value) for value in (-1.0, NAN, INF)],
+        *[(nav.sensing.Vision, {}, "drop_probability", value) for value in (-0.1, 1.0, NAN)],
+        (nav.sensing.Vision, {}, "error", 0.025),
+        (nav.sensing.Vision, {}, "estimator", "kalman"),
+        (nav.sensing.Vision, {}, "compensated", 1),
     ],
 )
 def test_wrong_values_are_named(kind: Any, right: dict[str, Any], name: str, value: Any) -> None:
@@ -55,10 +64,12 @@ def test_wrong_values_are_named(kind: Any, right: dict[str, Any], name: str, val
 @pytest.mark.parametrize(
     "value",
     [
-        nav.Vision(delay=0.05, error=nav.ColorPatch(height=1.4, believed=nav.Camera(focal_length=4.8e-3))),
-        nav.Vision(estimator=nav.Kalman(), compensated=True),
-        nav.AlphaBeta(position_gain=0.5, velocity_gain=0.2),
-        nav.Differences(),
+        nav.sensing.Vision(
+            delay=0.05, error=nav.sensing.ColorPatch(height=1.4, believed=nav.sensing.Camera(focal_length=4.8e-3))
+        ),
+        nav.sensing.Vision(estimator=nav.sensing.Kalman(), compensated=True),
+        nav.sensing.AlphaBeta(position_gain=0.5, velocity_gain=0.2),
+        nav.sensing.Differences(),
     ],
 )
 def test_parameters_survive_pickling(value: Any) -> None:
@@ -67,7 +78,7 @@ def test_parameters_survive_pickling(value: Any) -> None:
 
 def test_frames_come_at_the_stated_rate_and_are_known_after_the_delay() -> None:
     path, _ = walk(TIME)
-    seen = nav.observe(nav.Vision(delay=0.1, error=EXACT), TIME, path)
+    seen = nav.sensing.observe(nav.sensing.Vision(delay=0.1, error=EXACT), TIME, path)
     assert seen.exposed == pytest.approx(np.arange(len(seen.exposed)) * PERIOD)
     assert len(seen.exposed) == 134  # 0 to 8 s
     known = np.isfinite(seen.measured_at)
@@ -82,17 +93,20 @@ def test_frames_come_at_the_stated_rate_and_are_known_after_the_delay() -> None:
 
 def test_same_seed_gives_the_same_bits_and_streams_differ() -> None:
     path, _ = walk(TIME)
-    vision = nav.Vision(error=WORST, drop_probability=0.2, estimator=nav.Kalman())
-    first, again = (nav.observe(vision, TIME, path, seed=4, stream=1) for _ in range(2))
+    vision = nav.sensing.Vision(error=WORST, drop_probability=0.2, estimator=nav.sensing.Kalman())
+    first, again = (nav.sensing.observe(vision, TIME, path, seed=4, stream=1) for _ in range(2))
     for one, other in zip(first, again, strict=True):
         assert np.array_equal(one, other, equal_nan=True)
-    for different in (nav.observe(vision, TIME, path, seed=5, stream=1), nav.observe(vision, TIME, path, seed=4)):
+    for different in (
+        nav.sensing.observe(vision, TIME, path, seed=5, stream=1),
+        nav.sensing.observe(vision, TIME, path, seed=4),
+    ):
         assert not np.array_equal(different.measured, first.measured, equal_nan=True)
 
 
 def test_gaussian_error_has_the_stated_mean() -> None:
     time = np.arange(20001) * PERIOD
-    seen = nav.observe(nav.Vision(), time, np.zeros((len(time), 2)))
+    seen = nav.sensing.observe(nav.sensing.Vision(), time, np.zeros((len(time), 2)))
     error = np.hypot(*seen.measured.T)
     # Mean of a Rayleigh distribution; 20,000 draws know it to 0.4 %.
     assert error.mean() == pytest.approx(0.0032 * np.sqrt(np.pi / 2.0), rel=0.02)
@@ -101,10 +115,14 @@ def test_gaussian_error_has_the_stated_mean() -> None:
 
 def test_tracking_the_measured_frames_gives_what_the_sensor_knows() -> None:
     path, _ = walk(TIME)
-    for estimator in (nav.Differences(), nav.AlphaBeta(position_gain=0.6, velocity_gain=0.3), nav.Kalman()):
-        vision = nav.Vision(error=WORST, drop_probability=0.3, estimator=estimator)
-        seen = nav.observe(vision, TIME, path, seed=8)
-        track = nav.track_positions(seen.exposed, seen.measured, estimator)
+    for estimator in (
+        nav.sensing.Differences(),
+        nav.sensing.AlphaBeta(position_gain=0.6, velocity_gain=0.3),
+        nav.sensing.Kalman(),
+    ):
+        vision = nav.sensing.Vision(error=WORST, drop_probability=0.3, estimator=estimator)
+        seen = nav.sensing.observe(vision, TIME, path, seed=8)
+        track = nav.sensing.track_positions(seen.exposed, seen.measured, estimator)
         assert len(track.measured_at) == np.isfinite(seen.measured).all(axis=1).sum()
         last = np.searchsorted(track.measured_at, TIME + 1e-9) - 1
         known = last >= 0
@@ -114,9 +132,9 @@ def test_tracking_the_measured_frames_gives_what_the_sensor_knows() -> None:
 
 def test_compensation_takes_the_delay_out_of_a_steady_walk() -> None:
     path = np.column_stack([0.6 + TIME, 0.2 * TIME])
-    late = nav.Vision(delay=0.12, error=EXACT)
-    moved = nav.observe(replace(late, compensated=True), TIME, path)
-    behind = nav.observe(late, TIME, path)
+    late = nav.sensing.Vision(delay=0.12, error=EXACT)
+    moved = nav.sensing.observe(replace(late, compensated=True), TIME, path)
+    behind = nav.sensing.observe(late, TIME, path)
     known = TIME > 0.3
     assert moved.position[known] == pytest.approx(path[known], abs=1e-9)
     gap = np.hypot(*(behind.position - path)[known].T)
@@ -129,14 +147,14 @@ def test_filters_halve_the_error_of_the_velocity_or_better() -> None:
     started = TIME > 0.5
 
     def rms(estimator: Any) -> float:
-        vision = nav.Vision(error=WORST, estimator=estimator)
-        misses = [nav.observe(vision, TIME, path, seed=seed).velocity - velocity for seed in range(20)]
+        vision = nav.sensing.Vision(error=WORST, estimator=estimator)
+        misses = [nav.sensing.observe(vision, TIME, path, seed=seed).velocity - velocity for seed in range(20)]
         return float(np.sqrt(np.mean([(miss[started] ** 2).sum(axis=1) for miss in misses])))
 
     deviation = 0.025 / np.sqrt(3.0)
-    plain = rms(nav.Differences())
-    kalman = rms(nav.Kalman(position_deviation=deviation))
-    steady = rms(nav.AlphaBeta.from_deviations(acceleration=1.0, position=deviation, period=PERIOD))
+    plain = rms(nav.sensing.Differences())
+    kalman = rms(nav.sensing.Kalman(position_deviation=deviation))
+    steady = rms(nav.sensing.AlphaBeta.from_deviations(acceleration=1.0, position=deviation, period=PERIOD))
     # Differences of independent errors: sqrt(2) s / T in each component, plus the lag of a frame.
     assert plain == pytest.approx(2.0 * deviation / PERIOD, rel=0.05)
     assert kalman < 0.5 * plain
@@ -144,11 +162,11 @@ def test_filters_halve_the_error_of_the_velocity_or_better() -> None:
 
 
 def test_patch_errors_are_those_of_the_camera() -> None:
-    camera = nav.Camera()
-    patch = nav.ColorPatch(height=0.3, centroid_deviation_px=0.5)
+    camera = nav.sensing.Camera()
+    patch = nav.sensing.ColorPatch(height=0.3, centroid_deviation_px=0.5)
     time = np.arange(4001) * PERIOD
     place = np.array([2.0, 0.6])
-    seen = nav.observe(nav.Vision(error=patch), time, np.tile(place, (len(time), 1)))
+    seen = nav.sensing.observe(nav.sensing.Vision(error=patch), time, np.tile(place, (len(time), 1)))
     # First-order propagation of half a pixel through the inverse of the projection.
     step = 1e-4
     around = [[2.0 + step, 0.6, 0.3], [2.0 - step, 0.6, 0.3], [2.0, 0.6 + step, 0.3], [2.0, 0.6 - step, 0.3]]
@@ -156,17 +174,17 @@ def test_patch_errors_are_those_of_the_camera() -> None:
     slopes = np.linalg.inv(np.column_stack([pixels[0] - pixels[1], pixels[2] - pixels[3]]) / (2.0 * step))
     assert np.cov(seen.measured.T) == pytest.approx(0.25 * slopes @ slopes.T, rel=0.1, abs=2e-7)
     biased = replace(patch, believed=replace(camera, focal_length=4.8e-3), centroid_deviation_px=0.0)
-    wrong = nav.observe(nav.Vision(error=biased), time[:3], np.tile(place, (3, 1))).measured
+    wrong = nav.sensing.observe(nav.sensing.Vision(error=biased), time[:3], np.tile(place, (3, 1))).measured
     assert np.hypot(*(wrong - place).T).min() > 1e-3
 
 
 def test_patches_outside_the_picture_are_lost() -> None:
-    patch = nav.Vision(error=nav.ColorPatch(height=1.4, centroid_deviation_px=0.0))
+    patch = nav.sensing.Vision(error=nav.sensing.ColorPatch(height=1.4, centroid_deviation_px=0.0))
     time = np.arange(0.0, 3.0, 0.01)
     path = np.column_stack([np.linspace(2.0, 6.0, len(time)), np.full(len(time), 0.6)])
-    seen = nav.observe(patch, time, path)
-    pixels = nav.Camera().project(np.column_stack([path, np.full(len(time), 1.4)]))
-    inside = nav.Camera().contains(pixels)
+    seen = nav.sensing.observe(patch, time, path)
+    pixels = nav.sensing.Camera().project(np.column_stack([path, np.full(len(time), 1.4)]))
+    inside = nav.sensing.Camera().contains(pixels)
     leaves = time[~inside][0]
     lost = np.isnan(seen.measured).any(axis=1)
     assert not lost[seen.exposed < leaves - 0.02].any()
@@ -187,34 +205,34 @@ def test_patches_outside_the_picture_are_lost() -> None:
 )
 def test_wrong_paths_are_refused(time: Any, position: Any, error: type[Exception]) -> None:
     with pytest.raises(error):
-        nav.track_positions(time, position, nav.Differences())
+        nav.sensing.track_positions(time, position, nav.sensing.Differences())
     with pytest.raises(error):
-        nav.observe(nav.Vision(), time, position)
+        nav.sensing.observe(nav.sensing.Vision(), time, position)
 
 
 def test_lost_frames_are_left_out_of_a_track_but_a_path_has_none() -> None:
     gap = [[0.0, 0.0], [NAN, NAN], [0.2, 0.0]]
-    track = nav.track_positions([0.0, 0.1, 0.2], gap, nav.Differences())
+    track = nav.sensing.track_positions([0.0, 0.1, 0.2], gap, nav.sensing.Differences())
     assert track.measured_at.tolist() == [0.0, 0.2]
     assert track.velocity[-1] == pytest.approx([1.0, 0.0])
     with pytest.raises(InvalidParameterError, match="position"):
-        nav.observe(nav.Vision(), [0.0, 0.1, 0.2], gap)
+        nav.sensing.observe(nav.sensing.Vision(), [0.0, 0.1, 0.2], gap)
 
 
 @pytest.mark.parametrize(("name", "value"), [("seed", -1), ("seed", 2**64), ("stream", 2**63), ("seed", 0.5)])
 def test_wrong_seeds_are_refused(name: str, value: Any) -> None:
     arguments: dict[str, Any] = {name: value}
     with pytest.raises(InvalidParameterError, match=name):
-        nav.observe(nav.Vision(), [0.0], [[0.0, 0.0]], **arguments)
+        nav.sensing.observe(nav.sensing.Vision(), [0.0], [[0.0, 0.0]], **arguments)
 
 
 def test_negative_times_of_a_path_are_refused() -> None:
     with pytest.raises(InvalidParameterError, match="time"):
-        nav.observe(nav.Vision(), [-0.1, 0.0], [[0.0, 0.0], [0.0, 0.0]])
+        nav.sensing.observe(nav.sensing.Vision(), [-0.1, 0.0], [[0.0, 0.0], [0.0, 0.0]])
 
 
 def test_nothing_is_known_of_an_empty_path() -> None:
-    seen = nav.observe(nav.Vision(), [], np.empty((0, 2)))
+    seen = nav.sensing.observe(nav.sensing.Vision(), [], np.empty((0, 2)))
     assert seen.exposed.shape == (0,)
     assert seen.position.shape == (0, 2)
-    assert nav.track_positions([], np.empty((0, 2)), nav.Kalman()).velocity.shape == (0, 2)
+    assert nav.sensing.track_positions([], np.empty((0, 2)), nav.sensing.Kalman()).velocity.shape == (0, 2)

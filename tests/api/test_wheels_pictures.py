@@ -9,12 +9,15 @@ from hrsafety import navigation as nav
 from hrsafety import plotting
 
 pytest.importorskip("matplotlib")
-WHEEL = nav.DIFFERENTIAL_WHEELS[1]
+WHEEL = nav.robots.DIFFERENTIAL_WHEELS[1]
 
 
 def test_tracking_draws_speed_error_and_current_of_each_run() -> None:
-    runs = [nav.follow_wheel(wheel, nav.WheelReference.sine(duration=2.0)) for wheel in nav.DIFFERENTIAL_WHEELS]
-    speed, error, current = plotting.wheel_tracking(runs, labels=["right", "left"], title="wheels").axes
+    runs = [
+        nav.robots.follow_wheel(wheel, nav.robots.WheelReference.sine(duration=2.0))
+        for wheel in nav.robots.DIFFERENTIAL_WHEELS
+    ]
+    speed, error, current = plotting.robots.wheel_tracking(runs, labels=["right", "left"], title="wheels").axes
     assert [line.get_label() for line in speed.lines] == ["wanted", "right", "left"]
     np.testing.assert_array_equal(speed.lines[0].get_ydata(), runs[0].wanted_speed)
     np.testing.assert_allclose(error.lines[1].get_ydata(), 1e3 * runs[1].angle_error)
@@ -27,9 +30,9 @@ def test_tracking_draws_speed_error_and_current_of_each_run() -> None:
 
 
 def test_identification_draws_tests_line_and_what_did_not_move() -> None:
-    tests = nav.open_loop_tests(WHEEL)
-    fit = nav.identify_wheel(tests)
-    angle, left, line = plotting.wheel_identification(tests, fit).axes
+    tests = nav.robots.open_loop_tests(WHEEL)
+    fit = nav.robots.identify_wheel(tests)
+    angle, left, line = plotting.robots.wheel_identification(tests, fit).axes
     assert len(angle.lines) == 24  # a line and circles for each of 12 tests
     assert len(left.lines) == 12
     ends = line.lines[0].get_xydata()
@@ -39,13 +42,13 @@ def test_identification_draws_tests_line_and_what_did_not_move() -> None:
 
 
 def test_pictures_refuse_what_does_not_belong_together() -> None:
-    run = nav.follow_wheel(WHEEL, nav.WheelReference.sine(duration=1.0))
-    tests = nav.open_loop_tests(WHEEL)
-    fit = nav.identify_wheel(tests)
+    run = nav.robots.follow_wheel(WHEEL, nav.robots.WheelReference.sine(duration=1.0))
+    tests = nav.robots.open_loop_tests(WHEEL)
+    fit = nav.robots.identify_wheel(tests)
     for call in (
-        lambda: plotting.wheel_tracking([]),
-        lambda: plotting.wheel_tracking([run], labels=["a", "b"]),
-        lambda: plotting.wheel_identification(tests[1:], fit),
+        lambda: plotting.robots.wheel_tracking([]),
+        lambda: plotting.robots.wheel_tracking([run], labels=["a", "b"]),
+        lambda: plotting.robots.wheel_identification(tests[1:], fit),
     ):
         with pytest.raises(nav.InvalidParameterError):
             call()

@@ -91,7 +91,7 @@ def test_error_of_the_reduced_joint_is_not_the_printed_one() -> None:
 
 def test_printed_inertia_matrix_is_indefinite() -> None:
     (m2, m3), (a2, a3) = LINKS["mass"], LINKS["length"]
-    right = impact.uniform_links(**LINKS)
+    right = impact.joints.uniform_links(**LINKS)
     diagonal = m2 * a2**2 / 3.0 + m3 * a2**2 + m3 * a3**2 / 3.0 + m3 * a2 * a3
     off_diagonal = m3 * a3**2 / 3.0 + m3 * a2 * a3
     printed = np.array([[diagonal, off_diagonal], [off_diagonal, m3 * a3**2 / 3.0]])
@@ -104,7 +104,7 @@ def test_printed_inertia_matrix_is_indefinite() -> None:
 def test_effective_damping_is_not_that_of_dashpots_alone(damping: tuple[float, float], equal: bool) -> None:
     stiffness, second, lever = (8000.0, 2000.0), 0.43, 0.4
     arm = impact.Manipulator.from_two_joints(
-        mass_matrix=impact.uniform_links(**LINKS),
+        mass_matrix=impact.joints.uniform_links(**LINKS),
         damping=damping,
         stiffness=stiffness,
         second_link=second,
@@ -120,7 +120,7 @@ def test_effective_damping_is_not_that_of_dashpots_alone(damping: tuple[float, f
 def test_stretched_arm_has_the_smallest_effective_mass() -> None:
     masses = [
         impact.Manipulator.from_two_joints(
-            mass_matrix=impact.uniform_links(**LINKS, elbow=elbow),
+            mass_matrix=impact.joints.uniform_links(**LINKS, elbow=elbow),
             damping=(40.0, 10.0),
             stiffness=(8000.0, 2000.0),
             second_link=0.43,
@@ -148,17 +148,17 @@ def test_open_loop_angle_starts_with_half_the_acceleration() -> None:
     printed = decay * (acceleration * time - 1.0 + np.exp(-acceleration * time)) / acceleration
     assert right[1] == pytest.approx(acceleration * time[1] ** 2 / 2.0, rel=1e-3)  # next term is of order kappa t
     assert printed[1] != pytest.approx(acceleration * time[1] ** 2 / 2.0, rel=0.1)
-    fit = impact.fit_open_loop(time, right)
+    fit = impact.identification.fit_open_loop(time, right)
     assert fit.acceleration == pytest.approx(acceleration, rel=1e-6)  # least squares on noiseless data
     assert fit.decay == pytest.approx(decay, rel=1e-4)
 
 
 def test_derivative_gain_takes_the_friction_off_the_joint_not_off_the_impact_point() -> None:
     lever, constant, friction = 0.078, 0.27121, 0.0079945
-    gains = impact.pd_gains(
+    gains = impact.identification.pd_gains(
         stiffness=20e3, damping=250.0, lever_arm=lever, torque_constant=constant, viscous_friction=friction
     )
-    drive = impact.DirectDrive(
+    drive = impact.joints.DirectDrive(
         proportional=gains.proportional,
         derivative=gains.derivative,
         torque_constant=constant,
@@ -175,7 +175,9 @@ def test_foam_2_follows_from_13_48_and_not_from_the_printed_line() -> None:
 
 
 def test_tube_of_the_printed_inertia_has_open_ends_and_thin_walls() -> None:
-    tube = impact.tube_inertia(density=2700.0, length=0.664, width=0.0508, height=0.0508, wall=0.0254 / 16.0)
+    tube = impact.identification.tube_inertia(
+        density=2700.0, length=0.664, width=0.0508, height=0.0508, wall=0.0254 / 16.0
+    )
     assert tube.inertia == pytest.approx(0.020811, abs=5e-7)
-    thick = impact.tube_inertia(density=2700.0, length=0.664, width=0.0508, height=0.0508, wall=0.003)
+    thick = impact.identification.tube_inertia(density=2700.0, length=0.664, width=0.0508, height=0.0508, wall=0.003)
     assert off(thick.inertia, 0.0208) > 0.5

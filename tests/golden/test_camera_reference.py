@@ -22,7 +22,7 @@ METERS = 1e-9  # m, what is asked for
 PERIOD = 0.06
 
 
-def exact_pixel(point: np.ndarray, camera: nav.Camera) -> list[mp.mpf]:
+def exact_pixel(point: np.ndarray, camera: nav.sensing.Camera) -> list[mp.mpf]:
     """Return the pixel of a point with 40 digits: the cubic of the distortion by a secant method."""
     with mp.workdps(40):
         rotation, translation = mp.matrix(camera.rotation), mp.matrix(camera.translation)
@@ -41,11 +41,11 @@ def exact_pixel(point: np.ndarray, camera: nav.Camera) -> list[mp.mpf]:
 
 @pytest.fixture(scope="module")
 def places() -> np.ndarray:
-    return np.vstack([nav.calibration_points(), nav.patch_places(nav.Camera())[::7]])
+    return np.vstack([nav.sensing.calibration_points(), nav.sensing.patch_places(nav.sensing.Camera())[::7]])
 
 
 def test_defaults_are_the_printed_camera() -> None:
-    camera = nav.Camera()
+    camera = nav.sensing.Camera()
     assert camera.focal_length == float(FOCAL)
     assert camera.radial_distortion == float(RADIAL)
     assert camera.horizontal_scale == float(SCALE)
@@ -58,24 +58,24 @@ def test_defaults_are_the_printed_camera() -> None:
 
 def test_nearest_rotation_is_the_polar_factor() -> None:
     rotation, _ = linalg.polar(np.array(PRINTED_ROTATION))
-    assert nav.nearest_rotation(PRINTED_ROTATION) == pytest.approx(rotation, abs=1e-15)
+    assert nav.sensing.nearest_rotation(PRINTED_ROTATION) == pytest.approx(rotation, abs=1e-15)
 
 
 def test_projection_is_that_of_forty_digits(places: np.ndarray) -> None:
-    camera = nav.Camera()
+    camera = nav.sensing.Camera()
     exact = np.array([[float(value) for value in exact_pixel(point, camera)] for point in places])
     assert np.abs(camera.project(places) - exact).max() < PIXELS
 
 
 def test_reconstruction_of_exact_pixels_is_the_point(places: np.ndarray) -> None:
-    camera = nav.Camera()
+    camera = nav.sensing.Camera()
     exact = np.array([[float(value) for value in exact_pixel(point, camera)] for point in places])
     assert np.abs(camera.reconstruct(exact, places[:, 2]) - places).max() < METERS
 
 
 def test_calibration_recovers_the_camera_from_exact_points() -> None:
-    camera, points = nav.Camera(), nav.calibration_points()
-    fit = nav.calibrate_camera(points, camera.project(points))
+    camera, points = nav.sensing.Camera(), nav.sensing.calibration_points()
+    fit = nav.sensing.calibrate_camera(points, camera.project(points))
     found = fit.camera
     assert found.focal_length == pytest.approx(camera.focal_length, rel=1e-10)
     assert found.radial_distortion == pytest.approx(camera.radial_distortion, rel=1e-10)
@@ -88,7 +88,7 @@ def test_calibration_recovers_the_camera_from_exact_points() -> None:
 
 def test_noisy_calibration_is_the_least_squares_camera_of_another_solver() -> None:
     """An own projection, numerical derivatives, another parametrization and another algorithm."""
-    camera, points = nav.Camera(), nav.calibration_points()
+    camera, points = nav.sensing.Camera(), nav.sensing.calibration_points()
     pixels = camera.project(points) + np.random.default_rng(5).normal(0.0, 0.5, (len(points), 2))
 
     def residuals(values: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ def test_noisy_calibration_is_the_least_squares_camera_of_another_solver() -> No
 
     start = np.array([4.76, 1.68, 0.987, 3.553, 2.921, 0.0, 0.0, 0.0, *camera.translation])
     other = optimize.least_squares(residuals, start, method="trf", xtol=1e-14, ftol=1e-14, gtol=1e-14)
-    fit = nav.calibrate_camera(points, pixels)
+    fit = nav.sensing.calibrate_camera(points, pixels)
     assert np.sqrt((fit.residual_px**2).sum()) == pytest.approx(np.sqrt(2.0 * other.cost), rel=1e-9)
     assert fit.camera.focal_length == pytest.approx(1e-3 * other.x[0], rel=1e-6)
     assert fit.camera.translation == pytest.approx(other.x[8:], abs=1e-5)
@@ -146,8 +146,8 @@ def test_kalman_filter_is_that_of_the_textbook() -> None:
     source = np.random.default_rng(3)
     time = np.cumsum(source.uniform(0.03, 0.2, 200))
     position = np.cumsum(source.normal(0.0, 0.05, (200, 2)), axis=0)
-    track = nav.track_positions(
-        time, position, nav.Kalman(acceleration_deviation=2.0, position_deviation=0.01, speed_deviation=1.5)
+    track = nav.sensing.track_positions(
+        time, position, nav.sensing.Kalman(acceleration_deviation=2.0, position_deviation=0.01, speed_deviation=1.5)
     )
     states, covariances = textbook_filter(time, position, 2.0, 0.01, 1.5)
     assert track.position == pytest.approx(states[:, :2], abs=1e-11)
@@ -164,18 +164,18 @@ def test_steady_gains_solve_the_riccati_equation(acceleration: float) -> None:
     push = np.array([[0.5 * PERIOD**2], [PERIOD]])
     ahead = linalg.solve_discrete_are(move.T, measure.T, acceleration**2 * push @ push.T, [[noise**2]])
     gain = ahead[:, 0] / (ahead[0, 0] + noise**2)
-    steady = nav.AlphaBeta.from_deviations(acceleration=acceleration, position=noise, period=PERIOD)
+    steady = nav.sensing.AlphaBeta.from_deviations(acceleration=acceleration, position=noise, period=PERIOD)
     assert steady.position_gain == pytest.approx(gain[0], rel=1e-8)
     assert steady.velocity_gain == pytest.approx(gain[1] * PERIOD, rel=1e-8)
-    kalman = nav.Kalman(acceleration_deviation=acceleration, position_deviation=noise)
-    still = nav.track_positions(np.arange(2000) * PERIOD, np.zeros((2000, 2)), kalman)
+    kalman = nav.sensing.Kalman(acceleration_deviation=acceleration, position_deviation=noise)
+    still = nav.sensing.track_positions(np.arange(2000) * PERIOD, np.zeros((2000, 2)), kalman)
     assert still.covariance[-1, 0] == pytest.approx(steady.position_gain * noise**2, rel=1e-8)
 
 
 def test_alpha_beta_filter_is_its_difference_equation() -> None:
     source = np.random.default_rng(9)
     time, position = np.arange(100) * PERIOD, source.normal(0.0, 1.0, (100, 2))
-    track = nav.track_positions(time, position, nav.AlphaBeta(position_gain=0.6, velocity_gain=0.3))
+    track = nav.sensing.track_positions(time, position, nav.sensing.AlphaBeta(position_gain=0.6, velocity_gain=0.3))
     where, speed = position[1], (position[1] - position[0]) / PERIOD
     for row in range(2, 100):
         residual = position[row] - (where + PERIOD * speed)

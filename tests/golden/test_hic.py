@@ -10,7 +10,7 @@ import scipy.signal
 
 from hrsafety import impact
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact import filters
+from hrsafety.impact.criteria import filters
 
 # Only the order of the sums differs.
 BRUTE_FORCE = 1e-12
@@ -97,7 +97,7 @@ def test_half_sines_reach_their_formula(window: float, duration: float) -> None:
     time = np.linspace(0.0, duration, 100_001)
     value = 80.0 * np.sin(np.pi * time / duration)
     found = impact.hic(time, value, window, interpolate=True)
-    assert found.value == pytest.approx(impact.hic_half_sine(80.0, duration, window), rel=FORMULA)
+    assert found.value == pytest.approx(impact.criteria.hic_half_sine(80.0, duration, window), rel=FORMULA)
 
 
 @pytest.mark.parametrize("window", [*WINDOWS, 0.004])
@@ -107,7 +107,7 @@ def test_triangles_reach_their_formula(window: float, peak_at: float) -> None:
         time = np.union1d(np.linspace(0.0, 0.03, inner + 2), [0.03 * peak_at])
         value = np.interp(time, [0.0, 0.03 * peak_at, 0.03], [0.0, 60.0, 0.0])
         found = impact.hic(time, value, window, interpolate=True)
-        assert found.value == pytest.approx(impact.hic_triangle(60.0, 0.03, window), rel=FORMULA)
+        assert found.value == pytest.approx(impact.criteria.hic_triangle(60.0, 0.03, window), rel=FORMULA)
 
 
 @pytest.mark.parametrize("window", [*WINDOWS, 0.004])
@@ -115,7 +115,7 @@ def test_squares_reach_their_formula(window: float) -> None:
     for samples in (2, 50, 5000):
         time = np.linspace(1.0, 1.03, samples)
         found = impact.hic(time, np.full(samples, 60.0), window, interpolate=True)
-        assert found.value == pytest.approx(impact.hic_square(60.0, 0.03, window), rel=FORMULA)
+        assert found.value == pytest.approx(impact.criteria.hic_square(60.0, 0.03, window), rel=FORMULA)
 
 
 def test_signals_without_a_positive_mean_count_0() -> None:
@@ -142,8 +142,8 @@ def test_the_cost_grows_with_the_samples_and_not_with_their_square() -> None:
 
 def test_moving_average_and_clip_of_a_triangle() -> None:
     time, value = [0.0, 0.006, 0.012], [0.0, 60.0, 0.0]
-    assert impact.average_3ms(time, value).value == pytest.approx(52.5, rel=BRUTE_FORCE)
-    assert impact.clip_3ms(time, value).value == pytest.approx(45.0, rel=BRUTE_FORCE)
+    assert impact.criteria.average_3ms(time, value).value == pytest.approx(52.5, rel=BRUTE_FORCE)
+    assert impact.criteria.clip_3ms(time, value).value == pytest.approx(45.0, rel=BRUTE_FORCE)
 
 
 def test_sampled_criteria_follow_the_continuous_ones() -> None:
@@ -155,8 +155,8 @@ def test_sampled_criteria_follow_the_continuous_ones() -> None:
     time, level = response.time, response.head_acceleration / 9.80665
     assert impact.hic(time, level, interpolate=True).value == pytest.approx(exact.hic15, rel=1e-8)
     assert impact.hic(time, level, 0.036, interpolate=True).value == pytest.approx(exact.hic36, rel=1e-6)
-    assert impact.average_3ms(time, level).value == pytest.approx(exact.average_3ms_g, rel=1e-8)
-    assert impact.clip_3ms(time, level).value == pytest.approx(exact.clip_3ms_g, rel=1e-8)
+    assert impact.criteria.average_3ms(time, level).value == pytest.approx(exact.average_3ms_g, rel=1e-8)
+    assert impact.criteria.clip_3ms(time, level).value == pytest.approx(exact.clip_3ms_g, rel=1e-8)
 
 
 def coefficients(channel_class: int, step: float) -> tuple[list[float], list[float]]:

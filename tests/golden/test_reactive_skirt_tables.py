@@ -55,7 +55,7 @@ def test_nine_sensors_stand_at_their_bearings_and_the_ring_closes() -> None:
 
 
 def test_printed_spacing_does_not_close_the_ring() -> None:
-    spacing = reactive.skirt_spacing()
+    spacing = reactive.skirt.skirt_spacing()
     degrees = [math.degrees(gap) for gap in spacing[:3]]
     assert degrees == [pytest.approx(value, abs=ONE) for value in (37.5, 40.6, 43.7)]
     assert spacing.closing_correction == pytest.approx(0.939, abs=THREE)
@@ -63,8 +63,8 @@ def test_printed_spacing_does_not_close_the_ring() -> None:
 
 def test_other_lengths_make_the_printed_spacing_fit() -> None:
     # a N L = 0.3888 m: by the length of a sensor, or by the radius on which the sensors lie.
-    assert math.degrees(reactive.skirt_spacing(sensor_length=0.0635).printed_gap) == pytest.approx(37.5, abs=ONE)
-    outside = reactive.skirt_spacing(sensor_radius=0.351, wheel_sensor_radius=0.351)
+    assert math.degrees(reactive.skirt.skirt_spacing(sensor_length=0.0635).printed_gap) == pytest.approx(37.5, abs=ONE)
+    outside = reactive.skirt.skirt_spacing(sensor_radius=0.351, wheel_sensor_radius=0.351)
     assert math.degrees(outside.printed_gap) == pytest.approx(37.5, abs=ONE)
     assert outside.closing_correction * 9 * 0.046 == pytest.approx(
         2 * math.pi * (0.33 - 0.351 * 292.5 / 360), abs=1e-12
@@ -73,18 +73,18 @@ def test_other_lengths_make_the_printed_spacing_fit() -> None:
 
 def test_printed_equation_5_is_3_with_4() -> None:
     lengths = {"chassis_radius": 0.4, "sensor_radius": 0.37, "wheel_sensor_radius": 0.31, "sensor_length": 0.05}
-    closed = reactive.skirt_spacing(9, correction=0.5, **lengths).printed_gap_closed
-    again = reactive.skirt_spacing(9, wheel_gap=math.pi / 3 - closed, correction=0.5, **lengths).printed_gap
+    closed = reactive.skirt.skirt_spacing(9, correction=0.5, **lengths).printed_gap_closed
+    again = reactive.skirt.skirt_spacing(9, wheel_gap=math.pi / 3 - closed, correction=0.5, **lengths).printed_gap
     assert again == pytest.approx(closed, abs=4e-15)
 
 
 def test_safe_distance_follows_from_the_largest_gap() -> None:
     assert reactive.UltrasonicSkirt().meeting_distance == pytest.approx(0.6098, abs=FOUR)
-    narrow = reactive.skirt_safe_distance(sensor_radius=0.33, gap=math.radians(37.5))
+    narrow = reactive.skirt.skirt_safe_distance(sensor_radius=0.33, gap=math.radians(37.5))
     assert narrow == pytest.approx(0.5276, abs=FOUR)
     # What the printed 0.666 m would need.
-    outside = reactive.skirt_safe_distance(sensor_radius=0.3604, gap=math.radians(45.0))
-    wider = reactive.skirt_safe_distance(sensor_radius=0.33, gap=math.radians(49.0))
+    outside = reactive.skirt.skirt_safe_distance(sensor_radius=0.3604, gap=math.radians(45.0))
+    wider = reactive.skirt.skirt_safe_distance(sensor_radius=0.33, gap=math.radians(49.0))
     assert outside == pytest.approx(0.666, abs=THREE)
     assert wider == pytest.approx(0.666, abs=THREE)
 
@@ -96,7 +96,7 @@ def test_triggering_distances_are_consistent_unless_the_printed_ones_are_asked_f
 
 
 def test_state_table_has_ten_of_512_patterns() -> None:
-    assert [(state.pattern, state.action) for state in reactive.skirt_states()] == list(TABLE_1)
+    assert [(state.pattern, state.action) for state in reactive.skirt.skirt_states()] == list(TABLE_1)
     skirt = reactive.UltrasonicSkirt(policy="table_only")
     listed = dict(TABLE_1)
     for bits in range(512):
@@ -112,7 +112,7 @@ def test_one_sensor_alone_acts_as_in_table_3(policy: Any) -> None:
     for sensor, expected in enumerate(TABLE_3):
         readings = np.full(9, 3.0)
         readings[sensor] = 0.2
-        off = math.cos(reactive.MOTION_DIRECTIONS[skirt.action(readings)] - skirt.bearings[sensor])
+        off = math.cos(reactive.skirt.MOTION_DIRECTIONS[skirt.action(readings)] - skirt.bearings[sensor])
         if policy == "nearest":
             assert skirt.action(readings) == expected
         else:
@@ -121,7 +121,7 @@ def test_one_sensor_alone_acts_as_in_table_3(policy: Any) -> None:
 
 
 def test_motion_directions_are_those_of_table_3_with_a_mirrored_north_west() -> None:
-    shares = {name: angle / math.pi for name, angle in reactive.MOTION_DIRECTIONS.items()}
+    shares = {name: angle / math.pi for name, angle in reactive.skirt.MOTION_DIRECTIONS.items()}
     thirds = {"NW": 2 / 3, "NE": 1 / 3, "SW": 4 / 3, "SE": -1 / 3}
     assert shares == pytest.approx({"N": 0.5, "S": -0.5, "W": 1.0, "E": 0.0} | thirds, abs=ROUNDING)
 

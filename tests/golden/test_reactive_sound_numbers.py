@@ -81,7 +81,7 @@ def test_printed_range_formula_is_wrong_in_every_reading() -> None:
     assert best > 0.1
     as_printed = errors[("12, 13", 1, 1, 1.0), "R2"]
     own = [
-        float(reactive.printed_range(ROW, delay_12=delays[0], delay_13=delays[1])) / distance - 1.0
+        float(reactive.sound.printed_range(ROW, delay_12=delays[0], delay_13=delays[1])) / distance - 1.0
         for distance, bearing in itertools.product((1.0, 2.0, 3.0, 4.0), (-50.0, -25.0, -10.0, 10.0, 25.0, 50.0))
         for delays in [true_delays(distance, bearing)]
     ]
@@ -92,13 +92,13 @@ def test_printed_range_formula_is_wrong_in_every_reading() -> None:
     ("bearing", "pair", "seen"), [(0.0, "12", 11.1), (30.0, "12", 38.5), (30.0, "23", 18.7), (30.0, "13", 28.1)]
 )
 def test_parallel_rays_see_one_meter_at_the_wrong_angle(bearing: float, pair: str, seen: float) -> None:
-    bias = reactive.parallel_ray_bias(ROW, range=1.0, bearing=math.radians(bearing), pair=pair)  # type: ignore[arg-type]  # a word of the table
+    bias = reactive.sound.parallel_ray_bias(ROW, range=1.0, bearing=math.radians(bearing), pair=pair)  # type: ignore[arg-type]  # a word of the table
     assert bearing + math.degrees(bias) == pytest.approx(seen, abs=DEGREE_DIGIT)
 
 
 @pytest.mark.parametrize(("bearing", "deviation"), list(zip(BEARINGS, (0.120, 0.159, 0.518), strict=True)))
 def test_quarter_of_a_sample_scatters_the_range(bearing: float, deviation: float) -> None:
-    fixes = reactive.jittered_fixes(ROW, range=3.0, bearing=math.radians(bearing), runs=40_000, seed=1)
+    fixes = reactive.sound.jittered_fixes(ROW, range=3.0, bearing=math.radians(bearing), runs=40_000, seed=1)
     assert fixes.found.all()
     assert float(np.std(fixes.range)) == pytest.approx(deviation, rel=SCATTER)
 

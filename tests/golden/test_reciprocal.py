@@ -137,7 +137,7 @@ def commanded(agents: Agents) -> Array:
             control_period=INTERVAL,
         )
         velocity = agents.velocity[index]
-        force = nav.command(LAW, scenario, position=place, velocity=velocity)
+        force = nav.laws.command(LAW, scenario, position=place, velocity=velocity)
         found.append(velocity + force * INTERVAL / robot.mass)
     return np.array(found)
 

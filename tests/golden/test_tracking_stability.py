@@ -29,18 +29,18 @@ WIDE = nav.DifferentialDriveRobot(max_speed=50.0, max_acceleration=1e6, max_angu
 """A robot that no limit touches; it turns at up to 10 000 rad/s."""
 
 
-def one_period(law: nav.Tracking, speed: float, turn: float, period: float) -> Callable[[Array], Array]:
+def one_period(law: nav.tracking.Tracking, speed: float, turn: float, period: float) -> Callable[[Array], Array]:
     """Return the map of (lag along, lag across, heading error) in the axes of the reference over one period."""
     if turn:
-        reference: nav.Reference = nav.CircleReference(
+        reference: nav.tracking.Reference = nav.tracking.CircleReference(
             center=(0.0, speed / turn), radius=speed / abs(turn), speed=math.copysign(speed, turn),
             start_angle=-math.copysign(math.pi / 2, turn),
         )  # fmt: skip
     else:
-        reference = nav.LineReference(start=(0.0, 0.0), velocity=(speed, 0.0))
+        reference = nav.tracking.LineReference(start=(0.0, 0.0), velocity=(speed, 0.0))
 
     def advance(state: Array) -> Array:
-        run = nav.track(
+        run = nav.tracking.track(
             reference, law, position=-state[:2], heading=-state[2], speed=speed, turn_rate=turn,
             robot=WIDE, control_period=period, step=period, duration=period,
         )  # fmt: skip
@@ -86,8 +86,8 @@ def nonlinear_feedback(speed: float) -> Array:
 
 
 CASES = [
-    (nav.FullSpeedTracking(), full_speed_feedback),
-    (nav.NonlinearTracking(), nonlinear_feedback),
+    (nav.tracking.FullSpeedTracking(), full_speed_feedback),
+    (nav.tracking.NonlinearTracking(), nonlinear_feedback),
 ]
 
 
@@ -95,7 +95,7 @@ CASES = [
 @pytest.mark.parametrize(("law", "feedback"), CASES, ids=["full_speed", "nonlinear"])
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_linearized_period_is_that_of_the_equations(
-    law: nav.Tracking, feedback: Callable[[float], Array], speed: float, period: float
+    law: nav.tracking.Tracking, feedback: Callable[[float], Array], speed: float, period: float
 ) -> None:
     matrix = held(feedback(speed), speed, period)
     assert jacobian(one_period(law, speed, 0.0, period)) == pytest.approx(matrix, abs=DIFFERENCES)
@@ -113,20 +113,20 @@ def test_full_speed_poles_do_not_depend_on_the_speed(period: float) -> None:
 
 def test_nonlinear_radii_are_those_of_the_specification() -> None:
     # 0.98 at 0.1 m/s to 0.87 at 0.7 m/s and T_s = 0.06 s; tends to 1 as the reference slows down.
-    radii = [radius(jacobian(one_period(nav.NonlinearTracking(), speed, 0.0, 0.06))) for speed in (0.1, 0.7)]
+    radii = [radius(jacobian(one_period(nav.tracking.NonlinearTracking(), speed, 0.0, 0.06))) for speed in (0.1, 0.7)]
     assert [round(value, 2) for value in radii] == [0.98, 0.87]
-    slow = radius(jacobian(one_period(nav.NonlinearTracking(), 1e-3, 0.0, 0.06)))
+    slow = radius(jacobian(one_period(nav.tracking.NonlinearTracking(), 1e-3, 0.0, 0.06)))
     assert 1.0 - 1e-3 < slow < 1.0
 
 
 def test_a_fast_turning_reference_destabilizes_the_nonlinear_law_only() -> None:
     # At omega_d = 20 rad/s the gain 2 xi omega_n is 38 1/s: more than 2/T_s.
-    assert radius(jacobian(one_period(nav.NonlinearTracking(), 0.3, 20.0, 0.06))) > 1.0
-    assert radius(jacobian(one_period(nav.NonlinearTracking(), 0.3, 20.0, 0.01))) < 1.0
+    assert radius(jacobian(one_period(nav.tracking.NonlinearTracking(), 0.3, 20.0, 0.06))) > 1.0
+    assert radius(jacobian(one_period(nav.tracking.NonlinearTracking(), 0.3, 20.0, 0.01))) < 1.0
     for turn in (0.5, 2.0, 5.0):
         for period in PERIODS:
             for speed in SPEEDS:
-                for law in (nav.FullSpeedTracking(), nav.NonlinearTracking()):
+                for law in (nav.tracking.FullSpeedTracking(), nav.tracking.NonlinearTracking()):
                     assert radius(jacobian(one_period(law, speed, turn, period))) < 1.0
 
 
@@ -138,7 +138,7 @@ def test_full_speed_law_loses_stability_where_the_argument_says() -> None:
         (2.0, 32.0, True),
         (2.0, 34.0, False),
     ]:
-        law = nav.FullSpeedTracking(position_gain=position_gain, heading_gain=heading_gain)
+        law = nav.tracking.FullSpeedTracking(position_gain=position_gain, heading_gain=heading_gain)
         assert (radius(jacobian(one_period(law, 0.5, 0.0, 0.06))) < 1.0) is stable
 
 
@@ -176,9 +176,9 @@ def goal_law(heading: float) -> Callable[[Array, Array, Array, float], tuple[flo
 
 
 CONTINUOUS = {
-    "full_speed": (nav.FullSpeedTracking(), full_speed_law),
-    "nonlinear": (nav.NonlinearTracking(), nonlinear_law),
-    "goal": (nav.ExponentialTracking(goal_heading=0.4, capture_radius=math.inf), goal_law(0.4)),
+    "full_speed": (nav.tracking.FullSpeedTracking(), full_speed_law),
+    "nonlinear": (nav.tracking.NonlinearTracking(), nonlinear_law),
+    "goal": (nav.tracking.ExponentialTracking(goal_heading=0.4, capture_radius=math.inf), goal_law(0.4)),
 }
 
 
@@ -188,7 +188,7 @@ def test_short_periods_tend_to_the_differential_equation(name: str, heading: flo
     law, equations = CONTINUOUS[name]
     speed, radius_, end = (0.0, 1.0, 1.5) if name == "goal" else (0.4, 0.8, 1.5)
     turn = speed / radius_
-    circle = nav.CircleReference(center=(0.0, 0.0), radius=radius_, speed=speed)
+    circle = nav.tracking.CircleReference(center=(0.0, 0.0), radius=radius_, speed=speed)
 
     def rates(time: float, state: Array) -> list[float]:
         cos, sin = math.cos(turn * time), math.sin(turn * time)
@@ -200,7 +200,7 @@ def test_short_periods_tend_to_the_differential_equation(name: str, heading: flo
     solution = solve_ivp(rates, (0.0, end), start, method="DOP853", rtol=1e-10, atol=1e-12, max_step=0.01).y[:, -1]
 
     def final(period: float) -> Array:
-        run = nav.track(
+        run = nav.tracking.track(
             circle, law, position=start[:2], heading=heading, robot=WIDE,
             control_period=period, step=period, duration=end, goal=(radius_, 0.0),
         )  # fmt: skip
@@ -215,9 +215,9 @@ def test_short_periods_tend_to_the_differential_equation(name: str, heading: flo
 @pytest.mark.parametrize("bearing", [-1.1, 0.3, 1.0])
 def test_goal_phase_has_its_closed_form(bearing: float) -> None:
     # Without a wanted heading alpha = alpha_0 exp(-4 t) and d ln(rho)/dt = -1.5 cos(alpha)^2.
-    law = nav.ExponentialTracking(capture_radius=math.inf)
-    run = nav.track(
-        nav.LineReference(start=(0.3, 0.0)), law, heading=-bearing, robot=WIDE,
+    law = nav.tracking.ExponentialTracking(capture_radius=math.inf)
+    run = nav.tracking.track(
+        nav.tracking.LineReference(start=(0.3, 0.0)), law, heading=-bearing, robot=WIDE,
         control_period=1e-4, step=1e-4, duration=2.0, goal=(0.3, 0.0),
     )  # fmt: skip
     shrunk, _ = quad(lambda t: 1.5 * math.cos(bearing * math.exp(-4.0 * t)) ** 2, 0.0, 2.0, epsabs=1e-12)
@@ -227,13 +227,19 @@ def test_goal_phase_has_its_closed_form(bearing: float) -> None:
 def test_contraction_of_the_heading_holds_for_every_angle() -> None:
     # With U fixed, alpha+ = alpha - T clip(K_h alpha): |alpha+| < |alpha| up to pi as long as T K_h < 2, and the
     # sign stays as long as T K_h <= 1. U is fixed for a reference so far away that its direction does not change.
-    far = nav.LineReference(start=(1e9, 0.0))
+    far = nav.tracking.LineReference(start=(1e9, 0.0))
     for period in PERIODS:
         for heading in np.linspace(-math.pi, math.pi, 41)[1:-1]:
             if heading == 0.0:
                 continue
-            run = nav.track(far, heading=heading, robot=nav.DifferentialDriveRobot(max_angular_acceleration=1e9),
-                            control_period=period, step=period, duration=round(3.0 / period) * period)  # fmt: skip
+            run = nav.tracking.track(
+                far,
+                heading=heading,
+                robot=nav.DifferentialDriveRobot(max_angular_acceleration=1e9),
+                control_period=period,
+                step=period,
+                duration=round(3.0 / period) * period,
+            )
             ratio = run.heading[1:] / run.heading[:-1]
             assert (ratio >= 0.0).all()
             assert (ratio < 1.0).all()

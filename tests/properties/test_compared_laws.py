@@ -112,7 +112,7 @@ def scenario(scene: Scene, motion: Motion) -> nav.Scenario:
 
 def commanded(law: nav.Law, scene: Scene, motion: Motion) -> np.ndarray:
     state: dict[str, Any] = {"position": motion.place(scene.position), "velocity": motion.turn(scene.velocity)}
-    return nav.command(law, scenario(scene, motion), **state)
+    return nav.laws.command(law, scenario(scene, motion), **state)
 
 
 def regions(scene: Scene) -> list[float]:

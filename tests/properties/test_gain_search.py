@@ -33,7 +33,7 @@ grids = st.tuples(*[st.integers(2, 4)] * 4)
 few = settings(max_examples=25)
 
 
-def points_of(entry: nav.SearchRound) -> np.ndarray:
+def points_of(entry: nav.gains.SearchRound) -> np.ndarray:
     return np.array(list(itertools.product(*entry.axes)))
 
 
@@ -104,7 +104,7 @@ def test_a_tighter_constraint_never_makes_it_better(grid: tuple[int, ...], least
     options: dict[str, Any] = {"grid": grid, "refinements": 0, "local_starts": 0}
     values = []
     for limit in (least, least + 0.1):
-        constraint = nav.GainConstraint(metric="min_clearance", at_least=limit)
+        constraint = nav.gains.GainConstraint(metric="min_clearance", at_least=limit)
         found = nav.optimize_gains(SCENES, constraints=[constraint], **options)
         table = nav.simulate_batch(SCENES, found.nearest, stop_on_contact=True)
         holds = bool(table.min_clearance.min() >= limit and (table.outcome == "arrived").all())
@@ -124,7 +124,7 @@ METRICS = ("arrival_time", "energy", "path_length", "min_clearance", "performanc
 @few
 @given(grids, st.lists(st.sampled_from(METRICS), min_size=2, max_size=3, unique=True))
 def test_front_is_what_no_point_of_the_grid_dominates(grid: tuple[int, ...], objectives: list[str]) -> None:
-    front = nav.pareto_front(SCENES, objectives=objectives, grid=grid, refinements=0)
+    front = nav.gains.pareto_front(SCENES, objectives=objectives, grid=grid, refinements=0)
     axes = [np.linspace(0.0, high, count) for high, count in zip(HIGHEST, grid, strict=True)]
     points = np.array(list(itertools.product(*axes)))
     table = nav.simulate_batch(SCENES, LAW, points, stop_on_contact=True)

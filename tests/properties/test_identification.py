@@ -30,7 +30,7 @@ def bench(seed: int, contact: str = "unilateral") -> tuple[np.ndarray, ...]:
     depth = np.linspace(0.4e-3, 5e-3, 12) + generator.uniform(0.0, RESOLUTION, 12)
     force = STIFFNESS * depth + generator.normal(0.0, 1.0, 12)
     time = np.arange(500) * 1e-3
-    drop = impact.drop_trajectory(
+    drop = impact.identification.drop_trajectory(
         time,
         height=generator.uniform(0.03, 0.06),
         mass=MASS,
@@ -72,7 +72,7 @@ def test_drops_follow_the_equation_of_motion(contact: str) -> None:
         instants.extend(inside)
         now, state = float(run.t[-1]), run.y[:, -1]
         state = [state[0], 0.0] if event is turn else state
-    found = impact.drop_trajectory(
+    found = impact.identification.drop_trajectory(
         [0.0, *instants],
         height=0.04,
         mass=MASS,
@@ -105,7 +105,7 @@ def test_static_fit_is_the_least_squares_line_and_its_intervals_cover_the_truth(
         generator = np.random.default_rng(seed)
         depth = np.linspace(0.4e-3, 5e-3, 12)
         force = STIFFNESS * depth + zero + generator.normal(0.0, 1.0, 12)
-        fit = impact.fit_static(force, depth, offset=offset)
+        fit = impact.identification.fit_static(force, depth, offset=offset)
         plain = np.column_stack([depth, np.ones(12)] if offset else [depth])
         solution = np.linalg.lstsq(plain, force, rcond=None)[0]
         assert fit.stiffness == pytest.approx(solution[0], rel=1e-9)
@@ -154,7 +154,7 @@ def test_differentiated_samples_bias_the_damping_and_the_trajectory_does_not() -
 
 
 def test_table_a_1_gives_the_numbers_of_its_regression() -> None:
-    fit = impact.identify_direct_drive(
+    fit = impact.identification.identify_direct_drive(
         [0.3, 0.4, 0.6, 0.8, 1.0],
         [0.497, 0.808, 1.504, 2.555, 3.723],
         [0.121, 0.161, 0.098, 0.110, 0.109, 0.113, 0.138, 0.138, 0.184, 0.183],
@@ -170,9 +170,9 @@ def test_table_a_1_gives_the_numbers_of_its_regression() -> None:
 
 def test_gains_for_a_wanted_stiffness_with_both_torque_constants() -> None:
     wanted = {"stiffness": 20e3, "damping": 250.0, "lever_arm": 0.078}
-    printed = impact.pd_gains(**wanted, torque_constant=0.2807, viscous_friction=0.0079)
+    printed = impact.identification.pd_gains(**wanted, torque_constant=0.2807, viscous_friction=0.0079)
     assert (round(printed.proportional, 3), round(printed.derivative, 5)) == (433.488, 5.39045)
-    right = impact.pd_gains(**wanted, torque_constant=0.27121, viscous_friction=0.0079945)
+    right = impact.identification.pd_gains(**wanted, torque_constant=0.27121, viscous_friction=0.0079945)
     assert (round(right.proportional, 1), round(right.derivative, 3)) == (448.7, 5.579)
 
 
@@ -181,19 +181,19 @@ def test_open_loop_intervals_cover_the_truth() -> None:
     angle = 1.504 * (0.111 * time - 1.0 + np.exp(-0.111 * time)) / 0.111**2
     covered = np.zeros(2)
     for seed in range(300):
-        fit = impact.fit_open_loop(time, angle + np.random.default_rng(seed).normal(0.0, 2e-3, 300))
+        fit = impact.identification.fit_open_loop(time, angle + np.random.default_rng(seed).normal(0.0, 2e-3, 300))
         interval = np.asarray(fit.interval)
         covered += (interval[:, 0] <= (1.504, 0.111)) & (interval[:, 1] >= (1.504, 0.111))
     assert ((covered / 300 >= 0.90) & (covered / 300 <= 0.99)).all()
 
 
-def drive(**changes: float) -> impact.DirectDrive:
+def drive(**changes: float) -> impact.joints.DirectDrive:
     """Return the joint whose linear form is Manipulator 1."""
-    gains = impact.pd_gains(
+    gains = impact.identification.pd_gains(
         stiffness=20e3, damping=250.0, lever_arm=0.078, torque_constant=0.27121, viscous_friction=0.0079945
     )
     values = {"proportional": gains.proportional, "derivative": gains.derivative, "inertia": 9.6 * 0.078**2}
-    return impact.DirectDrive(**(values | changes))
+    return impact.joints.DirectDrive(**(values | changes))
 
 
 FOAM = impact.Foam(stiffness=24.25e3, damping=71.9)
@@ -202,7 +202,7 @@ HEAD = impact.Head.apparatus()
 
 def test_a_joint_without_limit_is_the_linear_manipulator() -> None:
     linear = drive(voltage_limit=math.inf)
-    run = impact.simulate_direct_drive(linear, FOAM, HEAD, closing_speed=1.25, duration=0.06, step=1e-3)
+    run = impact.joints.simulate_direct_drive(linear, FOAM, HEAD, closing_speed=1.25, duration=0.06, step=1e-3)
     exact = impact.simulate(linear.linear(), FOAM, HEAD, closing_speed=1.25, duration=0.06, step=1e-3)
     for name in ("manipulator_position", "manipulator_velocity", "head_position", "head_velocity", "contact_force"):
         reference = getattr(exact, name)
@@ -214,7 +214,7 @@ def test_a_joint_without_limit_is_the_linear_manipulator() -> None:
 
 
 def test_the_limited_joint_saturates_and_is_softer_than_the_linear_one() -> None:
-    run = impact.simulate_direct_drive(drive(), FOAM, HEAD, closing_speed=1.25)
+    run = impact.joints.simulate_direct_drive(drive(), FOAM, HEAD, closing_speed=1.25)
     linear = impact.metrics(drive().linear(), FOAM, HEAD, closing_speed=1.25)
     assert np.abs(run.command).max() == 5.0
     # What the controller asks for at the end of the impact: 256.5 N against the 17.4 N of 5 V.

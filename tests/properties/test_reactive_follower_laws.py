@@ -149,7 +149,7 @@ walls = st.builds(
 @settings(max_examples=150, deadline=None)
 def test_rays_meet_the_nearest_edge(shapes: list[Any], x: float, y: float, angle: float) -> None:
     origin = np.array([x, y])
-    found = float(reactive.cast_rays(shapes, [(x, y)], [angle])[0])
+    found = float(reactive.sonar.cast_rays(shapes, [(x, y)], [angle])[0])
     if any(inside(shape, origin, APART) for shape in shapes):
         if any(inside(shape, origin, -APART) for shape in shapes):
             assert found == 0.0
@@ -174,7 +174,7 @@ def test_a_reading_is_the_nearest_of_its_rays(shapes: list[Any], heading: float,
     c, s = math.cos(heading), math.sin(heading)
     for place, axis, reading in zip(sonar.mounts.position, sonar.mounts.axis, found, strict=True):
         at = (c * place[0] - s * place[1], s * place[0] + c * place[1])
-        along = reactive.cast_rays(shapes, np.tile(at, (rays, 1)), heading + axis + offsets)
+        along = reactive.sonar.cast_rays(shapes, np.tile(at, (rays, 1)), heading + axis + offsets)
         expected = float(along.min())
         if expected > sonar.most_range:
             expected = math.inf
@@ -189,7 +189,7 @@ def test_a_reading_is_the_nearest_of_its_rays(shapes: list[Any], heading: float,
 def grazes(shapes: list[Any], at: tuple[float, float], angles: np.ndarray) -> bool:
     """Return whether a turn by 1e-9 rad changes what a ray meets by much."""
     places = np.tile(at, (len(angles), 1))
-    hits = [reactive.cast_rays(shapes, places, angles + turn) for turn in (-1e-9, 1e-9)]
+    hits = [reactive.sonar.cast_rays(shapes, places, angles + turn) for turn in (-1e-9, 1e-9)]
     with np.errstate(invalid="ignore"):
         return bool(np.any(~(np.abs(hits[0] - hits[1]) < 1e-6) & (np.isfinite(hits[0]) | np.isfinite(hits[1]))))
 
@@ -201,9 +201,11 @@ def test_collision_vector_is_the_least_squares_foot(one: tuple[float, float], ot
     if np.linalg.norm(along) < 1e-2:
         return
     share = np.linalg.lstsq(along[:, np.newaxis], -first, rcond=None)[0][0]
-    np.testing.assert_allclose(reactive.collision_vector(one, other, clamp=False), first + share * along, atol=1e-9)
+    np.testing.assert_allclose(
+        reactive.follower.collision_vector(one, other, clamp=False), first + share * along, atol=1e-9
+    )
     clamped = first + min(max(share, 0.0), 1.0) * along
-    np.testing.assert_allclose(reactive.collision_vector(one, other), clamped, atol=1e-9)
+    np.testing.assert_allclose(reactive.follower.collision_vector(one, other), clamped, atol=1e-9)
 
 
 def test_deviations_are_scipys_on_the_grid() -> None:
@@ -213,8 +215,8 @@ def test_deviations_are_scipys_on_the_grid() -> None:
     own = interpolate.RegularGridInterpolator((ranges, bearings), table)
     generator = np.random.default_rng(1)
     points = np.column_stack([generator.uniform(1.0, 4.0, 300), generator.uniform(0.0, bearings[-1], 300)])
-    np.testing.assert_allclose(reactive.fix_deviations(*points.T).range, own(points), atol=1e-12)
+    np.testing.assert_allclose(reactive.follower.fix_deviations(*points.T).range, own(points), atol=1e-12)
     np.testing.assert_array_equal(
-        reactive.fix_deviations(points[:, 0], -points[:, 1]).bearing,
-        reactive.fix_deviations(points[:, 0], points[:, 1]).bearing,
+        reactive.follower.fix_deviations(points[:, 0], -points[:, 1]).bearing,
+        reactive.follower.fix_deviations(points[:, 0], points[:, 1]).bearing,
     )

@@ -14,7 +14,7 @@ from hrsafety import reactive
 
 EXACT = 1e-14
 SPEED = st.floats(-1.0, 1.0)
-PLATFORM = reactive.TriOmniKinematics()
+PLATFORM = reactive.skirt.TriOmniKinematics()
 WHEELS = np.radians([90.0, 210.0, 330.0])
 Array = npt.NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def test_magnitudes_alone_spin_the_robot() -> None:
 @given(readings=st.lists(st.floats(0.02, 0.8), min_size=9, max_size=9))
 def test_the_nearest_triggered_sensor_decides_between_the_rows(readings: list[float]) -> None:
     skirt = reactive.UltrasonicSkirt()
-    listed = {state.pattern for state in reactive.skirt_states()}
+    listed = {state.pattern for state in reactive.skirt.skirt_states()}
     nearest = int(np.argmin(readings))
     if skirt.pattern(readings) not in listed:
         alone = np.full(9, 3.0)
@@ -91,14 +91,14 @@ def test_the_nearest_triggered_sensor_decides_between_the_rows(readings: list[fl
 @given(readings=st.lists(st.floats(0.02, 0.8), min_size=9, max_size=9))
 def test_the_best_direction_maximizes_the_documented_sum(readings: list[float]) -> None:
     skirt = reactive.UltrasonicSkirt(policy="best_direction")
-    listed = {state.pattern for state in reactive.skirt_states()}
+    listed = {state.pattern for state in reactive.skirt.skirt_states()}
     if skirt.pattern(readings) in listed:
         return
     near, limits = np.array(readings), skirt.trigger_distances
     weight = np.where(near <= limits, 1.2 - near / limits, 0.0)
     sums = {
         name: -float(np.sum(np.exp(2 * np.cos(angle - skirt.bearings)) * weight))
-        for name, angle in reactive.MOTION_DIRECTIONS.items()
+        for name, angle in reactive.skirt.MOTION_DIRECTIONS.items()
     }
     assert sums[skirt.action(readings)] >= max(sums.values()) - 1e-12
 
@@ -143,7 +143,7 @@ def test_readings_are_ranges_within_the_cone_one_sensor_at_a_time(direction: str
 
 def test_motion_follows_the_decisions_within_the_limits() -> None:
     motion = reactive.SkirtMotion()
-    for direction in reactive.MOTION_DIRECTIONS:
+    for direction in reactive.skirt.MOTION_DIRECTIONS:
         run = reactive.skirt_run(direction=direction, motion=motion)
         step = run.skirt.firing_period
         assert run.time == pytest.approx(step * np.arange(1, len(run.time) + 1), rel=1e-12)

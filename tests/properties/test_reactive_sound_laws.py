@@ -49,7 +49,7 @@ def test_correlation_is_that_of_scipy(seed: int, count: int, noise: float) -> No
     channels = [sound[150 : 150 + count], sound[100 : 100 + count], sound[220 : 220 + count]]
     channels = [each + noise * white(count, seed + place + 1) for place, each in enumerate(channels)]
     heard = recorded(channels)
-    curve = reactive.likeness(heard, ROW)
+    curve = reactive.sound.likeness(heard, ROW)
     found = reactive.estimate_delays(heard, ROW, between_samples=False)
     for lags, values, other, lag in (
         (curve.lags_12, curve.values_12, channels[1], found.lag_12),
@@ -67,7 +67,9 @@ def test_correlation_is_that_of_scipy(seed: int, count: int, noise: float) -> No
 def test_mean_square_is_energy_less_twice_the_correlation(seed: int, count: int) -> None:
     channels = [white(count, seed + place) for place in range(3)]
     heard = recorded(channels)
-    square, product = (reactive.likeness(heard, ROW, method=method) for method in ("mean_square", "cross_correlation"))
+    square, product = (
+        reactive.sound.likeness(heard, ROW, method=method) for method in ("mean_square", "cross_correlation")
+    )
     one, two = (each - each.mean() for each in channels[:2])
     for lag, found, correlation in zip(square.lags_12, square.values_12, product.values_12, strict=True):
         a, b = (one[: count - lag], two[lag:]) if lag >= 0 else (one[-lag:], two[: count + lag])
@@ -129,7 +131,7 @@ def test_only_the_way_of_sound_counts(distance: float, bearing: float, factor: f
 def test_covariance_is_that_of_many_fixes(distance: float, bearing: float) -> None:
     small = 1e-8  # s: so little that first order is all there is
     truth = reactive.locate(ROW, **delays_of(distance, bearing), arrival_deviation=small)
-    fixes = reactive.jittered_fixes(ROW, range=distance, bearing=bearing, runs=4000, arrival_deviation=small)
+    fixes = reactive.sound.jittered_fixes(ROW, range=distance, bearing=bearing, runs=4000, arrival_deviation=small)
     found = np.cov(fixes.range, fixes.bearing)
     size = np.sqrt(np.outer(np.diag(truth.covariance), np.diag(truth.covariance)))
     # 4000 runs: 2.2 % of sampling in a variance, five deviations.
@@ -151,7 +153,7 @@ def test_tone_is_heard_at_the_frequency_of_doppler(observer: float, source: floa
         samples=30_000,
     )
     expected = frequency * (340.0 + observer) / (340.0 - source)
-    assert reactive.doppler_frequency(frequency, observer_speed=observer, source_speed=source) == pytest.approx(
+    assert reactive.sound.doppler_frequency(frequency, observer_speed=observer, source_speed=source) == pytest.approx(
         expected
     )
     for channel in heard.samples:

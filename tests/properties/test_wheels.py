@@ -12,12 +12,12 @@ from hrsafety import navigation as nav
 integrate = pytest.importorskip("scipy.integrate")
 signal = pytest.importorskip("scipy.signal")
 
-ALL_WHEELS = nav.HOLONOMIC_WHEELS + nav.DIFFERENTIAL_WHEELS
+ALL_WHEELS = nav.robots.HOLONOMIC_WHEELS + nav.robots.DIFFERENTIAL_WHEELS
 INTEGRATED = 1e-8  # of SciPy with tolerances of 1e-12 over a hundred pieces
 RECOVERED = 0.02  # of every parameter, from a second of counts
 
 
-def integrated(wheel: nav.WheelDrive, currents: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
+def integrated(wheel: nav.robots.WheelDrive, currents: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
     """Angle and speed at the start of each period by an integrator that stops at each standstill."""
     angle, speed, rows = 0.0, 0.0, []
     for current in currents:
@@ -57,7 +57,7 @@ def test_friction_and_stops_agree_with_an_integrator_with_events(index: int) -> 
     # Without feedback, and with a model of inertia only, the command is the wanted acceleration.
     pure = dataclasses.replace(wheel, model=(1.0, 0.0, 0.0))
     still = np.zeros_like(currents)
-    run = nav.follow_wheel(pure, nav.WheelReference(angle=still, speed=still, acceleration=currents))
+    run = nav.robots.follow_wheel(pure, nav.robots.WheelReference(angle=still, speed=still, acceleration=currents))
     np.testing.assert_array_equal(run.current, currents)
     angle, speed = integrated(wheel, currents, 0.05)
     assert (speed == 0.0).sum() > 5  # the wheel did stick
@@ -69,7 +69,7 @@ def test_friction_and_stops_agree_with_an_integrator_with_events(index: int) -> 
 def test_the_step_response_of_the_loop_is_that_of_a_linear_system() -> None:
     # Without friction, limits and quantisation: J/K s^2 + (B/K + K_D) s + K_P over K_D s + K_P.
     wheel = dataclasses.replace(
-        nav.HOLONOMIC_WHEELS[0],
+        nav.robots.HOLONOMIC_WHEELS[0],
         static_friction=0.0,
         model=(0.0073, 0.0, 0.0),
         feedback="differences",
@@ -80,7 +80,9 @@ def test_the_step_response_of_the_loop_is_that_of_a_linear_system() -> None:
     )
     rows = 20_000
     ones = np.ones(rows)
-    run = nav.follow_wheel(wheel, nav.WheelReference(angle=0.1 * ones, speed=0.0 * ones, acceleration=0.0 * ones))
+    run = nav.robots.follow_wheel(
+        wheel, nav.robots.WheelReference(angle=0.1 * ones, speed=0.0 * ones, acceleration=0.0 * ones)
+    )
     damping = wheel.viscous_friction + wheel.derivative_gain
     _, response = signal.step(
         ([wheel.proportional_gain], [wheel.inertia, damping, wheel.proportional_gain]), T=run.time
@@ -95,7 +97,7 @@ def test_open_loop_tests_of_a_second_give_the_parameters_back(index: int, direct
     truth = np.array([1.0, wheel.viscous_friction, wheel.static_friction]) / wheel.inertia
     commands = direction * np.array([0.25, 0.3, 0.35, 0.4, 0.45, 0.5])
     for seed in range(5):
-        fit = nav.identify_wheel(nav.open_loop_tests(wheel, commands, seed=seed))
+        fit = nav.robots.identify_wheel(nav.robots.open_loop_tests(wheel, commands, seed=seed))
         found = np.array([fit.command_gain, fit.decay, fit.friction_deceleration])
         np.testing.assert_allclose(found, truth, rtol=RECOVERED)
         assert fit.moved.sum() == (10 if index == 4 else 12)  # 0.25 V do not move the left wheel
@@ -107,8 +109,8 @@ def test_open_loop_tests_of_a_second_give_the_parameters_back(index: int, direct
 def test_a_coarser_encoder_is_known_less_well() -> None:
     widths = []
     for counts in (20_000.0, 2_000.0, 200.0):
-        wheel = dataclasses.replace(nav.HOLONOMIC_WHEELS[1], encoder_counts=counts)
-        fit = nav.identify_wheel(nav.open_loop_tests(wheel, seed=3))
+        wheel = dataclasses.replace(nav.robots.HOLONOMIC_WHEELS[1], encoder_counts=counts)
+        fit = nav.robots.identify_wheel(nav.robots.open_loop_tests(wheel, seed=3))
         widths.append(np.ptp(fit.interval[1]))
         # That of rounding; the rounded angle at the start adds a little.
         assert fit.residual_deviation.mean() == pytest.approx(wheel.resolution / np.sqrt(12.0), rel=0.25)
@@ -116,19 +118,19 @@ def test_a_coarser_encoder_is_known_less_well() -> None:
 
 
 def test_the_intervals_hold_the_truth() -> None:
-    wheel = nav.HOLONOMIC_WHEELS[0]
+    wheel = nav.robots.HOLONOMIC_WHEELS[0]
     truth = np.array([1.0, wheel.viscous_friction, wheel.static_friction]) / wheel.inertia
     held = np.zeros(3)
     for seed in range(200):
-        interval = nav.identify_wheel(nav.open_loop_tests(wheel, seed=seed)).interval
+        interval = nav.robots.identify_wheel(nav.robots.open_loop_tests(wheel, seed=seed)).interval
         held += (interval[:, 0] <= truth) & (truth <= interval[:, 1])
     assert (held >= 180).all(), held
 
 
 def test_the_printed_response_is_another_one() -> None:
     # (D.2.3) as printed exchanges A and kappa; it is off by a factor from the first instants on.
-    wheel = nav.HOLONOMIC_WHEELS[0]
-    (test,) = nav.open_loop_tests(wheel, [0.4], repeats=1)
+    wheel = nav.robots.HOLONOMIC_WHEELS[0]
+    (test,) = nav.robots.open_loop_tests(wheel, [0.4], repeats=1)
     decay, slope = wheel.viscous_friction / wheel.inertia, (0.4 - wheel.static_friction) / wheel.inertia
     right = slope * (decay * test.time - 1.0 + np.exp(-decay * test.time)) / decay**2
     printed = decay * (slope * test.time - 1.0 + np.exp(-slope * test.time)) / slope
@@ -137,10 +139,10 @@ def test_the_printed_response_is_another_one() -> None:
 
 
 def test_numbers_of_the_guide() -> None:
-    reference = nav.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
+    reference = nav.robots.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
     errors = {
         feedback: [
-            1e3 * nav.follow_wheel(dataclasses.replace(wheel, feedback=feedback), reference).rms_angle_error
+            1e3 * nav.robots.follow_wheel(dataclasses.replace(wheel, feedback=feedback), reference).rms_angle_error
             for wheel in ALL_WHEELS
         ]
         for feedback in ("observer", "observed_speed", "differences")

@@ -201,7 +201,7 @@ def _rows(report: FoamReport) -> Iterator[list[object]]:
 
 def _picture(report: FoamReport) -> Figure:
     from hrsafety import plotting
-    from hrsafety.plotting.boundaries import refined
+    from hrsafety.plotting.impacts.boundaries import refined
 
     file = report.file
     design = _design(file)

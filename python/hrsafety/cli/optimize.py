@@ -27,7 +27,7 @@ from hrsafety.cli.optimize_report import (
     set_table,
 )
 from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown
-from hrsafety.navigation.gain_metrics import is_maximized
+from hrsafety.navigation.gains.metrics import is_maximized
 
 __all__ = ["optimize_file"]
 
@@ -183,12 +183,12 @@ def _search(
 
 def _front(
     options: argparse.Namespace, study: GainStudy, checkpoint: Path, shown: progress.Report | None
-) -> nav.ParetoFront | None:
+) -> nav.gains.ParetoFront | None:
     """Return the front, or ``None`` if Ctrl-C came first."""
     # There is no best gain set of several objectives.
     unranked = None if shown is None else lambda stage, done, total, _: shown(stage, done, total, None)
     try:
-        found = nav.pareto_front(
+        found = nav.gains.pareto_front(
             study.scenarios,
             study.law,
             **_front_arguments(study),
@@ -221,7 +221,7 @@ def _check_front(study: GainStudy) -> None:
     """Find mistakes in what is asked of the front before the search, by a front of one gain set."""
     single = {"bounds": {name: (1.0, 1.0) for name in GAIN_NAMES}, "grid": (1, 1, 1, 1)}
     try:
-        nav.pareto_front(study.scenarios, study.law, **(_front_arguments(study) | single))
+        nav.gains.pareto_front(study.scenarios, study.law, **(_front_arguments(study) | single))
     except InvalidParameterError as error:
         own = re.split(r"[.\[]", error.argument, maxsplit=1)[0] in {"objectives", *(study.front or {})}
         argument = f"front.{error.argument}" if own else error.argument
@@ -280,7 +280,7 @@ def _alone(study: GainStudy, gains: Gains) -> nav.GainSearch:
     return nav.optimize_gains(study.scenarios, study.law, **arguments)
 
 
-def _sensitivity(study: GainStudy, law: nav.Law, threads: int | None) -> nav.GainSensitivity:
+def _sensitivity(study: GainStudy, law: nav.Law, threads: int | None) -> nav.gains.GainSensitivity:
     return nav.gain_sensitivity(study.scenarios, law, threads=threads, **_scoring(study))
 
 

@@ -11,7 +11,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.gain_metrics import METRICS
+from hrsafety.navigation.gains.metrics import METRICS
 from hrsafety.scenarios import files, laws
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
@@ -95,7 +95,7 @@ class GainStudy:
     search : dict
         Arguments of `hrsafety.navigation.optimize_gains` beyond scenarios and law.
     front : dict or None
-        Arguments of `hrsafety.navigation.pareto_front` that differ from those of the search;
+        Arguments of `hrsafety.navigation.gains.pareto_front` that differ from those of the search;
         ``None``: no front is wanted.
     compare : dict of str to tuple
         Gain sets to show beside the best one, by name.
@@ -209,13 +209,13 @@ def _metric(path: str, word: str) -> str:
     return kind.one_of(path, word, METRICS, listed=True)
 
 
-def _constraint(path: str, table: dict[str, Any], names: tuple[str, ...]) -> nav.GainConstraint:
+def _constraint(path: str, table: dict[str, Any], names: tuple[str, ...]) -> nav.gains.GainConstraint:
     given = checked(path, table, _CONSTRAINT, required=("metric",))
     if "scenario" in given:
         name = kind.one_of(f"{path}.scenario", given["scenario"], names, listed=True)
         given["scenario"] = names.index(name)
     with located(path):
-        return nav.GainConstraint(**given)
+        return nav.gains.GainConstraint(**given)
 
 
 def _front(table: dict[str, Any]) -> dict[str, Any]:

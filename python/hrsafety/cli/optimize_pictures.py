@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from hrsafety.cli.optimize_report import METRIC_UNITS, MOST_PATHS, GainReport
-from hrsafety.navigation.gain_metrics import is_maximized
+from hrsafety.navigation.gains.metrics import is_maximized
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

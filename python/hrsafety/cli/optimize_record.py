@@ -98,7 +98,7 @@ def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]
     }
 
 
-def settings(study: GainStudy, found: nav.SearchSettings) -> dict[str, Any]:
+def settings(study: GainStudy, found: nav.gains.SearchSettings) -> dict[str, Any]:
     """Return the settings of a search as plain values.
 
     Parameters
@@ -128,7 +128,7 @@ def settings(study: GainStudy, found: nav.SearchSettings) -> dict[str, Any]:
 
 
 def _constraint(study: GainStudy, entry: object) -> dict[str, Any]:
-    assert isinstance(entry, nav.GainConstraint)  # a file cannot name a callable
+    assert isinstance(entry, nav.gains.GainConstraint)  # a file cannot name a callable
     place = None if entry.scenario is None else study.names[entry.scenario]
     return {"metric": entry.metric, "at_least": entry.at_least, "at_most": entry.at_most, "scenario": place}
 
@@ -151,7 +151,7 @@ def _scored(entry: Scored, study: GainStudy) -> dict[str, Any]:
     return {"name": entry.name, "gains": _by_gain(entry.law.gains), "value": entry.value, "scenarios": runs}
 
 
-def _round(entry: nav.SearchRound) -> dict[str, Any]:
+def _round(entry: nav.gains.SearchRound) -> dict[str, Any]:
     return {
         "low": _by_gain([axis[0] for axis in entry.axes]),
         "high": _by_gain([axis[-1] for axis in entry.axes]),
@@ -166,7 +166,7 @@ def _round(entry: nav.SearchRound) -> dict[str, Any]:
     }
 
 
-def _local(entry: nav.LocalSearch) -> dict[str, Any]:
+def _local(entry: nav.gains.LocalSearch) -> dict[str, Any]:
     return {
         "start": _by_gain(entry.start),
         "start_value": entry.start_value,
@@ -178,7 +178,7 @@ def _local(entry: nav.LocalSearch) -> dict[str, Any]:
     }
 
 
-def _front(front: nav.ParetoFront) -> dict[str, Any]:
+def _front(front: nav.gains.ParetoFront) -> dict[str, Any]:
     return {
         "objectives": front.objectives,
         "maximized": front.maximized,

@@ -100,9 +100,9 @@ class GainReport:
     study: GainStudy
     search: nav.GainSearch
     sets: tuple[Scored, ...]
-    flatness: nav.Flatness
-    sensitivity: nav.GainSensitivity
-    front: nav.ParetoFront | None
+    flatness: nav.gains.Flatness
+    sensitivity: nav.gains.GainSensitivity
+    front: nav.gains.ParetoFront | None
     seconds: float
     resumed: bool
 

@@ -13,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, instance, numbers, positive, thread_count, word
 from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria import Doubts, ImpactMetrics
+from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics
 from hrsafety.impact.parameters import (
     LINEAR_RANGE,
     LINEAR_SHARE,

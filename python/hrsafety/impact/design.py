@@ -23,7 +23,7 @@ from hrsafety.impact.boundaries import (
     check_impact,
     requirement,
 )
-from hrsafety.impact.criteria import check_speeds, speed_warnings
+from hrsafety.impact.criteria.loads import check_speeds, speed_warnings
 from hrsafety.impact.limits import FoamFeasibility, FoamLimits, FoamMargin
 from hrsafety.impact.parameters import (
     THICKNESS,

@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, flag, instance, number, pair, positive, word
 from hrsafety.errors import InvalidParameterError
-from hrsafety.impact.criteria import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
+from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 from hrsafety.plausibility import implausible
 from hrsafety.tables import Columns, Table, with_units

@@ -8,7 +8,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
-from hrsafety.impact.criteria import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
+from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 
 __all__ = ["ImpactGradients", "gradients"]

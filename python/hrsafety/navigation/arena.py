@@ -12,12 +12,12 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, sequence, word
 from hrsafety._bounds import MOST_REPEATS
+from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
-from hrsafety.navigation.laws import Law
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.run_warnings import of_runs
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_warnings import of_runs
-from hrsafety.navigation.statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, with_units
@@ -357,7 +357,7 @@ def step_cost(law: Law, scenario: Scenario, *, repeats: int = 5) -> float:
     Examples
     --------
     >>> from hrsafety import navigation as nav, scenarios
-    >>> nav.step_cost(nav.Masoud(), scenarios.configuration("c1"), repeats=1) > 0.0
+    >>> nav.metrics.step_cost(nav.Masoud(), scenarios.configuration("c1"), repeats=1) > 0.0
     True
     """
     instance("scenario", scenario, Scenario)

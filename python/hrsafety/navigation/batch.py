@@ -9,13 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, flag, number, numbers, sequence, thread_count
+from hrsafety._arguments import Array, callback, count, flag, instance, number, numbers, sequence, thread_count
 from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.laws import Law
-from hrsafety.navigation.robots import HolonomicRobot
-from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.trajectory import Integrator, check_weights
+from hrsafety.navigation import run_warnings
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.performance import check_weights
+from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.trajectory import Integrator
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
@@ -93,12 +95,10 @@ class BatchSummary(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
-        from hrsafety.navigation import scenario_warnings  # found only when asked for
-
         if self._ran is None:
             return ()
         scenes, law = self._ran
-        return scenario_warnings.of_runs(scenes, [f"scenarios[{k}]" for k in range(len(scenes))], [law])
+        return run_warnings.of_runs(scenes, [f"scenarios[{k}]" for k in range(len(scenes))], [law])
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -201,7 +201,7 @@ def simulate_batch(
     (9, {'arrived'})
     """
     scenes = check_scenarios(scenarios)
-    _require("law", law, Law)
+    instance("law", law, Law)
     check_threads(threads)
     if lanes is not None:
         count("lanes", lanes, most=MOST_LANES)
@@ -226,7 +226,7 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
     """Return the scenarios if there is at least one and nothing else among them."""
     scenes = sequence("scenarios", "be a sequence of Scenario", scenarios)
     for index, scenario in enumerate(scenes):
-        _require(f"scenarios[{index}]", scenario, Scenario)
+        instance(f"scenarios[{index}]", scenario, Scenario)
         if not isinstance(scenario.robot, HolonomicRobot):
             rule = "be a HolonomicRobot, since batches move point masses; `simulate` and `repeat` run the other kind"
             raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)

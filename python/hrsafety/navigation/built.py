@@ -1,145 +1,20 @@
-"""Robots as built: motion by wheels, sensing by cameras, and the runs they give."""
+"""Runs of robots as built."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, flag, instance, number, sequence
-from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.kinematics import OmniKinematics, Slip
-from hrsafety.navigation.laws import Law
-from hrsafety.navigation.scenario import Scenario, _require
-from hrsafety.navigation.tracking_laws import (
-    ExponentialTracking,
-    FullSpeedTracking,
-    NonlinearTracking,
-    Tracking,
-    VirtualTorque,
-)
-from hrsafety.navigation.trajectory import Performance, Trajectory, check_weights, without_obstacles
-from hrsafety.navigation.vision import Vision
-from hrsafety.navigation.wheels import WheelDrive
+from hrsafety._arguments import Array, flag, instance, number
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.performance import Performance, check_weights
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.trajectory import Trajectory, without_obstacles
 from hrsafety.tables import Columns, each, plane
 
-__all__ = ["AsBuilt", "BuiltTrajectory", "PoseFusion", "evaluate_built", "simulate_built"]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PoseFusion(Parameters):
-    """How a two-wheel robot joins the pose that its wheels tell with the measured one.
-
-    Between two measurements the known pose moves as the wheels do; every measurement takes over a
-    share of the difference. Nothing of this acts where the robot is known exactly.
-
-    Parameters
-    ----------
-    position_share, heading_share : float
-        Share of the difference of positions and of headings, from 0 to 1. Not in the source:
-        chosen so that an error of 25 mm does not shake the heading.
-    mark_distance : float
-        Distance in m from the center of the robot to the second mark, whose direction is the
-        heading, (7.3.1) of Zeng (2011).
-
-    Raises
-    ------
-    InvalidParameterError
-        If a share is not from 0 to 1, or the distance is not finite and positive.
-
-    Examples
-    --------
-    >>> from hrsafety import navigation as nav
-    >>> nav.PoseFusion().mark_distance
-    0.1
-    """
-
-    position_share: float = 0.3
-    heading_share: float = 0.1
-    mark_distance: float = 0.1
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        for name, value in self._as_numbers("position_share", "heading_share").items():
-            if not 0.0 <= value <= 1.0:
-                raise InvalidParameterError(name, "be from 0 to 1", value)
-        (distance,) = self._as_numbers("mark_distance").values()
-        if not 0.0 < distance < float("inf"):
-            raise InvalidParameterError("mark_distance", "be finite and positive", distance)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class AsBuilt(Parameters):
-    """How a robot is built, beside what its scenario says.
-
-    Parameters
-    ----------
-    wheels : iterable of WheelDrive, or None
-        Wheels with motor, encoder and controller: three of a `HolonomicRobot`, two of a
-        `DifferentialDriveRobot`; see ``HOLONOMIC_WHEELS`` and ``DIFFERENTIAL_WHEELS``. ``None``:
-        ideal wheels, which do at once what they are told.
-    kinematics : OmniKinematics
-        Where the wheels of a holonomic robot are; a two-wheel robot knows that itself.
-    slip : Slip
-        Slip of wheels with controllers.
-    tracking : FullSpeedTracking, NonlinearTracking, ExponentialTracking or VirtualTorque
-        How a two-wheel robot follows the point mass that the law drives, or how it turns toward
-        the force.
-    robot_vision, obstacle_vision : Vision or None
-        Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
-        shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.
-    pose_fusion : PoseFusion
-        How a two-wheel robot knows its pose.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is of another kind.
-
-    Examples
-    --------
-    >>> from hrsafety import navigation as nav
-    >>> built = nav.AsBuilt(wheels=nav.HOLONOMIC_WHEELS, robot_vision=nav.Vision())
-    >>> len(built.wheels)
-    3
-    """
-
-    wheels: tuple[WheelDrive, ...] | None = None
-    kinematics: OmniKinematics = field(default_factory=OmniKinematics)
-    slip: Slip = field(default_factory=Slip)
-    tracking: Tracking | VirtualTorque = field(default_factory=FullSpeedTracking)
-    robot_vision: Vision | None = None
-    obstacle_vision: Vision | None = None
-    pose_fusion: PoseFusion = field(default_factory=PoseFusion)
-    _native: _hrsafety.AsBuilt = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        if self.wheels is not None:
-            wheels = sequence("wheels", "be a sequence of WheelDrive or None", self.wheels)
-            self._set(wheels=tuple(instance(f"wheels[{i}]", wheel, WheelDrive) for i, wheel in enumerate(wheels)))
-        kinds = {"kinematics": OmniKinematics, "slip": Slip, "pose_fusion": PoseFusion}
-        for name, kind in kinds.items():
-            instance(name, getattr(self, name), kind)
-        for name in ("robot_vision", "obstacle_vision"):
-            if getattr(self, name) is not None:
-                instance(name, getattr(self, name), Vision)
-        _require("tracking", self.tracking, FullSpeedTracking, NonlinearTracking, ExponentialTracking, VirtualTorque)
-        self._set(_native=self._build())
-
-    def _build(self) -> _hrsafety.AsBuilt:
-        fusion = self.pose_fusion
-        return _hrsafety.AsBuilt(
-            wheels=None if self.wheels is None else [wheel._native for wheel in self.wheels],
-            kinematics=self.kinematics._native,
-            slip=self.slip._native,
-            tracking=self.tracking._native,
-            robot_vision=None if self.robot_vision is None else self.robot_vision._native,
-            obstacle_vision=None if self.obstacle_vision is None else self.obstacle_vision._native,
-            position_share=fusion.position_share,
-            heading_share=fusion.heading_share,
-            mark_distance=fusion.mark_distance,
-        )
+__all__ = ["BuiltTrajectory", "evaluate_built", "simulate_built"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -186,7 +61,7 @@ class BuiltTrajectory(Trajectory):
         Examples
         --------
         >>> from hrsafety import navigation as nav, scenarios
-        >>> run = nav.simulate_built(scenarios.configuration("c1"), nav.VirtualForceField())
+        >>> run = nav.built.simulate_built(scenarios.configuration("c1"), nav.VirtualForceField())
         >>> list(run.columns())[-4:]
         ['reference_x_m', 'reference_y_m', 'seen_x_m', 'seen_y_m']
         """
@@ -240,7 +115,7 @@ def simulate_built(
     >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, scenarios
     >>> scene = replace(scenarios.configuration("n1"), robot=nav.DifferentialDriveRobot())
-    >>> run = nav.simulate_built(scene, nav.VirtualForceField())
+    >>> run = nav.built.simulate_built(scene, nav.VirtualForceField())
     >>> run.outcome, run.wheel_speed.shape[1]
     ('arrived', 2)
     """
@@ -297,7 +172,7 @@ def evaluate_built(
     >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, scenarios
     >>> scene = replace(scenarios.configuration("n1"), robot=nav.DifferentialDriveRobot())
-    >>> 0.0 < nav.evaluate_built(scene, nav.VirtualForceField()).total < 1.0
+    >>> 0.0 < nav.built.evaluate_built(scene, nav.VirtualForceField()).total < 1.0
     True
     """
     built = _checked(scenario, law, built)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, Pair
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
-from hrsafety.navigation.scenario import Scenario
 
 __all__ = ["certainly_closed", "distance", "stands"]
 
@@ -70,7 +70,9 @@ def _distances(obstacle: Obstacle, x: Array, y: Array) -> Array:
     return np.hypot(x[None, :] - center[0], y[:, None] - center[1])
 
 
-def certainly_closed(scenario: Scenario) -> bool:
+def certainly_closed(
+    obstacles: Iterable[Obstacle], *, start: Pair, goal: Pair, radius: float, arrival_tolerance: float
+) -> bool:
     """Return whether the obstacles that stand close every way from start to goal.
 
     A cell counts as closed only if the robot touches one obstacle wherever its center is in the cell,
@@ -79,8 +81,14 @@ def certainly_closed(scenario: Scenario) -> bool:
 
     Parameters
     ----------
-    scenario : Scenario
-        What is asked about.
+    obstacles : iterable of Obstacle
+        Those that move are left out.
+    start, goal : tuple of float
+        Where the center of the robot begins and has to come, in m.
+    radius : float
+        Radius of the robot in m.
+    arrival_tolerance : float
+        How near to the goal it has to come, in m.
 
     Returns
     -------
@@ -93,28 +101,28 @@ def certainly_closed(scenario: Scenario) -> bool:
     >>> from hrsafety.navigation.free_space import certainly_closed
     >>> box = [nav.Rectangle(center=c, length=4.2, width=0.2, heading=h, active_radius=0.4, critical_radius=0.3)
     ...        for c, h in (((0, 2), 0), ((0, -2), 0), ((2, 0), 1.5708), ((-2, 0), 1.5708))]
-    >>> certainly_closed(nav.Scenario(start=(5, 0), goal=(0, 0), obstacles=box))
+    >>> certainly_closed(box, start=(5, 0), goal=(0, 0), radius=0.2, arrival_tolerance=0.12)
     True
     """
-    standing = [each for each in scenario.obstacles if stands(each)]
+    standing = [each for each in obstacles if stands(each)]
     if len(standing) < LEAST_BODIES:
         return False
-    ends = np.array([scenario.start, scenario.goal])
-    low, high = _bounds(standing, ends, scenario.robot.radius)
-    side = scenario.robot.radius / FINENESS
+    ends = np.array([start, goal])
+    low, high = _bounds(standing, ends, radius)
+    side = radius / FINENESS
     side = max(side, math.sqrt(float(np.prod(high - low)) / MOST_CELLS))
     x, y = (np.arange(low[axis] - 2.0 * side, high[axis] + 3.0 * side, side) for axis in (0, 1))
     reach = side / math.sqrt(2.0)  # from the center of a cell to its corner
     free = np.ones((len(y), len(x)), dtype=bool)
     for obstacle in standing:
-        closed = obstacle.contact_distance(scenario.robot.radius) - reach
+        closed = obstacle.contact_distance(radius) - reach
         if closed > 0.0:
             (left, bottom), (right, top) = _box(obstacle, closed)
             columns = slice(*np.searchsorted(x, [left, right]))
             rows = slice(*np.searchsorted(y, [bottom, top]))
             free[rows, columns] &= _distances(obstacle, x[columns], y[rows]) > closed
     from_goal = np.hypot(x[None, :] - ends[1, 0], y[:, None] - ends[1, 1])
-    target = free & (from_goal <= scenario.arrival_tolerance + reach)
+    target = free & (from_goal <= arrival_tolerance + reach)
     begin = np.hypot(x[None, :] - ends[0, 0], y[:, None] - ends[0, 1]) <= reach
     return not _connected(free, begin & free, target)
 

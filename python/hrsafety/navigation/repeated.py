@@ -14,13 +14,14 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, flag, number, sequence
 from hrsafety._bounds import MOST_SEEDS
+from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import check_threads
-from hrsafety.navigation.built import AsBuilt, _checked
-from hrsafety.navigation.laws import Law
+from hrsafety.navigation.built import _checked
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_warnings import of_run
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_warnings import of_run
-from hrsafety.navigation.statistics import Share, wilson
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, with_units
 
@@ -118,7 +119,7 @@ class Repeated(Table):
         Examples
         --------
         >>> from hrsafety import navigation as nav, scenarios
-        >>> runs = nav.repeat(scenarios.configuration("c1"), nav.VirtualForceField(), seeds=2)
+        >>> runs = nav.metrics.repeat(scenarios.configuration("c1"), nav.VirtualForceField(), seeds=2)
         >>> list(runs.columns())[:3]
         ['seed', 'outcome', 'arrival_time_s']
         """
@@ -300,7 +301,7 @@ def repeat(
     >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, scenarios
     >>> noisy = replace(scenarios.configuration("c1"), measurement=nav.Measurement(of="robot"))
-    >>> runs = nav.repeat(noisy, nav.VirtualForceField(), seeds=20)
+    >>> runs = nav.metrics.repeat(noisy, nav.VirtualForceField(), seeds=20)
     >>> len(runs), runs.success.runs
     (20, 20)
     """

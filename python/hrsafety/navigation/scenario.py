@@ -5,81 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
-from typing import Literal, NamedTuple
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, number, pair, sequence, with_article
+from hrsafety._arguments import Pair, Parameters, instance, number, pair, sequence
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation import scenario_warnings
 from hrsafety.navigation.obstacles import Obstacle
-from hrsafety.navigation.robots import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Measurement", "Regions", "Scenario", "region_radii"]
-
-
-class Regions(NamedTuple):
-    """Radii of the regions of one obstacle.
-
-    Attributes
-    ----------
-    critical_radius : float
-        Radius r_3 of the critical region, in m.
-    active_radius : float
-        Radius r_2 of the active region, in m.
-    """
-
-    critical_radius: float
-    active_radius: float
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Measurement(Parameters):
-    """Noisy and late positions, measured once a control period; velocities are backward differences.
-
-    What is measured at time t is the position at ``t - latency`` plus the noise. Obstacles at rest
-    are known exactly. The noise is drawn from the seed of the scenario, one stream for the robot and
-    one for each obstacle.
-
-    Before time 0 the robot stood at its start, and an obstacle moved as the first piece of its
-    motion says, run backwards: straight at its velocity, on its parabola if it accelerates, as
-    recorded if the recording begins earlier. One that was absent ``latency`` ago is not seen yet,
-    and one that has left since is still seen.
-
-    Parameters
-    ----------
-    scale : float
-        Half width of the uniform error of x and y each, or its standard deviation for
-        ``"gaussian"``, in m.
-    distribution : {"uniform", "gaussian"}
-        Kind of error. A Gaussian error is drawn again beyond 8 standard deviations, so it is
-        bounded; a scale of 0.0032 m has the mean error of 4 mm of the source's camera.
-    of : {"obstacles", "robot", "both"}
-        Which positions are noisy and late: those of moving obstacles, that of the robot, or both.
-    latency : float
-        Age of the measured positions, in s, at most 60.
-
-    Raises
-    ------
-    InvalidParameterError
-        If scale or latency is negative or not finite, latency is above 60 s, or a word is unknown.
-
-    Examples
-    --------
-    >>> from hrsafety import navigation as nav
-    >>> nav.Measurement(scale=0.025).distribution
-    'uniform'
-    """
-
-    scale: float = 0.025
-    distribution: Literal["uniform", "gaussian"] = "uniform"
-    of: Literal["obstacles", "robot", "both"] = "obstacles"
-    latency: float = 0.0
-    _native: _hrsafety.Measurement = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        values = self._as_numbers("scale", "latency")
-        self._set(_native=_hrsafety.Measurement(distribution=self.distribution, of=self.of, **values))
+__all__ = ["Scenario"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -150,9 +86,9 @@ class Scenario(Parameters):
         numbers = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
         values = {name: number(name, getattr(self, name)) for name in numbers}
         self._set(**values)
-        _require("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
+        instance("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
         if self.measurement is not None:
-            _require("measurement", self.measurement, Measurement)
+            instance("measurement", self.measurement, Measurement)
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
             raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
         obstacles = _with_regions(self.robot, self.obstacles, self.control_period, self.measurement)
@@ -174,8 +110,6 @@ class Scenario(Parameters):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why a run of the scenario may not mean what it seems to; found when first asked for."""
         if self._warnings is None:
-            from hrsafety.navigation import scenario_warnings  # which needs this module
-
             self._set(_warnings=scenario_warnings.found(self))
         return self._warnings  # type: ignore[return-value]  # just set
 
@@ -183,12 +117,6 @@ class Scenario(Parameters):
         """Return the fields, and the warnings if there are any."""
         shown = ", ".join(f"{each.name}={getattr(self, each.name)!r}" for each in fields(self) if each.repr)
         return "\n".join([f"Scenario({shown})", *map(str, self.warnings)])
-
-
-def _require(name: str, value: object, *kinds: type) -> None:
-    if not isinstance(value, kinds):
-        words = " or ".join(kind.__name__ for kind in kinds)
-        raise InvalidParameterError(name, f"be {with_article(words)}", value)
 
 
 def _naming_kinds(error: InvalidParameterError, obstacles: tuple[Obstacle, ...]) -> InvalidParameterError:
@@ -211,7 +139,7 @@ def _with_regions(
     complete = []
     sensing = None if measurement is None else measurement._native
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
-        _require(f"obstacles[{index}]", obstacle, Obstacle)
+        instance(f"obstacles[{index}]", obstacle, Obstacle)
         given = getattr(obstacle, "_given", obstacle)  # as `as_given`, in the loop of every construction
         if None in (given.active_radius, given.critical_radius):
             radii = given.radii_from_clearances(robot.radius)
@@ -224,95 +152,3 @@ def _with_regions(
             obstacle = given.filled_in(**radii)
         complete.append(obstacle)
     return tuple(complete)
-
-
-def region_radii(
-    robot: HolonomicRobot | DifferentialDriveRobot,
-    obstacle: Obstacle,
-    control_period: float = 0.06,
-    faced_side: float | None = None,
-    *,
-    latency: float | None = None,
-    position_error: float | None = None,
-    measurement: Measurement | None = None,
-) -> Regions:
-    """Return the smallest safe regions of an obstacle, Zeng (2011), section 5.3.
-
-    The robot stops within ``delta_r = V T_s + a dt1^2 / 2`` with ``dt1 = V/a``, while a moving
-    obstacle comes ``delta_o = V_o (dt1 + T_s)`` closer::
-
-        disc, person   r_3 = delta_r + delta_o + rho_o + rho_r + delta
-                       r_2 = (V + V_o) (dt2 + T_s) + delta,   dt2 = (r_3 - a t_a^2 / 2)/V + t_a
-        rectangle      r_3 = delta_r + rho_r + delta
-                       r_2 = V (dt2 + T_s) + delta,   dt2 = (r_3 + B - a t_a^2 / 2)/V + t_a
-
-    with ``t_a = V/a`` and B half the side that is faced. A differential-drive robot needs
-    ``sqrt(pi / alpha_max)`` more for the turn.
-
-    ``delta`` is not in the source, which knows positions exactly: the most by which the known
-    distance can exceed the true one. A measured body has gone ``speed * latency`` since, at most V_o
-    an obstacle and V the robot, and each measured position errs by at most ``sqrt(2) scale`` with
-    uniform and ``8 scale`` with Gaussian noise. Obstacles at rest are known exactly; their delta is
-    above 0 where the robot's own position is measured. It bounds the distance and not the velocity:
-    a robot that measures its own position brakes against a velocity that is noisy and late, too.
-
-    Parameters
-    ----------
-    robot : HolonomicRobot or DifferentialDriveRobot
-        Its limits.
-    obstacle : Obstacle
-        Radii that the obstacle has already are not looked at.
-    control_period : float
-        Control period T_s in s.
-    faced_side : float or None
-        Side of a rectangle that the robot faces, in m; the longer one when ``None``.
-    latency : float or None
-        Age of the measured positions in s; that of ``measurement`` when ``None``. Without a
-        measurement it is the age of the obstacle's position.
-    position_error : float or None
-        Largest error of the measured distance in m, whoever is measured; the bound that follows from
-        ``measurement`` when ``None``.
-    measurement : Measurement or None
-        How positions are measured; exactly when ``None``. A `Scenario` uses its own.
-
-    Returns
-    -------
-    Regions
-        critical_radius and active_radius in m.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is not finite and positive, latency or position_error is negative, or faced_side
-        is given for a round obstacle.
-
-    Examples
-    --------
-    >>> from hrsafety import navigation as nav
-    >>> radii = nav.region_radii(nav.HolonomicRobot(), nav.Human(start=(0, 0), velocity=(1, 0)))
-    >>> [round(radius, 4) for radius in radii]
-    [0.7965, 2.0959]
-    >>> late = nav.region_radii(
-    ...     nav.HolonomicRobot(), nav.Human(start=(0, 0), velocity=(1, 0)), latency=0.1, position_error=0.03
-    ... )
-    >>> [round(radius, 4) for radius in late]
-    [0.9265, 2.5416]
-    """
-    _require("robot", robot, HolonomicRobot, DifferentialDriveRobot)
-    _require("obstacle", obstacle, Obstacle)
-    if measurement is not None:
-        _require("measurement", measurement, Measurement)
-    critical, active = _hrsafety.region_radii(
-        robot._native,
-        obstacle._native,
-        number("control_period", control_period),
-        _number_or_none("faced_side", faced_side),
-        _number_or_none("latency", latency),
-        _number_or_none("position_error", position_error),
-        None if measurement is None else measurement._native,
-    )
-    return Regions(critical, active)
-
-
-def _number_or_none(name: str, value: object) -> float | None:
-    return None if value is None else number(name, value)

@@ -3,24 +3,51 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Protocol
 
+from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
-from hrsafety.navigation.laws import Law, VirtualForceField
 from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
-from hrsafety.navigation.scenario import Scenario, region_radii
+from hrsafety.navigation.regions import region_radii
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["found", "of_run", "of_runs"]
+__all__ = ["BELOW_SAFE", "IN_CRITICAL_REGION", "found"]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
 
 BELOW_SAFE = "region_below_safe"
+IN_CRITICAL_REGION = "start_in_critical_region"
 
 
-def found(scenario: Scenario) -> tuple[ResultWarning, ...]:
+class Described(Protocol):
+    """What the warnings look at; a `Scenario` has it, and knows this module."""
+
+    @property
+    def robot(self) -> HolonomicRobot | DifferentialDriveRobot: ...
+    @property
+    def start(self) -> Pair: ...
+    @property
+    def goal(self) -> Pair: ...
+    @property
+    def obstacles(self) -> Sequence[Obstacle]: ...
+    @property
+    def control_period(self) -> float: ...
+    @property
+    def time_limit(self) -> float: ...
+    @property
+    def arrival_tolerance(self) -> float: ...
+    @property
+    def heading(self) -> float: ...
+    @property
+    def measurement(self) -> Measurement | None: ...
+
+
+def found(scenario: Described) -> tuple[ResultWarning, ...]:
     """Return the warnings of a scenario.
 
     Parameters
@@ -39,61 +66,7 @@ def found(scenario: Scenario) -> tuple[ResultWarning, ...]:
     )
 
 
-def of_run(scenario: Scenario, law: Law) -> tuple[ResultWarning, ...]:
-    """Return the warnings of a scenario that matter for a law.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        Where it runs.
-    law : Law
-        What drives the robot. Only the virtual force field brakes in critical regions, so their size
-        says nothing about the other laws.
-
-    Returns
-    -------
-    tuple of ResultWarning
-        The warnings.
-    """
-    if isinstance(law, VirtualForceField):
-        return scenario.warnings
-    about_regions = (BELOW_SAFE, "start_in_critical_region")
-    return tuple(each for each in scenario.warnings if each.code not in about_regions)
-
-
-def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:
-    """Return the warnings of many runs, the first of each kind with the number of the others.
-
-    Parameters
-    ----------
-    scenarios : sequence of Scenario
-        Where they run.
-    names : sequence of str
-        Their names, for the subjects.
-    laws : iterable of Law
-        What drives the robots.
-
-    Returns
-    -------
-    tuple of ResultWarning
-        One for each code, in the order in which they were found.
-    """
-    kept = list(laws)
-    first: dict[str, ResultWarning] = {}
-    others: dict[str, int] = {}
-    for name, scenario in zip(names, scenarios, strict=True):
-        seen = {each: None for law in kept for each in of_run(scenario, law)}
-        for each in seen:
-            if each.code in first:
-                others[each.code] = others.get(each.code, 0) + 1
-            else:
-                message = f"{name}: {each.message}"
-                first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", message)
-    more = {code: f" ({count} more of this kind in these scenarios)" for code, count in others.items()}
-    return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
-
-
-def _regions(scenario: Scenario) -> Iterator[ResultWarning]:
+def _regions(scenario: Described) -> Iterator[ResultWarning]:
     """Yield critical regions in which the robot cannot be sure to stop."""
     for index, obstacle in enumerate(scenario.obstacles):
         given = obstacle.as_given()
@@ -146,7 +119,7 @@ def _own_speed(obstacle: Obstacle) -> float:
     return max(starts, default=0.0)
 
 
-def _starts(scenario: Scenario) -> Iterator[ResultWarning]:
+def _starts(scenario: Described) -> Iterator[ResultWarning]:
     """Yield starts from which the robot never moves: in the critical region of something that stands."""
     for index, obstacle in enumerate(scenario.obstacles):
         if not free_space.stands(obstacle):
@@ -155,7 +128,7 @@ def _starts(scenario: Scenario) -> Iterator[ResultWarning]:
         radius = obstacle.critical_radius
         if radius is not None and distance <= radius:
             yield ResultWarning(
-                "start_in_critical_region",
+                IN_CRITICAL_REGION,
                 "start",
                 f"start is {distance:.4g} m from obstacles[{index}] ({type(obstacle).__name__}), inside its critical "
                 f"region of {radius:.4g} m, where the robot brakes and never leaves; move it by "
@@ -163,7 +136,7 @@ def _starts(scenario: Scenario) -> Iterator[ResultWarning]:
             )
 
 
-def _plausibility(scenario: Scenario) -> tuple[ResultWarning, ...]:
+def _plausibility(scenario: Described) -> tuple[ResultWarning, ...]:
     """Return numbers outside the ranges of their quantities."""
     robot = scenario.robot
     values: dict[str, object] = {
@@ -203,7 +176,7 @@ def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     return found | {"velocity": (_own_speed(obstacle), kind), "max_speed": (obstacle.max_speed, kind)}
 
 
-def _reach(scenario: Scenario) -> Iterator[ResultWarning]:
+def _reach(scenario: Described) -> Iterator[ResultWarning]:
     """Yield goals that are too far for the time limit."""
     away = math.dist(scenario.start, scenario.goal) - scenario.arrival_tolerance
     reach = scenario.robot.max_speed * scenario.time_limit
@@ -217,9 +190,16 @@ def _reach(scenario: Scenario) -> Iterator[ResultWarning]:
         )
 
 
-def _closed(scenario: Scenario) -> Iterator[ResultWarning]:
+def _closed(scenario: Described) -> Iterator[ResultWarning]:
     """Yield stationary obstacles that leave no way for the robot."""
-    if free_space.certainly_closed(scenario):
+    closed = free_space.certainly_closed(
+        scenario.obstacles,
+        start=scenario.start,
+        goal=scenario.goal,
+        radius=scenario.robot.radius,
+        arrival_tolerance=scenario.arrival_tolerance,
+    )
+    if closed:
         yield ResultWarning(
             "closed_in",
             "obstacles",

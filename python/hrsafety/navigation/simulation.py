@@ -8,11 +8,12 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import flag, number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import built
-from hrsafety.navigation.forces import check_law
-from hrsafety.navigation.laws import Law
-from hrsafety.navigation.robots import DifferentialDriveRobot
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.forces import check_law
+from hrsafety.navigation.performance import Performance, check_weights
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.trajectory import Integrator, Performance, Trajectory, check_weights, without_obstacles
+from hrsafety.navigation.trajectory import Integrator, Trajectory, without_obstacles
 
 __all__ = ["evaluate", "simulate"]
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, number
-from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation import scenario_warnings
-from hrsafety.navigation.laws import Law
+from hrsafety._arguments import Array
+from hrsafety.navigation import run_warnings
+from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane
 
-__all__ = ["Integrator", "Outcome", "Performance", "Trajectory", "check_weights", "without_obstacles"]
+__all__ = ["Integrator", "Outcome", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
 Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
@@ -127,48 +125,7 @@ class Trajectory(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the run may not mean what it seems to: the warnings of its scenario that matter for its law."""
-        return scenario_warnings.of_run(self.scenario, self.law)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Performance:
-    """Score of a run, each part from 0 to 1 in ordinary cases, Zeng (2011), section 5.6.
-
-    Attributes
-    ----------
-    total : float
-        H = w_T H_T + w_D H_D + w_E H_E; 0 after a contact or without arrival.
-    arrival_time : float
-        H_T = T*/T.
-    avoidance : float
-        H_D: mean over the obstacles of min(d_s / d_s*, 1).
-    energy_saving : float
-        H_E = L*/L.
-    trajectory, nominal : Trajectory
-        The run, and the run of the same law without obstacles that gives T* and L*.
-    """
-
-    total: float
-    arrival_time: float
-    avoidance: float
-    energy_saving: float
-    trajectory: Trajectory
-    nominal: Trajectory
-
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Why the score may not mean what it seems to: the warnings of the run."""
-        return self.trajectory.warnings
-
-
-def check_weights(weights: Sequence[float]) -> tuple[float, float, float]:
-    """Return three weights that are not negative and sum to 1."""
-    if isinstance(weights, (str, bytes)) or not hasattr(weights, "__len__") or len(weights) != 3:
-        raise InvalidParameterError("weights", "be three numbers (time, distance, energy)", weights)
-    time, distance, energy = (number(f"weights[{i}]", weights[i]) for i in range(3))
-    if not min(time, distance, energy) >= 0.0 or not abs(time + distance + energy - 1.0) <= 1e-9:
-        raise InvalidParameterError("weights", "not be negative and sum to 1", weights)
-    return (time, distance, energy)
+        return run_warnings.of_run(self.scenario, self.law)
 
 
 def without_obstacles(scenario: Scenario) -> Scenario:

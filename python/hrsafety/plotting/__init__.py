@@ -7,54 +7,45 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 `MissingExtraError`, which names ``pip install hrsafety[plot]``.
 """
 
-from hrsafety.plotting.animation import animate
-from hrsafety.plotting.arena import (
-    plot_arena_distances,
-    plot_arena_paths,
-    plot_arena_sequence,
-)
-from hrsafety.plotting.boundaries import foam_boundaries, foam_map
-from hrsafety.plotting.camera import calibration_errors, velocity_estimates
-from hrsafety.plotting.energies import energy
-from hrsafety.plotting.fields import force_field, potential_valley
-from hrsafety.plotting.follower import follower_rates, follower_runs, impedance_forces
-from hrsafety.plotting.follower_movies import animate_follower
-from hrsafety.plotting.gains import flatness, gain_sensitivity
-from hrsafety.plotting.histories import distances, lyapunov
-from hrsafety.plotting.impacts import impact_histories, impact_study, measured_impact
-from hrsafety.plotting.layouts import layout
-from hrsafety.plotting.repeated import repeated_distances, repeated_paths
-from hrsafety.plotting.scenes import paths
-from hrsafety.plotting.searches import pareto_front, search_history
-from hrsafety.plotting.sequences import time_sequence
-from hrsafety.plotting.skirt import skirt_clearances, skirt_ring, skirt_runs, skirt_sensor_counts
-from hrsafety.plotting.sound import sound_burst, sound_fixes, sound_likeness
-from hrsafety.plotting.standings import plot_arena_standings
-from hrsafety.plotting.studies import clearances, outcomes
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_below
+from hrsafety.plotting import comparisons, gains, impacts, reactive, robots, runs, sweeps
+from hrsafety.plotting.comparisons.arena import plot_arena_distances, plot_arena_paths, plot_arena_sequence
+from hrsafety.plotting.comparisons.repeated import repeated_distances, repeated_paths
+from hrsafety.plotting.comparisons.standings import plot_arena_standings
+from hrsafety.plotting.comparisons.studies import clearances, outcomes
+from hrsafety.plotting.gains.searches import pareto_front, search_history
+from hrsafety.plotting.gains.sensitivity import flatness, gain_sensitivity
+from hrsafety.plotting.impacts.boundaries import foam_boundaries, foam_map
+from hrsafety.plotting.impacts.histories import impact_histories, impact_study, measured_impact
+from hrsafety.plotting.runs.animation import animate
+from hrsafety.plotting.runs.energies import energy
+from hrsafety.plotting.runs.fields import force_field, potential_valley
+from hrsafety.plotting.runs.histories import distances, lyapunov
+from hrsafety.plotting.runs.layouts import layout
+from hrsafety.plotting.runs.scenes import paths
+from hrsafety.plotting.runs.sequences import time_sequence
 from hrsafety.plotting.style import MissingExtraError
-from hrsafety.plotting.sweep_overviews import sweep_parallel, sweep_scatter
-from hrsafety.plotting.sweeps import sweep_lines, sweep_map
-from hrsafety.plotting.tracking import tracking_errors, tracking_paths
-from hrsafety.plotting.wheels import wheel_identification, wheel_tracking
+from hrsafety.plotting.sweeps.lines import sweep_lines, sweep_map
+from hrsafety.plotting.sweeps.overviews import sweep_parallel, sweep_scatter
 
 __all__ = [
     "MissingExtraError",
     "animate",
-    "animate_follower",
-    "calibration_errors",
     "clearances",
+    "comparisons",
     "distances",
     "energy",
     "flatness",
     "foam_boundaries",
     "foam_map",
-    "follower_rates",
-    "follower_runs",
     "force_field",
     "gain_sensitivity",
+    "gains",
     "impact_histories",
     "impact_study",
-    "impedance_forces",
+    "impacts",
     "layout",
     "lyapunov",
     "measured_impact",
@@ -66,24 +57,19 @@ __all__ = [
     "plot_arena_sequence",
     "plot_arena_standings",
     "potential_valley",
+    "reactive",
     "repeated_distances",
     "repeated_paths",
+    "robots",
+    "runs",
     "search_history",
-    "skirt_clearances",
-    "skirt_ring",
-    "skirt_runs",
-    "skirt_sensor_counts",
-    "sound_burst",
-    "sound_fixes",
-    "sound_likeness",
     "sweep_lines",
     "sweep_map",
     "sweep_parallel",
     "sweep_scatter",
+    "sweeps",
     "time_sequence",
-    "tracking_errors",
-    "tracking_paths",
-    "velocity_estimates",
-    "wheel_identification",
-    "wheel_tracking",
 ]
+
+if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
+    __getattr__, __dir__ = names_below(__name__, __all__, [comparisons, gains, impacts, reactive, robots, runs, sweeps])

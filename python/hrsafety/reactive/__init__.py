@@ -1,128 +1,69 @@
 """Avoidance from sensors: sound, ultrasound and virtual impedance."""
 
-from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError, SimulationError
-from hrsafety.reactive.bursts import Burst, Converter, doppler_frequency, record_burst
-from hrsafety.reactive.collisions import (
-    attraction_force,
-    collision_point,
-    collision_vector,
-    printed_foot,
-    rotate_to_world,
-)
-from hrsafety.reactive.delays import Delays, Likeness, estimate_delays, likeness
-from hrsafety.reactive.experiments import FollowerExperiment, LawComparison, compare_experiments, experiment
-from hrsafety.reactive.fixes import Fix, Fixes, locate, locate_batch
-from hrsafety.reactive.follower import (
-    FixDeviations,
-    Follower,
-    FollowerRun,
-    fix_deviations,
-    follow,
-)
-from hrsafety.reactive.impedance import VirtualImpedance
-from hrsafety.reactive.layouts import FollowerLayouts
-from hrsafety.reactive.microphones import (
-    MicrophoneArray,
-    microphone_elevations,
-    parallel_ray_bearing,
-    parallel_ray_bias,
-    printed_range,
-)
-from hrsafety.reactive.recording import SoundRecording, read_recording
-from hrsafety.reactive.scenes import FollowerScene, MovingObstacle, SoundLeader
-from hrsafety.reactive.skirt import MOTION_DIRECTIONS, SkirtState, UltrasonicSkirt, skirt_states
-from hrsafety.reactive.skirt_geometry import (
-    SensorCount,
-    SkirtSpacing,
-    least_skirt_sensors,
-    skirt_closing_radius,
-    skirt_safe_distance,
-    skirt_spacing,
-)
-from hrsafety.reactive.skirt_kinematics import TriOmniKinematics
-from hrsafety.reactive.skirt_study import SmallestSkirt, smallest_skirt
-from hrsafety.reactive.skirt_tests import (
-    SkirtMotion,
-    SkirtRun,
-    SkirtScene,
-    SkirtShares,
-    SkirtTest,
-    skirt_run,
-    skirt_test,
-)
-from hrsafety.reactive.sonar import Box, Disc, Sonar, SonarMounts, Wall, cast_rays, speed_of_sound
-from hrsafety.reactive.trials import jittered_fixes, localize_bursts
+from typing import TYPE_CHECKING
+
+from hrsafety import errors
+from hrsafety._namespace import names_below
+from hrsafety.reactive import follower, skirt, sonar, sound
+from hrsafety.reactive.follower.experiments import FollowerExperiment, experiment
+from hrsafety.reactive.follower.impedance import VirtualImpedance
+from hrsafety.reactive.follower.layouts import FollowerLayouts
+from hrsafety.reactive.follower.runs import Follower, FollowerRun, follow
+from hrsafety.reactive.follower.scenes import FollowerScene, MovingObstacle, SoundLeader
+from hrsafety.reactive.skirt.ring import UltrasonicSkirt
+from hrsafety.reactive.skirt.runs import SkirtMotion, SkirtRun, SkirtScene, SkirtTest, skirt_run, skirt_test
+from hrsafety.reactive.skirt.study import SmallestSkirt, smallest_skirt
+from hrsafety.reactive.sonar.echoes import Box, Disc, Sonar, SonarMounts, Wall
+from hrsafety.reactive.sound.bursts import Burst, Converter, record_burst
+from hrsafety.reactive.sound.delays import Delays, estimate_delays
+from hrsafety.reactive.sound.fixes import Fix, Fixes, locate, locate_batch
+from hrsafety.reactive.sound.microphones import MicrophoneArray
+from hrsafety.reactive.sound.recording import SoundRecording, read_recording
+from hrsafety.reactive.sound.trials import localize_bursts
 
 __all__ = [
-    "MOTION_DIRECTIONS",
     "Box",
     "Burst",
     "Converter",
     "Delays",
     "Disc",
     "Fix",
-    "FixDeviations",
     "Fixes",
     "Follower",
     "FollowerExperiment",
     "FollowerLayouts",
     "FollowerRun",
     "FollowerScene",
-    "HrsafetyError",
-    "InvalidParameterError",
-    "LawComparison",
-    "Likeness",
     "MicrophoneArray",
     "MovingObstacle",
-    "SensorCount",
-    "ShapeError",
-    "SimulationError",
     "SkirtMotion",
     "SkirtRun",
     "SkirtScene",
-    "SkirtShares",
-    "SkirtSpacing",
-    "SkirtState",
     "SkirtTest",
     "SmallestSkirt",
     "Sonar",
     "SonarMounts",
     "SoundLeader",
     "SoundRecording",
-    "TriOmniKinematics",
     "UltrasonicSkirt",
     "VirtualImpedance",
     "Wall",
-    "attraction_force",
-    "cast_rays",
-    "collision_point",
-    "collision_vector",
-    "compare_experiments",
-    "doppler_frequency",
     "estimate_delays",
     "experiment",
-    "fix_deviations",
     "follow",
-    "jittered_fixes",
-    "least_skirt_sensors",
-    "likeness",
+    "follower",
     "localize_bursts",
     "locate",
     "locate_batch",
-    "microphone_elevations",
-    "parallel_ray_bearing",
-    "parallel_ray_bias",
-    "printed_foot",
-    "printed_range",
     "read_recording",
     "record_burst",
-    "rotate_to_world",
-    "skirt_closing_radius",
+    "skirt",
     "skirt_run",
-    "skirt_safe_distance",
-    "skirt_spacing",
-    "skirt_states",
     "skirt_test",
     "smallest_skirt",
-    "speed_of_sound",
+    "sonar",
+    "sound",
 ]
+
+if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
+    __getattr__, __dir__ = names_below(__name__, __all__, [follower, skirt, sonar, sound, errors])

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hrsafety._words import meant
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.calibration import scipy_least_squares
+from hrsafety.navigation.sensing.calibration import scipy_least_squares
 from hrsafety.reproduce import (
     built_figures,
     camera_figures,

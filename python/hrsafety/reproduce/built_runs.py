@@ -10,7 +10,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import Share
+from hrsafety.navigation.metrics import Share
 from hrsafety.reproduce.measured import LAWS, Measured, kind_of, score_of_parts
 
 __all__ = ["EXPERIMENTS", "SEEDS", "Experiment", "as_built", "experiment", "repeated", "scene", "score", "two_wheels"]
@@ -89,7 +89,7 @@ def two_wheels(name: str) -> Measured:
     )
 
 
-def as_built(scenario: nav.Scenario) -> nav.AsBuilt:
+def as_built(scenario: nav.Scenario) -> nav.robots.AsBuilt:
     """Return the robot of a scenario as the source describes it: wheels, and the camera's mean error.
 
     Parameters
@@ -104,16 +104,16 @@ def as_built(scenario: nav.Scenario) -> nav.AsBuilt:
         velocities by difference, no slip, no delay.
     """
     holonomic = isinstance(scenario.robot, nav.HolonomicRobot)
-    camera = nav.Vision(error=nav.PositionNoise(distribution="gaussian", scale=0.0032))
-    return nav.AsBuilt(
-        wheels=nav.HOLONOMIC_WHEELS if holonomic else nav.DIFFERENTIAL_WHEELS,
+    camera = nav.sensing.Vision(error=nav.sensing.PositionNoise(distribution="gaussian", scale=0.0032))
+    return nav.robots.AsBuilt(
+        wheels=nav.robots.HOLONOMIC_WHEELS if holonomic else nav.robots.DIFFERENTIAL_WHEELS,
         robot_vision=camera,
         obstacle_vision=camera,
     )
 
 
 @functools.cache
-def repeated(name: str, seeds: int = SEEDS) -> nav.Repeated:
+def repeated(name: str, seeds: int = SEEDS) -> nav.metrics.Repeated:
     """Return noisy runs of a configuration with the robot as built.
 
     Parameters
@@ -129,7 +129,7 @@ def repeated(name: str, seeds: int = SEEDS) -> nav.Repeated:
         The runs.
     """
     scenario = scene(name)
-    return nav.repeat(scenario, LAW, seeds=seeds, built=as_built(scenario))
+    return nav.metrics.repeat(scenario, LAW, seeds=seeds, built=as_built(scenario))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -166,7 +166,7 @@ def experiment(table: str) -> Experiment:
     """
     runs = repeated(EXPERIMENTS[table])
     scenario = runs.scenario
-    free = nav.evaluate_built(scenario, LAW, built=as_built(scenario)).nominal
+    free = nav.built.evaluate_built(scenario, LAW, built=as_built(scenario)).nominal
     arrived = runs.outcome == "arrived"
     time, energy = float(np.median(runs.arrival_time[arrived])), float(np.median(runs.energy[arrived]))
     distances = _by_kind(scenario, np.median(runs.min_distance[arrived], axis=0))

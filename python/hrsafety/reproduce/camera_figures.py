@@ -12,7 +12,7 @@ from hrsafety.reproduce.figures import Picture, picture
 __all__ = ["make"]
 
 STEP, END = 0.01, 7.0  # s
-WORST = nav.PositionNoise(scale=0.025, distribution="uniform")
+WORST = nav.sensing.PositionNoise(scale=0.025, distribution="uniform")
 DEVIATION = WORST.scale / np.sqrt(3.0)
 SPEED, WALKED = 1.0, 3.4  # m/s and m, of the person of configuration 2
 
@@ -30,22 +30,24 @@ def make() -> list[Picture]:
     walking = time < WALKED / SPEED
     velocity = np.column_stack([np.where(walking, SPEED, 0.0), np.zeros_like(time)])
     path = np.column_stack([0.6 + np.minimum(SPEED * time, WALKED), np.full_like(time, 0.6)])
-    estimators: dict[str, nav.Differences | nav.Kalman] = {
-        "differences": nav.Differences(),
-        "Kalman filter": nav.Kalman(position_deviation=DEVIATION),
+    estimators: dict[str, nav.sensing.Differences | nav.sensing.Kalman] = {
+        "differences": nav.sensing.Differences(),
+        "Kalman filter": nav.sensing.Kalman(position_deviation=DEVIATION),
     }
-    seen = [nav.observe(nav.Vision(error=WORST, estimator=each), time, path) for each in estimators.values()]
+    seen = [
+        nav.sensing.observe(nav.sensing.Vision(error=WORST, estimator=each), time, path) for each in estimators.values()
+    ]
     return [
         picture(
             "camera-errors",
             "Calibration points in the picture, and mean errors of patches over 200 calibrations with noise of "
             f"{noise} pixel (section D.4).",
-            plotting.calibration_errors(camera_tables.study(noise)),
+            plotting.robots.calibration_errors(camera_tables.study(noise)),
         ),
         picture(
             "camera-velocities",
             "Velocity of the person of configuration 2 from positions with errors of up to 25 mm at 16.7 Hz (as in "
             "Fig. 6.9), by differences and by the default Kalman filter.",
-            plotting.velocity_estimates(time, velocity, seen, labels=list(estimators)),
+            plotting.robots.velocity_estimates(time, velocity, seen, labels=list(estimators)),
         ),
     ]

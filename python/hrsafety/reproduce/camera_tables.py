@@ -40,7 +40,7 @@ NEW_PLACES = (
 
 
 @cache
-def study(noise: float) -> nav.CalibrationStudy:
+def study(noise: float) -> nav.sensing.CalibrationStudy:
     """Return calibrations of the printed camera with noise.
 
     Parameters
@@ -53,7 +53,7 @@ def study(noise: float) -> nav.CalibrationStudy:
     CalibrationStudy
         200 calibrations, made once.
     """
-    return nav.calibration_study(pixel_deviation_px=noise, seeds=SEEDS)
+    return nav.sensing.calibration_study(pixel_deviation_px=noise, seeds=SEEDS)
 
 
 def cells() -> list[Cell]:
@@ -72,8 +72,8 @@ def _figure(name: str) -> float:
 
 
 def _camera() -> Iterator[Cell]:
-    points = nav.calibration_points()
-    found = nav.calibrate_camera(points, nav.Camera().project(points)).camera
+    points = nav.sensing.calibration_points()
+    found = nav.sensing.calibrate_camera(points, nav.sensing.Camera().project(points)).camera
     t_x, t_y, t_z = found.translation
     center_x, center_y = found.image_center_px
     for name, column, measured, unit in (

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from html import escape
 
-from hrsafety.navigation.statistics import Share
+from hrsafety.navigation.metrics import Share
 from hrsafety.reproduce.markup import head, scroll
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Ranking

@@ -249,7 +249,7 @@ def _valley() -> Drawing:
     """Return the repulsive force between the two obstacles of configuration 3."""
     scenario = scenarios.configuration("c3")
     x, y = np.meshgrid(np.linspace(0.6, 4.0, 137), np.linspace(-1.3, 2.4, 149))
-    field = nav.force_field(
+    field = nav.laws.force_field(
         _law("new_vff"), scenario, position=np.column_stack([x.ravel(), y.ravel()]), velocity=(-0.7, 0.0)
     )
     caption = (

@@ -50,12 +50,12 @@ class GainRuns:
         The mean H along each gain through what it found.
     """
 
-    changed: nav.GainSensitivity
-    zero: nav.GainSensitivity
+    changed: nav.gains.GainSensitivity
+    zero: nav.gains.GainSensitivity
     nominal_time: Array
     nominal_energy: Array
     search: nav.GainSearch
-    flatness: nav.Flatness
+    flatness: nav.gains.Flatness
 
     def measured(self, gain: int, change: int) -> list[Measured]:
         """Return the runs of one gain set under the names of the tables, one for each configuration.
@@ -89,7 +89,7 @@ class GainRuns:
         return _measured(self.zero, gain, 0, (math.nan, math.nan))
 
 
-def _measured(table: nav.GainSensitivity, gain: int, change: int, nominal: tuple[float, float]) -> list[Measured]:
+def _measured(table: nav.gains.GainSensitivity, gain: int, change: int, nominal: tuple[float, float]) -> list[Measured]:
     """Return one row of a sensitivity under the names of the tables."""
     rows = []
     for place, scenario in enumerate(table.scenarios):

@@ -76,7 +76,7 @@ def _recovered(foam: int, seed: int) -> Iterator[Cell]:
     source = np.random.default_rng(seed)
     time = np.arange(0.0, 0.4, 0.001)
     drops = [
-        impact.drop_trajectory(
+        impact.identification.drop_trajectory(
             time, height=height, mass=mass, stiffness=stiffness, damping_ratio=ratio, friction=friction
         )
         for height in (0.03, 0.045, 0.06)
@@ -120,10 +120,10 @@ def _table() -> Iterator[Cell]:
 
 
 @cache
-def _fit() -> impact.DirectDriveFit:
+def _fit() -> impact.identification.DirectDriveFit:
     rows = printed_rows("A.1")
     decay = [value for row in rows for value in row["kappa"]]
-    return impact.identify_direct_drive(
+    return impact.identification.identify_direct_drive(
         [row["u"] for row in rows], [row["A_mean"] for row in rows], decay, _figure("inertia")
     )
 
@@ -153,7 +153,7 @@ def _constants() -> Iterator[Cell]:
 
 
 @cache
-def drives() -> dict[str, impact.DirectDrive]:
+def drives() -> dict[str, impact.joints.DirectDrive]:
     """Return the joint of Manipulator 1 with the printed constants and with the right ones.
 
     Returns
@@ -168,14 +168,14 @@ def drives() -> dict[str, impact.DirectDrive]:
         ("printed", _figure("torque_constant"), _figure("viscous_friction"), _figure("static_friction")),
         ("right", fit.torque_constant, fit.viscous_friction, fit.static_friction),
     ):
-        gains = impact.pd_gains(
+        gains = impact.identification.pd_gains(
             stiffness=wanted.stiffness,
             damping=wanted.damping,
             lever_arm=published_lever_arm(1),
             torque_constant=constant,
             viscous_friction=friction,
         )
-        made[name] = impact.DirectDrive(
+        made[name] = impact.joints.DirectDrive(
             proportional=gains.proportional,
             derivative=gains.derivative,
             inertia=wanted.mass * published_lever_arm(1) ** 2,
@@ -219,7 +219,7 @@ def _saturation() -> Iterator[Cell]:
         linear.manipulator_position - 0.25 * linear.time
     )
     drive = drives()["right"]
-    real = impact.simulate_direct_drive(
+    real = impact.joints.simulate_direct_drive(
         drive, FOAM_OF_FIGURES, head, closing_speed=CLOSING_SPEED, manipulator_speed=0.25, duration=0.06, step=1e-5
     )
     limit = drive.torque_constant * drive.voltage_limit / drive.lever_arm

@@ -82,7 +82,7 @@ def _direct_drive() -> Iterator[Cell]:
 def _settings() -> Iterator[Cell]:
     lever_arm = published_lever_arm(1)
     wanted = manipulator(1)
-    gains = impact.pd_gains(
+    gains = impact.identification.pd_gains(
         stiffness=wanted.stiffness,
         damping=wanted.damping,
         lever_arm=lever_arm,

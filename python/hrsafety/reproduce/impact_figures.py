@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety import impact, plotting
-from hrsafety.plotting.boundaries import refined
+from hrsafety.plotting.impacts.boundaries import refined
 from hrsafety.reproduce.figures import Picture, picture
 from hrsafety.reproduce.impact_appendix import drives
 from hrsafety.reproduce.impact_cases import (
@@ -289,7 +289,7 @@ def _saturated() -> Drawing:
     }
     head = impact.Head.apparatus()
     linear = impact.simulate(manipulator(1), FOAM_OF_FIGURES, head, **setting)
-    real = impact.simulate_direct_drive(drives()["right"], FOAM_OF_FIGURES, head, **setting)
+    real = impact.joints.simulate_direct_drive(drives()["right"], FOAM_OF_FIGURES, head, **setting)
     return (
         "direct-drive-saturated",
         "The direct-drive joint with friction, controller and its limit of 5 V (appendix A.2), beside the linear joint "

@@ -36,7 +36,9 @@ def arm() -> Iterator[Cell]:
         reason="The printed formula with its own numbers; it takes one wall of 3 mm off each size. The rest uses the "
         "printed density, that of aluminum.",
     )
-    tube = impact.tube_inertia(density=_printed("density"), length=length, width=width, height=width, wall=INCH / 16.0)
+    tube = impact.identification.tube_inertia(
+        density=_printed("density"), length=length, width=width, height=width, wall=INCH / 16.0
+    )
     yield number(
         "Section A.2",
         "Tube",
@@ -106,7 +108,7 @@ def arm() -> Iterator[Cell]:
 
 def cylinder() -> Iterator[Cell]:
     """Yield the constants of the controller of the cylinder."""
-    controller = impact.CylinderController()
+    controller = impact.joints.CylinderController()
     for row in printed_rows("section A.3"):
         yield number(
             "Section A.3",

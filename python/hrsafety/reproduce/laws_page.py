@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.navigation.statistics import Share
+from hrsafety.navigation.metrics import Share
 from hrsafety.reproduce import laws_claims, markup
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.figures import Picture

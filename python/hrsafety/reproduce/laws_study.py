@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import Paired, Share, compare_paired, wilson
+from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
 from hrsafety.reproduce.laws_compared import COMPARED, FORCES, LIKE_SOURCE, Compared, printed_walk, varied_walk
 from hrsafety.reproduce.measured import LAWS
 
@@ -180,7 +180,7 @@ def _demonstrate(entry: Compared) -> Demonstration:
     collinear = replace(beside, obstacles=(disc,))
     edge = 2.45 + 0.8
     force = [
-        nav.command(entry.law, collinear, position=(edge + side, 0.6), velocity=(-_FULL_SPEED, 0.0))
+        nav.laws.command(entry.law, collinear, position=(edge + side, 0.6), velocity=(-_FULL_SPEED, 0.0))
         for side in (-_HAIR, _HAIR)
     ]
     return Demonstration(

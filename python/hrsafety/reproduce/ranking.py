@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.navigation.statistics import compare_paired
+from hrsafety.navigation.metrics import compare_paired
 
 __all__ = ["BASELINE", "Outcomes", "Ranking", "rank"]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from hrsafety import plotting, reactive
-from hrsafety.reactive.layouts import Kind
+from hrsafety.reactive.follower.layouts import Kind
 from hrsafety.reproduce.figures import Picture, picture
 from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, SETTINGS, FollowerStudy
 from hrsafety.reproduce.reactive_follower_tables import SECOND
@@ -40,7 +40,7 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
         "follower_forces",
         "Repulsion over the size of the collision vector, and over the approach speed at half the safe distance "
         "(figure 6): K_0 = 40 N/m, D_0 = 10 N s/m, rho_0 = 0.8 m, mu_0 = 0.72 m/s.",
-        plotting.impedance_forces(
+        plotting.reactive.impedance_forces(
             {
                 "conventional (19-a)": reactive.VirtualImpedance(form="conventional"),
                 "active (20)": reactive.VirtualImpedance(),
@@ -59,13 +59,13 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
             f"follower_{kind}",
             f"{SETTINGS[kind].capitalize()} (figure {PUBLISHED[kind]}): layout {seed}, the first one in which the "
             f"conventional law touches and the active law follows, as in the source. It is one of {layouts:,}.",
-            plotting.follower_runs(runs),
+            plotting.reactive.follower_runs(runs),
         )
     yield (
         "follower_rates",
         f"Share of {len(study.base['static', 'active']):,} layouts with a contact, 95 % intervals; diamonds: a second "
         "implementation of the same description in other layouts.",
-        plotting.follower_rates(
+        plotting.reactive.follower_rates(
             {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
             marks={SETTINGS[kind]: {law: SECOND[kind, law][0] for law in LAWS} for kind in KINDS},
             marks_label="second implementation",
@@ -75,7 +75,7 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
     yield (
         "follower_rear",
         "Three more sensors, turned by half a turn: share of layouts with a contact, active law.",
-        plotting.follower_rates(
+        plotting.reactive.follower_rates(
             {
                 SETTINGS[kind]: {
                     label: study.found[variant][kind, "active"].collision_rate for variant, label in names.items()

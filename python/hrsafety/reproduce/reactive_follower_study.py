@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from hrsafety import reactive
 from hrsafety.reactive import Follower, FollowerExperiment, FollowerLayouts, Sonar, VirtualImpedance
-from hrsafety.reactive.layouts import Kind
+from hrsafety.reactive.follower.layouts import Kind
 
 __all__ = ["KINDS", "LAWS", "SETTINGS", "FollowerStudy", "Variant", "run_study", "variants"]
 

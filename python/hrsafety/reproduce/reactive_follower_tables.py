@@ -156,7 +156,7 @@ def _rates(study: FollowerStudy) -> Iterator[Cell]:
                 holds=rate.low > 0.5 if collides else rate.high < 0.05,
                 reason=f"{SELECTED} {_second(rate, kind, law)}",
             )
-        pair = reactive.compare_experiments(study.base[kind, "conventional"], study.base[kind, "active"])
+        pair = reactive.follower.compare_experiments(study.base[kind, "conventional"], study.base[kind, "active"])
         change = pair.difference
         yield claim(
             RATES,

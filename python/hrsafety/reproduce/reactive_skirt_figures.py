@@ -35,7 +35,7 @@ def make(study: SkirtStudy) -> list[Picture]:
 
 
 def _ring() -> Picture:
-    figure = plotting.skirt_ring(reactive.UltrasonicSkirt(), directions=reactive.MOTION_DIRECTIONS)
+    figure = plotting.reactive.skirt_ring(reactive.UltrasonicSkirt(), directions=reactive.skirt.MOTION_DIRECTIONS)
     caption = (
         "The published ring: nine sensors clockwise, their beams up to the triggering distance, wheels (black), and "
         "the motion directions."
@@ -56,11 +56,11 @@ def _runs(study: SkirtStudy) -> Picture:
             )
             shown[f"contact {words}"] = run
     caption = "Tests with 5 % of the discs below the sensors: the first one of four directions, and the first contacts."
-    return picture("skirt-runs", caption, plotting.skirt_runs(shown))
+    return picture("skirt-runs", caption, plotting.reactive.skirt_runs(shown))
 
 
 def _curve(study: SkirtStudy) -> Picture:
-    figure = plotting.skirt_clearances({name: study.tests[name] for name in CURVES}, printed=PRINTED_SHARE)
+    figure = plotting.reactive.skirt_clearances({name: study.tests[name] for name in CURVES}, printed=PRINTED_SHARE)
     caption = 'Share of the tests that avoid all discs completely, over the limit below which a clearance is "close".'
     return picture("skirt-clearances", caption, figure)
 
@@ -75,4 +75,4 @@ def _counts() -> Picture:
         f"Contacts by the number of sensors with equal gaps, each fired in turn every 20 ms: the smallest number that "
         f"keeps them below {100 * CONTACT_SHARE:g} % (upper end of the 95 % interval), 1,000 tests for each mark."
     )
-    return picture("skirt-sensor-counts", caption, plotting.skirt_sensor_counts(studies))
+    return picture("skirt-sensor-counts", caption, plotting.reactive.skirt_sensor_counts(studies))

@@ -65,7 +65,7 @@ def _figures() -> dict[str, float]:
 
 def _sensors() -> Iterator[Cell]:
     printed = _figures()
-    spacing = reactive.skirt_spacing()
+    spacing = reactive.skirt.skirt_spacing()
     gap = printed["theta"]
     unknown = "L, r and r_1 are not printed; here L = 46 mm (the sensor's board) and r = r_1 = R."
     for column, angle, reason in (
@@ -91,7 +91,7 @@ def _sensors() -> Iterator[Cell]:
         unit="1",
         reason=f"{unknown} a = 0.68 needs L = 63.5 mm, or r = r_1 = 0.351 m.",
     )
-    least = reactive.least_skirt_sensors(wheel_sensor_radius=0.33, sensor_radius=0.33)
+    least = reactive.skirt.least_skirt_sensors(wheel_sensor_radius=0.33, sensor_radius=0.33)
     yield claim(
         SENSORS,
         "Number",
@@ -130,7 +130,7 @@ def _distances(safe_distance: float) -> Iterator[Cell]:
 
 
 def _states() -> Iterator[Cell]:
-    for row, own in zip(published_tables()["gussu2017:1"]["rows"], reactive.skirt_states(), strict=True):
+    for row, own in zip(published_tables()["gussu2017:1"]["rows"], reactive.skirt.skirt_states(), strict=True):
         state = int(row["state"])
         printed, measured = f"{row['sensors']}: {row['action']}", f"{own.pattern}: {_WORDS.get(own.action, own.action)}"
         reason = {
@@ -143,7 +143,7 @@ def _states() -> Iterator[Cell]:
 
 
 def _vectors() -> Iterator[Cell]:
-    platform = reactive.TriOmniKinematics()
+    platform = reactive.skirt.TriOmniKinematics()
     # Column j of the wheel speeds of unit velocities is -t_j / r_w.
     tangents = -platform.wheel_radius * platform.wheel_speeds(np.eye(2)).T
     for row, own in zip(published_tables()["gussu2017:2"]["rows"], tangents, strict=True):
@@ -165,14 +165,14 @@ def _vectors() -> Iterator[Cell]:
 
 
 def _angles() -> list[float]:
-    return list(reactive.MOTION_DIRECTIONS.values())
+    return list(reactive.skirt.MOTION_DIRECTIONS.values())
 
 
 def _motions() -> Iterator[Cell]:
     for row in published_tables()["gussu2017:3"]["rows"]:
         name, printed = row["motion"], float(row["orientation_pi"])
         # Angles are given between -pi/2 and 3 pi/2, as printed.
-        measured = reactive.MOTION_DIRECTIONS[name] / math.pi
+        measured = reactive.skirt.MOTION_DIRECTIONS[name] / math.pi
         reason = (
             "North-west is the mirror of north-east, as the south-west is of the south-east." if name == "NW" else ""
         )

@@ -42,7 +42,7 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
         "sound_burst",
         "A burst from 2 m, 30 deg to the left: its beginning at the three microphones, with 0.01 of full scale of "
         "noise and 10 bits. Dashed: the arrivals.",
-        plotting.sound_burst(
+        plotting.reactive.sound_burst(
             heard, arrivals=[LEAD + each - min(delays) for each in delays], span=(LEAD - 0.001, LEAD + 0.011)
         ),
     )
@@ -52,11 +52,11 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
         "sound_likeness",
         f"How alike M1 is to M2 and M3 over the lag, 4096 samples of the same burst with {NOISE:g} of full scale of "
         "noise. Dashed: the true lags. The similarity of (5) is the inverse of the mean square difference.",
-        plotting.sound_likeness(
+        plotting.reactive.sound_likeness(
             {
-                "similarity": reactive.likeness(noisy, ROW, method="mean_square"),
-                "cross-correlation": reactive.likeness(noisy, ROW),
-                "GCC-PHAT, 0.5 to 8 kHz": reactive.likeness(noisy, ROW, method="phase", band=BAND),
+                "similarity": reactive.sound.likeness(noisy, ROW, method="mean_square"),
+                "cross-correlation": reactive.sound.likeness(noisy, ROW),
+                "GCC-PHAT, 0.5 to 8 kHz": reactive.sound.likeness(noisy, ROW, method="phase", band=BAND),
             },
             lags=(delays[1] * rate, delays[2] * rate),
         ),
@@ -67,10 +67,10 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
         reactive.locate(ROW, delay_12=float(first), delay_13=float(second))
         for first, second in zip(delay_12, delay_13, strict=True)
     ]
-    fixes = reactive.jittered_fixes(ROW, range=distance, bearing=np.radians(bearing), runs=SHOWN_RUNS)
+    fixes = reactive.sound.jittered_fixes(ROW, range=distance, bearing=np.radians(bearing), runs=SHOWN_RUNS)
     yield (
         "sound_fixes",
         f"{SHOWN_RUNS} fixes of each source with a quarter of a sample of jitter on every arrival, seen from above. "
         "Crosses: the sources; curves: two standard deviations by the covariance of a fix.",
-        plotting.sound_fixes(fixes, truth, labels=[f"{each:g} m, {angle:g} deg" for each, angle in SOURCES]),
+        plotting.reactive.sound_fixes(fixes, truth, labels=[f"{each:g} m, {angle:g} deg" for each, angle in SOURCES]),
     )

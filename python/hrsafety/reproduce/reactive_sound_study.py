@@ -107,7 +107,7 @@ def measure() -> SoundStudy:
     distance = np.array([place.distance for place in places()])
     bearing = np.radians([place.angle for place in places()])
     return SoundStudy(
-        jitter=reactive.jittered_fixes(ROW, range=distance, bearing=bearing, runs=JITTER_RUNS),
+        jitter=reactive.sound.jittered_fixes(ROW, range=distance, bearing=bearing, runs=JITTER_RUNS),
         whole_samples=_heard(distance, bearing, NOISE, between_samples=False),
         waveforms={level: _heard(distance, bearing, level) for level in LEVELS},
     )

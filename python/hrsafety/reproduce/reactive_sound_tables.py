@@ -70,7 +70,7 @@ def _formulas() -> Iterator[Cell]:
     delay_12, delay_13 = ROW.delays(range=distance, bearing=bearing)
     fixes = reactive.locate_batch(ROW, delay_12=delay_12, delay_13=delay_13)
     usable = bearing != 0.0  # straight ahead dt13 vanishes, and (9) is far off in any case
-    seen = reactive.printed_range(ROW, delay_12=delay_12, delay_13=delay_13)
+    seen = reactive.sound.printed_range(ROW, delay_12=delay_12, delay_13=delay_13)
     off = np.abs(seen / distance - 1.0)
     yield claim(
         FORMULAS,
@@ -82,7 +82,7 @@ def _formulas() -> Iterator[Cell]:
         reason=f"Misprinted. {_RIGHT} Its largest error here: {np.abs(fixes.range - distance).max():.0e} m.",
     )
     for angle, pair in ((0.0, "12"), (30.0, "12"), (30.0, "23")):
-        bias = reactive.parallel_ray_bias(ROW, range=1.0, bearing=math.radians(angle), pair=pair)  # type: ignore[arg-type]  # a word of the table
+        bias = reactive.sound.parallel_ray_bias(ROW, range=1.0, bearing=math.radians(angle), pair=pair)  # type: ignore[arg-type]  # a word of the table
         found = angle + math.degrees(float(bias))
         yield claim(
             FORMULAS,

@@ -11,7 +11,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.statistics import Paired, Share, compare_paired, wilson
+from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank

@@ -30,16 +30,16 @@ def make() -> list[Picture]:
                 f"wheels-{letter}-tracking",
                 f"Wheel {index + 1} of the {name} after 1 rad/s, 0.5 Hz, with the speed from differences of counts and "
                 f"from the observer (section {letter}.3, Figure {figure}).",
-                plotting.wheel_tracking(runs, labels=["differences of counts", "observer"]),
+                plotting.robots.wheel_tracking(runs, labels=["differences of counts", "observer"]),
             )
         )
-        tests = nav.open_loop_tests(wheels[index], COMMANDS)
+        tests = nav.robots.open_loop_tests(wheels[index], COMMANDS)
         made.append(
             picture(
                 f"wheels-{letter}-identification",
                 f"Simulated open-loop tests of wheel {index + 1} of the {name} with the encoder's counts, and the "
                 f"wheel that is identified from them (section {letter}.2); a cross is a test that did not move.",
-                plotting.wheel_identification(tests, nav.identify_wheel(tests)),
+                plotting.robots.wheel_identification(tests, nav.robots.identify_wheel(tests)),
             )
         )
     return made

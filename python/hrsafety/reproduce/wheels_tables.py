@@ -17,7 +17,7 @@ from hrsafety.reproduce.published import Row, printed_rows
 __all__ = ["COMMANDS", "ROBOTS", "cells", "in_direction", "sine_runs"]
 
 COMMANDS = (0.25, 0.3, 0.35, 0.4, 0.45, 0.5)
-ROBOTS = {"D": nav.HOLONOMIC_WHEELS, "E": nav.DIFFERENTIAL_WHEELS}
+ROBOTS = {"D": nav.robots.HOLONOMIC_WHEELS, "E": nav.robots.DIFFERENTIAL_WHEELS}
 """Wheels by the letter of the appendix."""
 RECOVERED = Tolerance(0.02, relative=True)
 MODEL = {"K_over_J": "rad/(s^2 V)", "B_over_J": "1/s", "tau_over_J": "rad/s^2"}
@@ -56,7 +56,7 @@ def cells() -> list[Cell]:
     return [*made, *_stuck(), *_observer(), *_period()]
 
 
-def in_direction(wheel: nav.WheelDrive, row: Row) -> nav.WheelDrive:
+def in_direction(wheel: nav.robots.WheelDrive, row: Row) -> nav.robots.WheelDrive:
     """Return a wheel with the parameters that are printed for one direction.
 
     Parameters
@@ -82,7 +82,7 @@ def _recovered(letter: str) -> Iterator[Cell]:
     for row in printed_rows(f"{letter}.1"):
         wheel = in_direction(ROBOTS[letter][row["wheel"] - 1], row)
         sign = 1.0 if row["direction"] == "forward" else -1.0
-        fit = nav.identify_wheel(nav.open_loop_tests(wheel, sign * np.array(COMMANDS)))
+        fit = nav.robots.identify_wheel(nav.robots.open_loop_tests(wheel, sign * np.array(COMMANDS)))
         found = {
             "K_over_J": fit.command_gain,
             "B_over_J": fit.decay,
@@ -148,7 +148,7 @@ def _feed_forward(letter: str) -> Iterator[Cell]:
 
 
 @cache
-def sine_runs(letter: str, feedback: nav.wheels.Feedback, quantized: bool) -> tuple[nav.WheelRun, ...]:
+def sine_runs(letter: str, feedback: nav.robots.wheels.Feedback, quantized: bool) -> tuple[nav.robots.WheelRun, ...]:
     """Return the wheels of a robot after a sine of 1 rad/s and 0.5 Hz for 8 s.
 
     Parameters
@@ -165,11 +165,11 @@ def sine_runs(letter: str, feedback: nav.wheels.Feedback, quantized: bool) -> tu
     tuple of WheelRun
         One for each wheel.
     """
-    reference = nav.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
+    reference = nav.robots.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
     wheels = [dataclasses.replace(wheel, feedback=feedback) for wheel in ROBOTS[letter]]
     if not quantized:
         wheels = [dataclasses.replace(wheel, encoder_counts=None) for wheel in wheels]
-    return tuple(nav.follow_wheel(wheel, reference) for wheel in wheels)
+    return tuple(nav.robots.follow_wheel(wheel, reference) for wheel in wheels)
 
 
 def _loops(letter: str) -> Iterator[Cell]:
@@ -192,8 +192,8 @@ def _loops(letter: str) -> Iterator[Cell]:
 
 
 def _stuck() -> Iterator[Cell]:
-    run = nav.open_loop_tests(nav.DIFFERENTIAL_WHEELS[1], [0.25], repeats=1)[0]
-    friction = nav.DIFFERENTIAL_WHEELS[1].static_friction
+    run = nav.robots.open_loop_tests(nav.robots.DIFFERENTIAL_WHEELS[1], [0.25], repeats=1)[0]
+    friction = nav.robots.DIFFERENTIAL_WHEELS[1].static_friction
     yield claim(
         "Section E.2",
         "Wheel 2 at 0.25 V",
@@ -205,7 +205,7 @@ def _stuck() -> Iterator[Cell]:
     )
 
 
-def _jump(runs: Sequence[nav.WheelRun]) -> float:
+def _jump(runs: Sequence[nav.robots.WheelRun]) -> float:
     """Return the rms change of the current from one wheel period to the next, in mA."""
     return MILLI * max(float(np.sqrt(np.mean(np.diff(run.current) ** 2))) for run in runs)
 
@@ -235,8 +235,8 @@ def _period() -> Iterator[Cell]:
     for letter, wheels in ROBOTS.items():
         words = []
         for period in (0.001, 0.005, 0.01, 0.02):
-            reference = nav.WheelReference.sine(duration=8.0, period=period)
-            runs = [nav.follow_wheel(dataclasses.replace(wheel, period=period), reference) for wheel in wheels]
+            reference = nav.robots.WheelReference.sine(duration=8.0, period=period)
+            runs = [nav.robots.follow_wheel(dataclasses.replace(wheel, period=period), reference) for wheel in wheels]
             words.append(f"{MILLI * period:g} ms {MILLI * max(run.rms_angle_error for run in runs):.3g} mrad")
         yield listed(
             f"Section {letter}.3",

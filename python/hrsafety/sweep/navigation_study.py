@@ -14,7 +14,7 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.trajectory import check_weights
+from hrsafety.navigation.performance import check_weights
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Cases, Found, Study, chosen
 

@@ -1,0 +1,518 @@
+"""Injury criteria and loads of an impact, on the continuous solution and on measured signals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, columns, flag, instance, number
+from hrsafety.errors import InvalidParameterError
+from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.plausibility import RANGES, ResultWarning, implausible
+
+__all__ = [
+    "HeadInjury",
+    "ImpactMetrics",
+    "MovingLevel",
+    "average_3ms",
+    "clip_3ms",
+    "hic",
+    "hic_half_sine",
+    "hic_square",
+    "hic_triangle",
+    "metrics",
+]
+
+
+STANDARD_GRAVITY = 9.80665
+"""In m/s^2."""
+
+Doubts = tuple[ResultWarning, ...]
+
+
+class _Loads(NamedTuple):
+    peak_head_acceleration: float
+    peak_head_acceleration_g: float
+    mean_head_acceleration_g: float
+    peak_contact_force: float
+    max_compression: float
+    impact_duration: float
+    hic15: float
+    hic36: float
+    average_3ms_g: float
+    clip_3ms_g: float
+    peak_power_manipulator: float
+    peak_power_foam: float
+    status: str
+    beyond_linear_range: bool
+
+
+class ImpactMetrics(_Loads):
+    """Loads of one impact, maxima over the impact period.
+
+    The impact period runs from first contact to the first zero of the head acceleration. All
+    maxima are found on the continuous solution, both ends included. g is 9.80665 m/s^2.
+
+    Attributes
+    ----------
+    peak_head_acceleration : float
+        a_h,max in m/s^2.
+    peak_head_acceleration_g : float
+        The same in g.
+    mean_head_acceleration_g : float
+        Mean over the impact period, in g.
+    peak_contact_force : float
+        f_c,max in N.
+    max_compression : float
+        eps_max in m.
+    impact_duration : float
+        Impact period in s; infinite without a zero within the horizon, NaN for a constrained
+        head.
+    hic15, hic36 : float
+        Head injury criterion with windows of up to 15 and 36 ms.
+    average_3ms_g : float
+        Largest moving average over 3 ms, in g; NaN if the period is shorter.
+    clip_3ms_g : float
+        Level that is exceeded for 3 contiguous ms, in g; NaN if the period is shorter.
+    peak_power_manipulator : float
+        Largest f_c x_r', in W.
+    peak_power_foam : float
+        Largest f_c eps', in W.
+    status : str
+        What the numbers mean. ``"released"``: the impact period ended within the horizon.
+        ``"no_release"``: it did not, and maxima are over the horizon. ``"no_impact"``: the
+        closing speed is not positive, nothing happens, all numbers are NaN. ``"constrained"``: the head cannot
+        move, maxima are over the horizon, head fields are NaN. ``"beyond_linear_range"``:
+        released, but the foam was compressed beyond the range in which it is linear, so that
+        the true loads are higher. ``"bottomed"``: released, but the foam was compressed by more than
+        it is thick, so that the manipulator itself has hit the head and the loads mean nothing.
+    beyond_linear_range : bool
+        Whether the compression leaves the linear range of the foam, whatever the status.
+    bottomed : bool
+        Whether the compression is more than the thickness of the foam, whatever the status. Like
+        ``warnings`` no item of the tuple.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant.
+    """
+
+    bottomed: bool = False
+    warnings: Doubts = ()
+
+    def _replace(self, /, **kwargs: object) -> Self:
+        """Return the same loads with other fields; what is no item of the tuple is kept, or given, too."""
+        kept = {name: kwargs.pop(name, getattr(self, name)) for name in ("bottomed", "warnings")}
+        found = super()._replace(**kwargs)  # type: ignore[arg-type]  # checked by the tuple
+        for name, value in kept.items():
+            setattr(found, name, value)
+        return found
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
+
+
+def with_warnings(text: str, warnings: Doubts) -> str:
+    """Return the text of a result with what is doubtful about it."""
+    if not warnings:
+        return text
+    return f"{text[:-1]}, warnings=({', '.join(repr(str(each)) for each in warnings)},))"
+
+
+class _Window(NamedTuple):
+    value: float
+    start: float
+    end: float
+
+
+class HeadInjury(_Window):
+    """Head injury criterion of a signal, and the window that gives it.
+
+    Attributes
+    ----------
+    value : float
+        (t_2 - t_1) [mean of a in g over the window]^2.5, in s.
+    start, end : float
+        The window t_1, t_2, in s.
+    warnings : tuple of ResultWarning
+        What is doubtful about the signal; no item of the tuple.
+    """
+
+    warnings: Doubts = ()
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
+
+
+class MovingLevel(_Window):
+    """Level of a signal over 3 ms, and where it is reached.
+
+    Attributes
+    ----------
+    value : float
+        In g.
+    start, end : float
+        The 3 ms, in s.
+    warnings : tuple of ResultWarning
+        What is doubtful about the signal; no item of the tuple.
+    """
+
+    warnings: Doubts = ()
+
+    def __repr__(self) -> str:
+        """Return the fields, and the warnings if there are any."""
+        return with_warnings(super().__repr__(), self.warnings)
+
+
+# Faster ones would only overflow: loads go with up to the power 2.5 of the speed.
+MOST_SPEED = 1e100
+_LEAST_PLAUSIBLE, _MOST_PLAUSIBLE = RANGES["closing_speed"][:2]
+
+
+def check_speeds(closing_speed: float, manipulator_speed: float | None = None) -> None:
+    """Refuse speeds whose loads cannot be represented."""
+    for name, speed in (("closing_speed", closing_speed), ("manipulator_speed", manipulator_speed)):
+        if speed is not None and MOST_SPEED < abs(speed) < math.inf:
+            raise InvalidParameterError(name, f"be at most {MOST_SPEED:g} m/s", speed)
+
+
+def speed_warnings(closing_speed: float, manipulator_speed: float | None = None) -> Doubts:
+    """Return what is doubtful about the speeds of an impact; without one there is nothing to doubt."""
+    if manipulator_speed is None and (closing_speed <= 0.0 or _LEAST_PLAUSIBLE <= closing_speed <= _MOST_PLAUSIBLE):
+        return ()
+    closing = closing_speed if closing_speed > 0.0 else None
+    return implausible({"closing_speed": closing, "manipulator_speed": manipulator_speed})
+
+
+def judged(values: tuple[object, ...], foam: Foam, warnings: Doubts) -> ImpactMetrics:
+    """Return the loads of a native row with what is known about the foam."""
+    found = ImpactMetrics._make(values)
+    if found.beyond_linear_range:
+        found.bottomed = found.max_compression > foam.thickness
+    if warnings:
+        found.warnings = warnings
+    return found
+
+
+def metrics(
+    manipulator: Manipulator,
+    foam: Foam,
+    head: Head | ConstrainedHead,
+    *,
+    closing_speed: float,
+    manipulator_speed: float | None = None,
+    horizon: float | None = None,
+) -> ImpactMetrics:
+    """Return the loads of an impact from the exact linear solution.
+
+    Parameters
+    ----------
+    manipulator : Manipulator
+        What hits.
+    foam : Foam
+        What is between.
+    head : Head or ConstrainedHead
+        What is hit.
+    closing_speed : float
+        v_c = v_r(0) - v_h(0) in m/s. At most zero means that nothing happens.
+    manipulator_speed : float or None
+        v_r in m/s; the closing speed when ``None``, so that the head is at rest. It matters
+        for the power of the manipulator only.
+    horizon : float or None
+        Longest time that is looked at, in s; 0.2 when ``None``, 0.05 for a constrained head.
+
+    Returns
+    -------
+    ImpactMetrics
+        All maxima, and a status that says what they mean.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a speed is not finite or the horizon is not positive.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> nominal = impact.metrics(
+    ...     impact.MANIPULATOR_1, impact.Foam(stiffness=24250.0, damping=71.9), impact.Head.apparatus(),
+    ...     closing_speed=1.25,
+    ... )
+    >>> round(nominal.peak_head_acceleration_g, 5), round(nominal.hic15, 5), nominal.status
+    (6.56785, 1.37026, 'released')
+    """
+    if type(closing_speed) is not float:
+        closing_speed = number("closing_speed", closing_speed)
+    if manipulator_speed is not None and type(manipulator_speed) is not float:
+        manipulator_speed = number("manipulator_speed", manipulator_speed)
+    if horizon is not None and type(horizon) is not float:
+        horizon = number("horizon", horizon)
+    check_speeds(closing_speed, manipulator_speed)
+    try:
+        values = _hrsafety.impact_metrics(
+            manipulator._native, foam._native, head._native, closing_speed, manipulator_speed, horizon
+        )
+    except (AttributeError, TypeError):
+        # Classes are checked only when something went wrong: the call takes microseconds.
+        check_parts(manipulator, foam, head)
+        raise
+    doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(closing_speed, manipulator_speed)
+    return judged(values, foam, doubts)
+
+
+def check_parts(manipulator: object, foam: object, head: object) -> None:
+    """Say which of the three is not what it should be, if one is not."""
+    instance("manipulator", manipulator, Manipulator)
+    instance("foam", foam, Foam)
+    if not isinstance(head, (Head, ConstrainedHead)):
+        raise InvalidParameterError("head", "be a Head or a ConstrainedHead", head)
+
+
+def hic(
+    time: npt.ArrayLike, acceleration_g: npt.ArrayLike, window: float = 0.015, interpolate: bool = False
+) -> HeadInjury:
+    """Return the head injury criterion of a sampled signal.
+
+    The maximum over t_1 < t_2, t_2 - t_1 <= window, of (t_2 - t_1) [mean of a over (t_1, t_2)]^2.5;
+    windows with a negative mean count as 0. Takes time proportional to the samples in a window
+    of constant sampling, and any sampling.
+
+    Parameters
+    ----------
+    time : array_like of shape (n,)
+        Sample times in s, increasing.
+    acceleration_g : array_like of shape (n,)
+        Head acceleration in g.
+    window : float
+        Longest window in s: 0.015 for HIC15, 0.036 for HIC36.
+    interpolate : bool
+        False: windows begin and end at samples, the trapezoid rule between. True: the signal is
+        piecewise linear and the window is free.
+
+    Returns
+    -------
+    HeadInjury
+        Value and window.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there are less than two samples, time does not increase, a value is not finite, or without
+        ``interpolate`` a step is longer than the window, as with milliseconds.
+    ShapeError
+        If the arrays are not one-dimensional and of one length.
+
+    Examples
+    --------
+    A half sine of 5 ms and 100 g:
+
+    >>> import numpy as np
+    >>> from hrsafety import impact
+    >>> time = np.linspace(0.0, 0.005, 2001)
+    >>> round(impact.hic(time, 100.0 * np.sin(np.pi * time / 0.005), interpolate=True).value, 1)
+    207.3
+    """
+    instants, signal = columns(time=time, acceleration_g=acceleration_g)
+    width, free = number("window", window), flag("interpolate", interpolate)
+    found = HeadInjury._make(_hrsafety.hic(instants, signal, width, free))
+    found.warnings = signal_warnings(instants, signal, found)
+    return found
+
+
+def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 0.003) -> MovingLevel:
+    """Return the largest moving average of a signal over 3 ms.
+
+    Parameters
+    ----------
+    time : array_like of shape (n,)
+        Sample times in s, increasing; the signal is linear between them.
+    acceleration_g : array_like of shape (n,)
+        Head acceleration in g.
+    width : float
+        Length of the moving window in s.
+
+    Returns
+    -------
+    MovingLevel
+        Average in g and where.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there are less than two samples, time does not increase, a value is not finite, or the signal
+        is shorter than the window.
+    ShapeError
+        If the arrays are not one-dimensional and of one length.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.criteria.average_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
+    7.5
+    """
+    return _moving_level(_hrsafety.moving_average, time, acceleration_g, width)
+
+
+def clip_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 0.003) -> MovingLevel:
+    """Return the level that a signal exceeds for 3 contiguous ms, which the average may be above.
+
+    Parameters, returns and errors are those of `average_3ms`: ``width`` is how long the level is
+    exceeded.
+
+    Parameters
+    ----------
+    time, acceleration_g, width
+        As for `average_3ms`.
+
+    Returns
+    -------
+    MovingLevel
+        Level in g and where.
+
+    Raises
+    ------
+    InvalidParameterError, ShapeError
+        As for `average_3ms`.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.criteria.clip_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
+    5.0
+    """
+    return _moving_level(_hrsafety.contiguous_level, time, acceleration_g, width)
+
+
+def _moving_level(
+    level: Callable[[Array, Array, float], tuple[float, float, float]],
+    time: npt.ArrayLike,
+    acceleration_g: npt.ArrayLike,
+    width: float,
+) -> MovingLevel:
+    instants, signal = columns(time=time, acceleration_g=acceleration_g)
+    found = MovingLevel._make(level(instants, signal, number("width", width)))
+    found.warnings = signal_warnings(instants, signal, found)
+    return found
+
+
+def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doubts:
+    """Return what is doubtful about a sampled acceleration, from its mean step, its peaks and its strongest window."""
+    first, last = np.searchsorted(time, (window.start, window.end))
+    # The whole push around the window: back and on to where the acceleration changes its sign.
+    ends = np.flatnonzero(acceleration_g <= 0.0)
+    before, after = ends.searchsorted((first, last))
+    push = slice(ends[before - 1] + 1 if before else 0, ends[after] if after < len(ends) else None)
+    acceleration, instants = acceleration_g[push], time[push]
+    with np.errstate(over="ignore", invalid="ignore"):
+        areas = (acceleration[1:] + acceleration[:-1]) * (instants[1:] - instants[:-1])
+        gain = 0.5 * STANDARD_GRAVITY * float(areas.sum())
+    return implausible(
+        {
+            "time": float(time[-1] - time[0]) / (len(time) - 1),
+            "acceleration_g": np.array([acceleration_g.min(), acceleration_g.max()]),
+            "velocity that the head gains by acceleration_g": gain,
+        },
+        {
+            "time": "sampling_step",
+            "acceleration_g": "head_acceleration_g",
+            "velocity that the head gains by acceleration_g": "head_velocity_gain",
+        },
+    )
+
+
+def hic_half_sine(peak_g: float, duration: float, window: float = 0.015) -> float:
+    """Return the head injury criterion of a half sine in closed form.
+
+    Parameters
+    ----------
+    peak_g : float
+        Peak in g.
+    duration : float
+        Length of the pulse in s.
+    window : float
+        Longest window in s.
+
+    Returns
+    -------
+    float
+        The criterion, in s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite, the peak negative, or a time not positive.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.criteria.hic_half_sine(100.0, 0.005), 1)
+    207.3
+    """
+    return _hrsafety.hic_half_sine(number("peak_g", peak_g), number("duration", duration), number("window", window))
+
+
+def hic_square(peak_g: float, duration: float, window: float = 0.015) -> float:
+    """Return the head injury criterion of a square pulse in closed form.
+
+    Parameters
+    ----------
+    peak_g : float
+        Height in g.
+    duration : float
+        Length of the pulse in s.
+    window : float
+        Longest window in s.
+
+    Returns
+    -------
+    float
+        The criterion, in s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite, the peak negative, or a time not positive.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.criteria.hic_square(100.0, 0.005), 9)
+    500.0
+    """
+    return _hrsafety.hic_square(number("peak_g", peak_g), number("duration", duration), number("window", window))
+
+
+def hic_triangle(peak_g: float, duration: float, window: float = 0.015) -> float:
+    """Return the head injury criterion of a symmetric triangle in closed form.
+
+    Parameters
+    ----------
+    peak_g : float
+        Peak in g.
+    duration : float
+        Length of the pulse in s.
+    window : float
+        Longest window in s.
+
+    Returns
+    -------
+    float
+        The criterion, in s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite, the peak negative, or a time not positive.
+
+    Examples
+    --------
+    >>> from hrsafety import impact
+    >>> round(impact.criteria.hic_triangle(100.0, 0.005), 1)
+    123.2
+    """
+    return _hrsafety.hic_triangle(number("peak_g", peak_g), number("duration", duration), number("window", window))

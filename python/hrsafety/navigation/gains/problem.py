@@ -1,0 +1,147 @@
+"""The function of the gains that a search maximizes, built from its settings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, numbers
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.batch import BatchSummary
+from hrsafety.navigation.gains.confidence import student_quantile
+from hrsafety.navigation.gains.settings import GainConstraint, Judge, SearchSettings
+from hrsafety.navigation.laws.force_laws import Law
+
+__all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
+
+# Probability with which the mean over all seeds lies above the lower bound.
+LOWER_BOUND_LEVEL = 0.95
+
+
+def noise_seeds(settings: SearchSettings, count: int, *, fresh: bool = False) -> list[int]:
+    """Return seeds of the noise: those of the search, or others that the search has not seen."""
+    sequence = np.random.SeedSequence([settings.seed, int(fresh)])
+    return [int(seed) for seed in sequence.generate_state(count, np.uint64)]
+
+
+def lower_bound_factor(settings: SearchSettings) -> float | None:
+    """Return how many standard errors the lower bound lies below the mean; ``None`` for the mean."""
+    if settings.robustness == "mean":
+        return None
+    return student_quantile(LOWER_BOUND_LEVEL, settings.seeds - 1)
+
+
+class Scorer:
+    """Turns the batches of all seeds into the values and margins of the callables.
+
+    Parameters
+    ----------
+    objectives, constraints : mapping of str to callable
+        Each takes a `BatchSummary` of n gain sets and returns n numbers; the key names it in
+        errors.
+    factor : float or None
+        As `lower_bound_factor`.
+    gain_names : tuple of str
+        Names of the gains of the law.
+    """
+
+    def __init__(
+        self,
+        objectives: Mapping[str, Judge],
+        constraints: Mapping[str, Judge],
+        factor: float | None,
+        gain_names: tuple[str, ...],
+    ) -> None:
+        self.objectives = objectives
+        self.constraints = constraints
+        self.factor = factor
+        self.gain_names = gain_names
+
+    def __call__(self, tables: Sequence[Mapping[str, Any]]) -> tuple[Array, Array]:
+        """Return values (n, objectives) and margins (n, constraints) of the batches of all seeds."""
+        batches = [BatchSummary(gain_names=self.gain_names, **columns) for columns in tables]
+        rows = int(batches[0].gain_index[-1]) + 1
+        values, margins = np.empty((rows, len(self.objectives))), np.empty((rows, len(self.constraints)))
+        for index, (name, objective) in enumerate(self.objectives.items()):
+            values[:, index] = self._over_seeds(judged(name, objective, batches, rows))
+        for index, (name, constraint) in enumerate(self.constraints.items()):
+            margins[:, index] = judged(name, constraint, batches, rows).min(axis=0)
+        return values, margins
+
+    def _over_seeds(self, values: Array) -> Array:
+        """Return the mean over the seeds, or its lower bound; worst of all where there is none."""
+        with np.errstate(invalid="ignore"):
+            mean = values.mean(axis=0)
+            if self.factor is not None:
+                mean = mean - self.factor * values.std(axis=0, ddof=1) / math.sqrt(len(values))
+        return np.where(np.isnan(mean), -np.inf, mean)
+
+
+def judged(name: str, judge: Judge, batches: Sequence[BatchSummary], rows: int) -> Array:
+    """Return what a callable says of the batch of each seed, (seeds, n)."""
+    found = []
+    for batch in batches:
+        values = numbers(name, judge(batch), "return numbers, one for each gain set")
+        if values.shape != (rows,):
+            raise InvalidParameterError(name, f"return an array of shape ({rows},)", Shown(f"shape {values.shape}"))
+        found.append(values)
+    return np.stack(found)
+
+
+def gain_problem(
+    settings: SearchSettings, *, seeds: Sequence[int] | None = None, lanes: int | None = None
+) -> _hrsafety.GainProblem:
+    """Return the native problem of the settings.
+
+    Parameters
+    ----------
+    settings : SearchSettings
+        Objectives, constraints, scenarios.
+    seeds : sequence of int or None
+        Noise seeds instead of those of the settings; the plain mean is taken over them.
+    lanes : int or None
+        As for `simulate_batch`.
+    """
+    factor = lower_bound_factor(settings) if seeds is None else None
+    if seeds is None:
+        seeds = noise_seeds(settings, settings.seeds) if settings.seeds else []
+    metrics = [entry if isinstance(entry, str) else None for entry in settings.objectives]
+    objectives = {
+        f"objectives[{index}]": entry for index, entry in enumerate(settings.objectives) if not isinstance(entry, str)
+    }
+    bounded = [entry for entry in settings.constraints if isinstance(entry, GainConstraint)]
+    constraints = {
+        f"constraints[{index}]": entry
+        for index, entry in enumerate(settings.constraints)
+        if not isinstance(entry, GainConstraint)
+    }
+    if settings.method != "front" and objectives:
+        objectives = {"objective": next(iter(objectives.values()))}
+    called = Scorer(objectives, constraints, factor, settings.law.GAIN_NAMES)
+    return _hrsafety.GainProblem(
+        scenarios=[scenario._native for scenario in settings.scenarios],
+        law=settings.law._native,
+        weights=settings.weights,
+        integrator=settings.integrator,
+        step=settings.step,
+        hold=settings.hold,
+        seeds=list(seeds),
+        lower_bound_factor=factor,
+        objectives=metrics,
+        constraints=[(entry.metric, entry.at_least, entry.at_most, entry.scenario) for entry in bounded],
+        require_arrival=settings.require_arrival,
+        cap_ratios=settings.cap_ratios,
+        scorer=called if objectives or constraints else None,
+        scorer_constraints=len(constraints),
+        lanes=lanes,
+    )
+
+
+def with_gains(law: Law, gains: Array) -> Law:
+    """Return the law with other gains, given in the order of ``GAIN_NAMES``."""
+    fields: dict[str, Any] = dict(zip(law.GAIN_NAMES, gains.tolist(), strict=True))
+    return law.replaced(**fields)

@@ -1,0 +1,94 @@
+"""Who stands where after many episodes: shares of success and contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.arena import ArenaResult
+from hrsafety.plotting import style
+from hrsafety.plotting.comparisons.law_looks import handle
+from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.metrics import Share
+
+__all__ = ["plot_arena_standings"]
+
+ROW_HEIGHT = 0.42
+
+
+@style.styled
+def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Figure:
+    """Draw the shares of success and of contact of each law with their 95 % intervals.
+
+    Beside the share of the episodes with a contact, a hollow mark is the share of those in which
+    the robot itself was moving at a contact.
+
+    Parameters
+    ----------
+    result : ArenaResult
+        What `hrsafety.navigation.arena` returned.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture, one axes for success and one for contacts, as shares of the episodes.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the result is not an ArenaResult.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, plotting, scenarios
+    >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
+    >>> episodes = [scenarios.random_traffic(3, seed=seed) for seed in range(10)]
+    >>> figure = plotting.plot_arena_standings(nav.arena(laws, episodes))
+    >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
+    ['field', 'Masoud']
+    """
+    if not isinstance(result, ArenaResult):
+        raise InvalidParameterError("result", "be an ArenaResult", Shown(type(result).__name__))
+    standings = result.standings()
+    figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
+    left, right = figure.subplots(1, 2, sharey=True)
+    blue, red = OUTCOME_COLORS["arrived"], OUTCOME_COLORS["contact"]
+    _draw_shares(left, [each.success for each in standings], blue, offset=0.0, filled=True)
+    _draw_shares(right, [each.contact for each in standings], red, offset=-0.14, filled=True)
+    _draw_shares(right, [each.moving_contact for each in standings], red, offset=0.14, filled=False)
+    left.set_yticks(range(len(standings)), [each.law for each in standings])
+    left.set_ylim(len(standings) - 0.5, -0.5)
+    episodes = f"of {result.outcome.shape[1]} episodes"
+    for axes, words in ((left, "arrived without contact"), (right, "with a contact")):
+        axes.set_xlim(-0.03, 1.03)
+        axes.set_xlabel(f"share {episodes}")
+        axes.set_title(words)
+    handles = [
+        handle("arrived without contact", marker="o", markersize=7, color=blue),
+        handle("with a contact", marker="o", markersize=7, color=red),
+        handle("robot moving at a contact", marker="o", markersize=7, color=red, markerfacecolor="white"),
+    ]
+    style.legend_below(figure, handles, columns=len(handles))
+    return figure
+
+
+def _draw_shares(axes: Axes, shares: Sequence[Share], color: str, *, offset: float, filled: bool) -> None:
+    """Draw shares and their intervals, one row for each."""
+    value = np.array([share.value for share in shares])
+    beyond = np.array([[share.value - share.low, share.high - share.value] for share in shares]).T
+    look: style.Properties = {"color": color, "markerfacecolor": color if filled else "white", "capsize": 2.5}
+    axes.errorbar(
+        value, np.arange(len(shares)) + offset, xerr=np.maximum(beyond, 0.0), fmt="o", markersize=6, zorder=3, **look
+    )

@@ -1,0 +1,21 @@
+"""Pictures of runs: paths, distances, energies, forces, animations."""
+
+from hrsafety.plotting.runs.animation import animate
+from hrsafety.plotting.runs.energies import energy
+from hrsafety.plotting.runs.fields import force_field, potential_valley
+from hrsafety.plotting.runs.histories import distances, lyapunov
+from hrsafety.plotting.runs.layouts import layout
+from hrsafety.plotting.runs.scenes import paths
+from hrsafety.plotting.runs.sequences import time_sequence
+
+__all__ = [
+    "animate",
+    "distances",
+    "energy",
+    "force_field",
+    "layout",
+    "lyapunov",
+    "paths",
+    "potential_valley",
+    "time_sequence",
+]
