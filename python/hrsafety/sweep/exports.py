@@ -6,28 +6,50 @@ import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._atomic import replacing
 from hrsafety.errors import MissingExtraError
-from hrsafety.sweep.axes import Column
-from hrsafety.sweep.designs import Grid
+from hrsafety.sweep.axes import Axis, Column
+from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.storage import SweepError
 
 if TYPE_CHECKING:
     import polars
     import xarray
 
-    from hrsafety.sweep.result import SweepResult
-
 __all__ = ["to_npz", "to_parquet", "to_polars", "to_xarray"]
 
 # Array of an NPZ file and metadata of a Parquet file that hold units and provenance.
 NPZ_TEXT = "_hrsafety"
 PARQUET_KEY = "hrsafety"
+
+
+class Stored(Protocol):
+    """What is written; a `SweepResult`, which knows this module."""
+
+    @property
+    def design(self) -> Design: ...
+    @property
+    def axes(self) -> tuple[Axis, ...]: ...
+    @property
+    def cases(self) -> tuple[str, ...]: ...
+    @property
+    def columns(self) -> tuple[Column, ...]: ...
+    @property
+    def provenance(self) -> dict[str, Any]: ...
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def finished(self) -> tuple[int, ...]: ...
+    @property
+    def chunk_count(self) -> int: ...
+    def __len__(self) -> int: ...
+    def stored_chunks(self, columns: Sequence[Column]) -> Iterator[Mapping[str, npt.NDArray[Any]]]: ...
+    def to_numpy(self, names: Sequence[str]) -> dict[str, npt.NDArray[Any]]: ...
 
 
 def _polars() -> Any:
@@ -38,12 +60,12 @@ def _polars() -> Any:
     return polars
 
 
-def description(result: SweepResult, columns: Sequence[Column]) -> str:
+def description(result: Stored, columns: Sequence[Column]) -> str:
     """Return units and provenance as JSON.
 
     Parameters
     ----------
-    result : SweepResult
+    result : Stored
         The result.
     columns : sequence of Column
         Columns that are written.
@@ -76,7 +98,7 @@ def _frame(stored: Mapping[str, npt.NDArray[Any]], schema: Mapping[str, Any], co
     return pl.DataFrame(series, schema=schema)
 
 
-def to_polars(result: SweepResult, columns: Sequence[Column]) -> polars.DataFrame:
+def to_polars(result: Stored, columns: Sequence[Column]) -> polars.DataFrame:
     """Return a data frame, see `SweepResult.to_polars`."""
     pl = _polars()
     schema = _schema(columns)
@@ -85,7 +107,7 @@ def to_polars(result: SweepResult, columns: Sequence[Column]) -> polars.DataFram
     return frame
 
 
-def to_parquet(result: SweepResult, columns: Sequence[Column], path: Path) -> Path:
+def to_parquet(result: Stored, columns: Sequence[Column], path: Path) -> Path:
     """Write a Parquet file, see `SweepResult.to_parquet`."""
     pl = _polars()
     from polars.io.plugins import register_io_source
@@ -110,7 +132,7 @@ def to_parquet(result: SweepResult, columns: Sequence[Column], path: Path) -> Pa
     return path
 
 
-def to_npz(result: SweepResult, columns: Sequence[Column], path: Path) -> Path:
+def to_npz(result: Stored, columns: Sequence[Column], path: Path) -> Path:
     """Write an NPZ file, see `SweepResult.to_npz`."""
     with replacing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for column in columns:
@@ -125,7 +147,7 @@ def to_npz(result: SweepResult, columns: Sequence[Column], path: Path) -> Path:
     return path
 
 
-def to_xarray(result: SweepResult, columns: Sequence[Column]) -> xarray.Dataset:
+def to_xarray(result: Stored, columns: Sequence[Column]) -> xarray.Dataset:
     """Return a dataset, see `SweepResult.to_xarray`."""
     try:
         import xarray
