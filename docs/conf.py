@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
+
+from sphinx.util.nodes import make_refnode
 
 import hrsafety
 
@@ -46,3 +49,24 @@ html_theme = "furo"
 html_title = "hrsafety"
 html_show_sphinx = False
 html_copy_source = False
+
+
+def find_in_namespaces(app: Any, environment: Any, node: Any, shown: Any) -> Any:
+    """Link a name that stands in another namespace: of the same package first, then of any."""
+    if node.get("refdomain") != "py":
+        return None
+    package = ".".join((node.get("py:module") or "").split(".")[:2])
+    domain = environment.get_domain("py")
+    for prefix in (package, "hrsafety"):
+        found = [
+            name for name in domain.objects if name.startswith(f"{prefix}.") and name.endswith(f".{node['reftarget']}")
+        ]
+        if len(found) == 1:
+            place = domain.objects[found[0]]
+            return make_refnode(app.builder, node["refdoc"], place.docname, place.node_id, shown, found[0])
+    return None
+
+
+def setup(app: Any) -> None:
+    """Connect what finds links."""
+    app.connect("missing-reference", find_in_namespaces)
