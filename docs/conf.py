@@ -51,22 +51,31 @@ html_show_sphinx = False
 html_copy_source = False
 
 
+PLACES: dict[str, list[str]] = {}  # full names of everything documented, by the last word
+
+
+def collect_places(_app: Any, environment: Any) -> None:
+    """Note where every documented name stands."""
+    for name in environment.get_domain("py").objects:
+        PLACES.setdefault(name.rpartition(".")[2], []).append(name)
+
+
 def find_in_namespaces(app: Any, environment: Any, node: Any, shown: Any) -> Any:
     """Link a name that stands in another namespace: of the same package first, then of any."""
-    if node.get("refdomain") != "py":
+    target = node.get("reftarget", "")
+    if node.get("refdomain") != "py" or not target:
         return None
     package = ".".join((node.get("py:module") or "").split(".")[:2])
-    domain = environment.get_domain("py")
+    ends = [name for name in PLACES.get(target.rpartition(".")[2], []) if name.endswith(f".{target}")]
     for prefix in (package, "hrsafety"):
-        found = [
-            name for name in domain.objects if name.startswith(f"{prefix}.") and name.endswith(f".{node['reftarget']}")
-        ]
+        found = [name for name in ends if name.startswith(f"{prefix}.")]
         if len(found) == 1:
-            place = domain.objects[found[0]]
+            place = environment.get_domain("py").objects[found[0]]
             return make_refnode(app.builder, node["refdoc"], place.docname, place.node_id, shown, found[0])
     return None
 
 
 def setup(app: Any) -> None:
     """Connect what finds links."""
+    app.connect("env-check-consistency", collect_places)
     app.connect("missing-reference", find_in_namespaces)

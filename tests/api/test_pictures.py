@@ -12,6 +12,8 @@ import pytest
 
 matplotlib = pytest.importorskip("matplotlib")
 
+from api import namespaces  # noqa: E402
+from api.namespaces import public  # noqa: E402
 from hrsafety import impact, plotting, reactive, scenarios, sweep  # noqa: E402  # needs the check above
 from hrsafety import navigation as nav  # noqa: E402
 from hrsafety.plausibility import ResultWarning  # noqa: E402
@@ -227,18 +229,20 @@ def test_picture_can_be_read(name: str) -> None:
     assert_readable(PICTURES[name]())
 
 
-DRAWING = [name for name in plotting.__all__ if not name.startswith("animate") and name != "MissingExtraError"]
+DRAWING = [name for name in public(plotting) if not name.startswith("animate") and name != "MissingExtraError"]
 
 
 @pytest.mark.parametrize("name", DRAWING)
 def test_picture_of_the_example_can_be_read(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     draw, drawn = getattr(plotting, name), []
+    places = [place for place in namespaces.places(plotting) if name in place.__all__]
 
     def keep(*args: Any, **options: Any) -> Any:
         drawn.append(draw(*args, **options))
         return drawn[-1]
 
-    monkeypatch.setattr(plotting, name, keep)
+    for place in places:
+        monkeypatch.setattr(place, name, keep)
     known: dict[str, Any] = {}
     for example in doctest.DocTestParser().get_examples(draw.__doc__):
         exec(compile(example.source, name, "single"), known)

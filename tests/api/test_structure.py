@@ -21,6 +21,7 @@ from typing import Any
 import pytest
 
 import hrsafety
+from api.namespaces import BELOW, places, public
 from hrsafety import impact, reactive
 from hrsafety import navigation as nav
 
@@ -304,7 +305,7 @@ def fields_of(kind: Any) -> list[str]:
 
 def public_fields() -> list[tuple[str, str]]:
     """Return (class, field) for every public record of the packages that compute."""
-    kinds = {name: getattr(module, name) for module in (nav, impact, reactive) for name in module.__all__}
+    kinds = {name: kind for module in (nav, impact, reactive) for name, kind in public(module).items()}
     return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
 
 
@@ -324,16 +325,9 @@ def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
 
 # Modules whose public names users call. Examples stand where a call makes sense on its own.
 DOCUMENTED = (
-    "navigation",
-    *(f"navigation.{name}" for name in ("gains", "laws", "metrics", "robots", "sensing", "tracking", "built")),
-    "impact",
-    *(f"impact.{name}" for name in ("criteria", "identification", "joints")),
-    "reactive",
-    *(f"reactive.{name}" for name in ("follower", "skirt", "sonar", "sound")),
+    *(place.__name__.removeprefix("hrsafety.") for package in BELOW for place in places(package)),
     "scenarios",
     "datasets",
-    "plotting",
-    *(f"plotting.{name}" for name in ("comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps")),
     "reproduce",
     "sweep",
     "tables",
