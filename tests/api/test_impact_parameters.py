@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api.namespaces import public
 from hrsafety import impact
 
 JOINT = impact.Joint(
@@ -67,7 +68,7 @@ def test_printed_form_builds_the_value_again(value: Any, change: dict[str, Any])
     assert "_native" not in repr(value)
     changed = dataclasses.replace(value, **change)
     for each in (value, changed):
-        assert eval(repr(each), {**vars(impact), "inf": math.inf}) == each
+        assert eval(repr(each), {**public(impact), "inf": math.inf}) == each
     assert repr(changed) != repr(value)
 
 
