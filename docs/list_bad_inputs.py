@@ -14,9 +14,10 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "tests"))
 
 from bad_inputs import BAD_INPUTS, message  # noqa: E402  # from the folder of the line above
+from page_tables import print_or_write  # noqa: E402
 
 PAGE = REPOSITORY / "docs" / "bad_inputs.md"
-MARKS = ("<!-- tables of list_bad_inputs.py begin -->\n", "<!-- tables of list_bad_inputs.py end -->\n")
+MARKS = "tables of list_bad_inputs.py"
 
 
 def cell(text: str) -> str:
@@ -43,10 +44,4 @@ def page() -> str:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--write"]):
-        sys.exit("usage: python docs/list_bad_inputs.py [--write]")
-    if sys.argv[1:]:
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(MARKS[0])
-        PAGE.write_text(before + MARKS[0] + page() + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
-    else:
-        print(page())
+    print_or_write(PAGE, {"tables": (MARKS, page)})

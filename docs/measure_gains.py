@@ -6,24 +6,18 @@ docs/validation.md. Nothing here depends on the machine: times are on the page o
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
 from hrsafety.reproduce import gain_claims, gain_deviations, gain_tables
 from hrsafety.reproduce.gain_runs import gain_runs
+from page_tables import DOCS, line, print_or_write
 
-PAGE = Path(__file__).resolve().parent / "validation.md"
-MARKS = ("<!-- tables of measure_gains.py begin -->\n", "<!-- tables of measure_gains.py end -->\n")
+PAGE = DOCS / "validation.md"
+MARKS = "tables of measure_gains.py"
 UNITS = ("N/m", "N/m", "N/m²", "s")
 NAMES = ("$K_1$", "$K_3$", "$K_5$", "$b$")
-
-
-def line(*cells: object) -> str:
-    """Return a row of a table."""
-    return f"| {' | '.join(str(cell) for cell in cells)} |"
 
 
 def optimum() -> Iterator[str]:
@@ -83,16 +77,5 @@ def page() -> str:
     return "\n" + "\n".join(lines) + "\n"
 
 
-def written(text: str) -> str:
-    """Return the tables that the page holds."""
-    return text.split(MARKS[0])[1].split(MARKS[1])[0]
-
-
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--write"]):
-        sys.exit("usage: python docs/measure_gains.py [--write]")
-    if sys.argv[1:]:
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(MARKS[0])
-        PAGE.write_text(before + MARKS[0] + page() + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
-    else:
-        print(page())
+    print_or_write(PAGE, {"tables": (MARKS, page)})

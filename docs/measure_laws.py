@@ -9,23 +9,23 @@ depends on the machine. What is under way is told on the standard error.
 
 from __future__ import annotations
 
-import argparse
+import functools
 import math
 import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
+import measure_shares
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.metrics import Mean, Share
+from hrsafety.navigation.metrics import Mean
+from page_tables import DOCS, head, line, percent, print_or_write
 
-PAGE = Path(__file__).resolve().parent / "validation.md"
-MARKS = ("<!-- tables of measure_laws.py begin -->\n", "<!-- tables of measure_laws.py end -->\n")
+MARKS = "tables of measure_laws.py"
 
 NEW = "New field"
 LAWS: dict[str, nav.Law] = {
@@ -75,16 +75,6 @@ Tuned = tuple[nav.Law, float, float]
 def say(*words: object) -> None:
     """Tell what is under way."""
     print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
-
-
-def line(*cells: object) -> str:
-    """Return a row of a table."""
-    return f"| {' | '.join(str(cell) for cell in cells)} |"
-
-
-def head(*cells: str) -> list[str]:
-    """Return the first two lines of a table."""
-    return [line(*cells), "|---" * len(cells) + "|"]
 
 
 def parameters(law: nav.Law, names: Sequence[str]) -> str:
@@ -201,11 +191,6 @@ def scene_table(laws: dict[str, nav.Law]) -> Iterator[str]:
     yield ""
 
 
-def percent(share: Share) -> str:
-    """Return a share in percent with its interval."""
-    return f"{100 * share.value:.1f} ({100 * share.low:.1f} to {100 * share.high:.1f})"
-
-
 def shown(mean: Mean, digits: int) -> str:
     """Return a mean with its interval."""
     if math.isnan(mean.value):
@@ -240,7 +225,7 @@ def crowd_table(laws: dict[str, nav.Law], result: nav.ArenaResult, obstacles: in
         yield line(
             name,
             each.success.runs,
-            *(percent(share) for share in (each.success, each.contact, each.moving_contact)),
+            *(percent(share.count, share.runs) for share in (each.success, each.contact, each.moving_contact)),
             shown(each.arrival_time, 2),
             shown(each.min_clearance, 3),
             shown(each.energy, 2),
@@ -294,31 +279,6 @@ def page() -> str:
     return "\n" + "\n".join(lines) + "\n"
 
 
-def written(text: str) -> str:
-    """Return the tables that the page holds."""
-    return text.split(MARKS[0])[1].split(MARKS[1])[0]
-
-
-def main() -> None:
-    """Print the tables or write them into the page."""
-    import measure_shares  # beside this file, where a script finds it
-
-    parts = {
-        "arena": (MARKS, page),
-        "shares": (measure_shares.MARKS, lambda: measure_shares.tables(LAWS, ABLATIONS, say)),
-    }
-    parser = argparse.ArgumentParser(description="Tables of all laws in docs/validation.md.")
-    parser.add_argument("--only", choices=parts, help="one part instead of both")
-    parser.add_argument("--write", action="store_true", help="replace the tables of the page")
-    options = parser.parse_args()
-    for (begin, end), made in parts.values() if options.only is None else [parts[options.only]]:
-        tables = made()
-        if not options.write:
-            print(tables)
-            continue
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(begin)
-        PAGE.write_text(before + begin + tables + end + rest.partition(end)[2], encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    shares = functools.partial(measure_shares.tables, LAWS, ABLATIONS, say)
+    print_or_write(DOCS / "validation.md", {"arena": (MARKS, page), "shares": (measure_shares.MARKS, shares)})

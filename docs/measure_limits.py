@@ -7,9 +7,8 @@ the gap between two rectangles; a robot starts at random places before it, and t
 
 from __future__ import annotations
 
-import argparse
 import ast
-import runpy
+import functools
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -21,11 +20,12 @@ import numpy as np
 import hrsafety
 from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
-from hrsafety.navigation.metrics import wilson
 from hrsafety.navigation.trajectory import Outcome
 from hrsafety.reactive.sound.fixes import STATUS_WORDS as FIX_WORDS
+from measure_laws import LAWS
+from page_tables import DOCS, head, line, percent, print_or_write
 
-PAGE = Path(__file__).resolve().parent / "limits.md"
+PAGE = DOCS / "limits.md"
 PARTS = ("corridors", "statuses")
 WIDTHS = (0.5, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
 LENGTH, DEPTH = 2.0, 6.0
@@ -51,34 +51,22 @@ def starts(number: int) -> np.ndarray:
     return np.array([-3.0, -1.0]) + np.array([1.0, 2.0]) * generator.random((number, 2))
 
 
-def percent(count: int, runs: int) -> str:
-    """Return a share in percent with its 95 % Wilson interval."""
-    share = wilson(count, runs)
-    return f"{100 * share.value:.0f} ({100 * share.low:.0f} to {100 * share.high:.0f})"
-
-
 def rows() -> Iterator[str]:
     """Yield the table: through the corridor, around the walls, contact, by law and width."""
-    laws = runpy.run_path(str(PAGE.parent / "measure_laws.py"))["LAWS"]
-    yield f"|  | runs | {' | '.join(f'{width:.1f} m' for width in WIDTHS)} |"
-    yield "|---" * (len(WIDTHS) + 2) + "|"
-    for name, law in laws.items():
+    yield from head("", "runs", *(f"{width:.1f} m" for width in WIDTHS))
+    for name, law in LAWS.items():
         places = starts(SLOW_STARTS.get(name, STARTS))
         cells = []
         for width in WIDTHS:
             runs = nav.simulate_batch([corridor(width, (x, y)) for x, y in places.tolist()], law)
             through = (runs.outcome == "arrived") & (runs.path_length < LONGEST)
             ends = (through, (runs.outcome == "arrived") & ~through, runs.outcome == "collided")
-            cells.append("; ".join(percent(int(each.sum()), len(each)) for each in ends))
+            cells.append("; ".join(percent(int(each.sum()), len(each), digits=0) for each in ends))
         print(name, file=sys.stderr, flush=True)
-        yield f"| {name} | {len(places)} | {' | '.join(cells)} |"
+        yield line(name, len(places), *cells)
 
 
-def marks(part: str) -> tuple[str, str]:
-    """Return the lines between which a table stands on the page."""
-    return f"<!-- {part} of measure_limits.py begin -->\n", f"<!-- {part} of measure_limits.py end -->\n"
-
-
+@functools.cache
 def warning_codes() -> list[str]:
     """Return the codes of all warnings that results carry, as the sources of the package build them."""
     codes = set()
@@ -116,28 +104,5 @@ def table(part: str) -> str:
     return "\n" + "\n".join(lines) + "\n\n"
 
 
-def written(text: str, part: str) -> str:
-    """Return the table that the page holds."""
-    begin, end = marks(part)
-    return text.split(begin)[1].split(end)[0]
-
-
-def main() -> None:
-    """Print the tables or write them into the page."""
-    parser = argparse.ArgumentParser(description="Tables of docs/limits.md.")
-    parser.add_argument("--only", choices=PARTS, help="one table instead of both")
-    parser.add_argument("--write", action="store_true", help="replace the tables of the page")
-    options = parser.parse_args()
-    for part in PARTS if options.only is None else [options.only]:
-        found = table(part)
-        if not options.write:
-            print(found)
-            continue
-        text = PAGE.read_text(encoding="utf-8")
-        begin, end = marks(part)
-        before, _, rest = text.partition(begin)
-        PAGE.write_text(before + begin + found + end + rest.partition(end)[2], encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    print_or_write(PAGE, {part: (f"{part} of measure_limits.py", functools.partial(table, part)) for part in PARTS})

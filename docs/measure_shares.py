@@ -12,16 +12,15 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.metrics import wilson
+from page_tables import DOCS, head, line, shares
 
-PAGE = Path(__file__).resolve().parent / "validation.md"
-MARKS = ("<!-- tables of measure_shares.py begin -->\n", "<!-- tables of measure_shares.py end -->\n")
+PAGE = DOCS / "validation.md"
+MARKS = "tables of measure_shares.py"
 
 SENSINGS: dict[str, nav.Measurement | None] = {
     "exact": None,
@@ -106,6 +105,20 @@ def sized_exactly(obstacle: nav.Human | nav.MovingDisc) -> nav.Human | nav.Movin
     return replace(obstacle, **radii._asdict())
 
 
+def sized_for_sensing(scenario: nav.Scenario) -> nav.Scenario:
+    """Return a scenario with regions for the speed of each obstacle and its sensing, and no smaller than they were."""
+
+    def sized(obstacle: nav.Obstacle) -> nav.Obstacle:
+        known = obstacle
+        if isinstance(obstacle, (nav.Human, nav.MovingDisc)):
+            known = replace(obstacle, max_speed=max(obstacle.max_speed or 0.0, math.hypot(*obstacle.velocity)))
+        radii = nav.region_radii(scenario.robot, known, scenario.control_period, measurement=scenario.measurement)
+        larger = {name: max(radius, getattr(obstacle, name)) for name, radius in radii._asdict().items()}
+        return replace(known, **larger)
+
+    return replace(scenario, obstacles=tuple(map(sized, scenario.obstacles)))
+
+
 def free_at_start(ways: Ways, distance: float = 2.0) -> np.ndarray:
     """Return which people are not near the robot at the start, farther than any critical region."""
     place, course, speed, delay = ways.T
@@ -129,19 +142,6 @@ def crossings(number: int, fastest: float) -> Ways:
         drawn = np.stack(columns, axis=1)
         ways = np.concatenate([ways, drawn[free_at_start(drawn)]])
     return ways[:number]
-
-
-def percent(count: int, runs: int) -> str:
-    """Return a share in percent with its 95 % Wilson interval."""
-    share = wilson(count, runs)
-    return f"{100 * share.value:.1f} ({100 * share.low:.1f} to {100 * share.high:.1f})"
-
-
-def shares(table: nav.BatchSummary) -> str:
-    """Return the shares of runs with a contact while the robot moves, and only while it stands."""
-    moving = table.contacts_moving > 0
-    standing = (table.contacts_standing > 0) & ~moving
-    return "; ".join(percent(int(each.sum()), len(each)) for each in (moving, standing))
 
 
 # ---- adversary ----------------------------------------------------------------------------------
@@ -183,16 +183,6 @@ def adversary(law: nav.Law, condition: Condition, measurement: nav.Measurement |
 
 
 # ---- tables -------------------------------------------------------------------------------------
-
-
-def line(*cells: object) -> str:
-    """Return a row of a table."""
-    return f"| {' | '.join(str(cell) for cell in cells)} |"
-
-
-def head(*cells: str) -> list[str]:
-    """Return the first two lines of a table."""
-    return [line(*cells), "|---" * len(cells) + "|"]
 
 
 def encounter_cell(name: str, law: nav.Law, condition: Condition, sensing: str) -> tuple[str, str]:

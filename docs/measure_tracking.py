@@ -8,20 +8,19 @@ from __future__ import annotations
 
 import itertools
 import math
-import sys
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
+from page_tables import DOCS, print_or_write
 
 Array = npt.NDArray[np.float64]
 
-PAGE = Path(__file__).resolve().parent / "theory" / "tracking.md"
-MARKS = ("<!-- tables of measure_tracking.py begin -->\n", "<!-- tables of measure_tracking.py end -->\n")
+PAGE = DOCS / "theory" / "tracking.md"
+MARKS = "tables of measure_tracking.py"
 PERIODS = (0.06, 0.01)
 MAX_SPEED = 0.7
 STARTS, POSES = 2000, 10_000
@@ -171,10 +170,4 @@ def page() -> str:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--write"]):
-        sys.exit("usage: python docs/measure_tracking.py [--write]")
-    if sys.argv[1:]:
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(MARKS[0])
-        PAGE.write_text(before + MARKS[0] + page() + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
-    else:
-        print(page())
+    print_or_write(PAGE, {"tables": (MARKS, page)})

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import re
-import runpy
 from pathlib import Path
 
 import pytest
 
+import list_bad_inputs
 from bad_inputs import BAD_INPUTS, message
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = (REPOSITORY / "docs" / "bad_inputs.md").read_text(encoding="utf-8")
-SCRIPT = runpy.run_path(str(REPOSITORY / "docs" / "list_bad_inputs.py"))
 CASES = [(name, call) for inputs in BAD_INPUTS.values() for name, call in inputs.items()]
 
 
 @pytest.mark.parametrize(("name", "call"), CASES, ids=[name for name, _ in CASES])
 def test_bad_input_gives_the_message_of_the_page(name: str, call: str, tmp_path: Path) -> None:
     said = message(call, tmp_path.resolve())
-    assert SCRIPT["row"](name, call, said) in PAGE.splitlines()
+    assert list_bad_inputs.row(name, call, said) in PAGE.splitlines()
     assert str(tmp_path) not in said
 
 

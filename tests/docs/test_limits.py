@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-import runpy
 from pathlib import Path
 
 import pytest
 
+import measure_limits
 from hrsafety import navigation as nav
+from measure_laws import LAWS
+from page_tables import written
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = (REPOSITORY / "docs" / "limits.md").read_text(encoding="utf-8")
-SCRIPT = runpy.run_path(str(REPOSITORY / "docs" / "measure_limits.py"))
 ROW = re.compile(r"^\| ([^|]+?) \| (\d+) \| (.+) \|$", re.MULTILINE)
 COLUMNS = {"min_clearance", "contacts_moving", "contacts_standing"}
 """What reports a limit and is a number, not a status."""
@@ -21,18 +22,18 @@ COLUMNS = {"min_clearance", "contacts_moving", "contacts_standing"}
 def passing() -> dict[str, dict[float, tuple[int, int, int]]]:
     """Return the percentages through, around and in contact, by law and width."""
     found = {}
-    for name, _, cells in ROW.findall(SCRIPT["written"](PAGE, "corridors")):
+    for name, _, cells in ROW.findall(written(PAGE, "corridors of measure_limits.py")):
         parts = [tuple(int(share.split()[0]) for share in cell.split("; ")) for cell in cells.split(" | ")]
-        found[name] = dict(zip(SCRIPT["WIDTHS"], parts, strict=True))
+        found[name] = dict(zip(measure_limits.WIDTHS, parts, strict=True))
     return found
 
 
 def test_table_of_statuses_is_that_of_the_code() -> None:
-    assert SCRIPT["written"](PAGE, "statuses") == SCRIPT["table"]("statuses")
+    assert written(PAGE, "statuses of measure_limits.py") == measure_limits.table("statuses")
 
 
 def test_what_reports_a_limit_exists() -> None:
-    known = {word for words in SCRIPT["statuses"]().values() for word in words}
+    known = {word for words in measure_limits.statuses().values() for word in words}
     rows = re.findall(r"^\| [a-z][^|]* \| [^|]*\| ([^|]*)\|$", PAGE, re.MULTILINE)
     named = {word for cell in rows for word in re.findall(r"`(\w+)`", cell)}
     assert len(rows) >= 25
@@ -42,8 +43,7 @@ def test_what_reports_a_limit_exists() -> None:
 
 
 def test_every_law_has_a_row_of_corridors() -> None:
-    laws = runpy.run_path(str(REPOSITORY / "docs" / "measure_laws.py"))["LAWS"]
-    assert set(passing()) == set(laws)
+    assert set(passing()) == set(LAWS)
 
 
 def test_text_quotes_the_corridors() -> None:
@@ -57,16 +57,16 @@ def test_text_quotes_the_corridors() -> None:
 
 @pytest.mark.parametrize("name", ["New field", "Khatib", "Masoud", "Velocity obstacle"])
 def test_corridor_of_a_law_is_what_is_computed(name: str) -> None:
-    law = runpy.run_path(str(REPOSITORY / "docs" / "measure_laws.py"))["LAWS"][name]
-    start = tuple(SCRIPT["starts"](1)[0].tolist())
+    law = LAWS[name]
+    start = tuple(measure_limits.starts(1)[0].tolist())
     for width, (through, _, contact) in passing()[name].items():
-        run = nav.simulate(SCRIPT["corridor"](width, start), law)
+        run = nav.simulate(measure_limits.corridor(width, start), law)
         if through == 100:
             assert run.outcome == "arrived"
         if contact == 100:
             assert run.outcome == "collided"
         if through == contact == 0:
-            assert run.outcome not in ("arrived", "collided") or run.path_length > SCRIPT["LONGEST"]
+            assert run.outcome not in ("arrived", "collided") or run.path_length > measure_limits.LONGEST
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/start.md", "docs/index.md"])

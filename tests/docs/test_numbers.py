@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-import runpy
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import measure_stabilizing
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
+from measure_shares import SENSINGS
+from page_tables import written
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 VALIDATION = (REPOSITORY / "docs" / "validation.md").read_text(encoding="utf-8")
@@ -25,13 +27,6 @@ GAIN_SETS = {
 ROWS = re.findall(
     r"^\| (New\*?), ([cn]\d) \| (.+?) \(.*?\) \| (.+?) \(.*?\) \| (.+?) \(.*?\) \|$", VALIDATION, re.MULTILINE
 )
-
-
-SENSINGS: dict[str, nav.Measurement | None] = {
-    "exact": None,
-    "25 mm noise": nav.Measurement(scale=0.025),
-    "25 mm noise, 0.1 s late": nav.Measurement(scale=0.025, latency=0.1),
-}
 
 
 def crossed(recording: Path, measurement: nav.Measurement | None) -> nav.BatchSummary:
@@ -63,8 +58,44 @@ def test_readme_prints_the_arrival_times_of_the_validation() -> None:
 
 
 def test_tables_of_the_stabilizing_modes_are_what_is_computed() -> None:
-    script = runpy.run_path(str(REPOSITORY / "docs" / "measure_stabilizing.py"))
-    assert script["written"](VALIDATION) == script["page"]()
+    assert written(VALIDATION, measure_stabilizing.MARKS) == measure_stabilizing.page()
+
+
+def sensed_cells(sized: bool) -> dict[str, list[str]]:
+    """Return the cells of a table of contacts with each sensing, by the title of the row."""
+    tables = written(VALIDATION, measure_stabilizing.SENSING_MARKS).strip().split("\n\n")
+    rows = [row.strip("| ").split(" | ") for row in tables[2 * sized + 1].splitlines()[2:]]
+    return {row[0].replace("\\|", "|"): row[2:] for row in rows}
+
+
+@pytest.mark.parametrize("sized", [False, True])
+def test_contacts_of_the_stabilizing_modes_have_every_sensing(sized: bool) -> None:
+    rows = sensed_cells(sized)
+    found = measure_stabilizing
+    assert len(rows) == len(found.EXPERIMENTS) * len(found.GAINS) * len(found.MODES)
+    assert all(len(cells) == len(SENSINGS) for cells in rows.values())
+
+
+@pytest.mark.parametrize("sized", [False, True])
+@pytest.mark.parametrize("sensing", SENSINGS)
+@pytest.mark.parametrize(("name", "body"), [("c2", "people"), ("c3", "people and robot"), ("crowds of 3", "people")])
+def test_contacts_with_a_sensing_are_what_is_computed(name: str, body: str, sensing: str, sized: bool) -> None:
+    column = list(SENSINGS).index(sensing)
+    rows = sensed_cells(sized)
+    for (gains, mode), cell in measure_stabilizing.contact_cells(name, body, sensing, sized).items():
+        title = f"{name}, {body} measured, {measure_stabilizing.GAINS[gains]}, {mode}"
+        assert rows[title][column] == cell
+
+
+def test_text_quotes_the_contacts_with_a_delay() -> None:
+    of_source, sized = sensed_cells(sized=False), sensed_cells(sized=True)
+    people = {title: cells[2] for title, cells in sized.items() if "people measured" in title}
+    assert {cell.split()[0] for cell in people.values()} == {"0.0"}
+    crowds = [float(of_source[title][2].split()[0]) for title in people if title.startswith("crowds of 12")]
+    assert f"{min(crowds):.1f} to {max(crowds):.1f} % in the crowds of 12" in " ".join(VALIDATION.split())
+    narrow = [sized[f"c3, people and robot measured, New, {mode}"][2] for mode in measure_stabilizing.MODES[:3]]
+    shares = [float(cell.split()[0]) for cell in narrow]
+    assert f"in {min(shares):.1f} to {max(shares):.1f} % of the runs" in " ".join(VALIDATION.split())
 
 
 def counts(table: nav.BatchSummary) -> list[int]:

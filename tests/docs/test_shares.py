@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import re
-import runpy
 from pathlib import Path
 
 import pytest
 
+import measure_shares
 from hrsafety import navigation as nav
+from measure_laws import LAWS
+from page_tables import shares, written
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 VALIDATION = (REPOSITORY / "docs" / "validation.md").read_text(encoding="utf-8")
 README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
 FIRST_RUN = (REPOSITORY / "docs" / "guides" / "first_run.md").read_text(encoding="utf-8")
-SCRIPT = runpy.run_path(str(REPOSITORY / "docs" / "measure_shares.py"))
-LAWS = runpy.run_path(str(REPOSITORY / "docs" / "measure_laws.py"))["LAWS"]
-TABLES = VALIDATION.split(SCRIPT["MARKS"][0])[1].split(SCRIPT["MARKS"][1])[0]
+TABLES = written(VALIDATION, measure_shares.MARKS)
 GUIDES = sorted((REPOSITORY / "docs" / "guides").glob("*.md"))
 
 
@@ -36,29 +36,29 @@ def standing(cell: str) -> str:
     return cell.split("; ")[1].split()[0]
 
 
-CONDITIONS = {each: table(each.title) for each in SCRIPT["CONDITIONS"]}
+CONDITIONS = {each: table(each.title) for each in measure_shares.CONDITIONS}
 
 
-@pytest.mark.parametrize("condition", SCRIPT["CONDITIONS"], ids=lambda each: each.title)
-def test_table_of_encounters_has_every_law_and_sensing(condition: object) -> None:
+@pytest.mark.parametrize("condition", measure_shares.CONDITIONS, ids=lambda each: each.title)
+def test_table_of_encounters_has_every_law_and_sensing(condition: measure_shares.Condition) -> None:
     rows = CONDITIONS[condition]
-    by_regions = condition in SCRIPT["CONDITIONS"][2:]
-    assert set(rows) == set(SCRIPT["FIELD_LAWS"] if by_regions else LAWS)
-    assert all(len(cells) == 1 + 2 * len(SCRIPT["SENSINGS"]) for cells in rows.values())
+    by_regions = condition in measure_shares.CONDITIONS[2:]
+    assert set(rows) == set(measure_shares.FIELD_LAWS if by_regions else LAWS)
+    assert all(len(cells) == 1 + 2 * len(measure_shares.SENSINGS) for cells in rows.values())
 
 
 @pytest.mark.parametrize("name", ["New field", "Velocity obstacle", "ORCA"])
 @pytest.mark.parametrize("column", [0, 1, 2])
 def test_shares_of_encounters_are_what_is_computed(name: str, column: int) -> None:
-    condition = SCRIPT["CONDITIONS"][1]
-    measurement = list(SCRIPT["SENSINGS"].values())[column]
-    ways = SCRIPT["crossings"](SCRIPT["ENCOUNTERS"], condition.fastest)
-    scenes = [SCRIPT["encounter"](way, condition, measurement, seed) for seed, way in enumerate(ways)]
-    assert SCRIPT["shares"](nav.simulate_batch(scenes, LAWS[name])) == CONDITIONS[condition][name][1 + 2 * column]
+    condition = measure_shares.CONDITIONS[1]
+    measurement = list(measure_shares.SENSINGS.values())[column]
+    ways = measure_shares.crossings(measure_shares.ENCOUNTERS, condition.fastest)
+    scenes = [measure_shares.encounter(way, condition, measurement, seed) for seed, way in enumerate(ways)]
+    assert shares(nav.simulate_batch(scenes, LAWS[name])) == CONDITIONS[condition][name][1 + 2 * column]
 
 
 def test_readme_prints_the_shares_of_all_sensings() -> None:
-    condition = SCRIPT["CONDITIONS"][1]
+    condition = measure_shares.CONDITIONS[1]
     (line,) = [line for line in README.splitlines() if line.startswith("| moves into a person of up to 1.6 m/s")]
     names = ("New field", "ORCA", "Velocity obstacle")
     expected = [", ".join(moving(CONDITIONS[condition][name][1 + 2 * k]) for name in names) for k in range(3)]
@@ -68,14 +68,14 @@ def test_readme_prints_the_shares_of_all_sensings() -> None:
 def test_readme_prints_the_crowds_of_all_sensings() -> None:
     (line,) = [line for line in README.splitlines() if line.startswith("| moves into somebody in 1,000 crowds")]
     names = ("New field", "ORCA", "Velocity obstacle")
-    crowds = [table(SCRIPT["crowd_title"](number)) for number in (3, 12)]
+    crowds = [table(measure_shares.crowd_title(number)) for number in (3, 12)]
     groups = [", ".join(moving(rows[name][1 + k]) for name in names) for rows in crowds for k in range(3)]
     assert re.findall(r"[\d.]+, [\d.]+, [\d.]+", line.split(" | ")[1]) == groups
 
 
 def test_first_run_says_what_the_speed_of_a_person_costs() -> None:
-    small, large = (CONDITIONS[SCRIPT["CONDITIONS"][k]]["New field"] for k in (1, 2))
-    known = CONDITIONS[SCRIPT["CONDITIONS"][3]]["New field"]
+    small, large = (CONDITIONS[measure_shares.CONDITIONS[k]]["New field"] for k in (1, 2))
+    known = CONDITIONS[measure_shares.CONDITIONS[3]]["New field"]
     words = " ".join(FIRST_RUN.split())
     assert f"walk into the standing robot in {standing(small[1])} % of 1,500" in words
     assert f"in {standing(large[1])} % when they are sized for 1.6 m/s" in words
@@ -84,7 +84,7 @@ def test_first_run_says_what_the_speed_of_a_person_costs() -> None:
 
 
 def test_validation_quotes_its_tables() -> None:
-    slow, fast, sized, known = (CONDITIONS[each] for each in SCRIPT["CONDITIONS"])
+    slow, fast, sized, known = (CONDITIONS[each] for each in measure_shares.CONDITIONS)
     words = " ".join(VALIDATION.split())
     assert f"with regions for 1.0 m/s it moves into {moving(fast['New field'][5])} %" in words
     assert f"know nothing of the sensing into {moving(sized['New field'][5])} %" in words

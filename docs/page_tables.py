@@ -1,0 +1,72 @@
+"""Tables that a script measures, and their place between two marks of a page."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from hrsafety import navigation as nav
+from hrsafety.navigation.metrics import wilson
+
+DOCS = Path(__file__).resolve().parent
+
+
+def line(*cells: object) -> str:
+    """Return a row of a table."""
+    return f"| {' | '.join(str(cell) for cell in cells)} |"
+
+
+def head(*cells: str) -> list[str]:
+    """Return the first two lines of a table."""
+    return [line(*cells), "|---" * len(cells) + "|"]
+
+
+def percent(count: int, runs: int, digits: int = 1) -> str:
+    """Return a share in percent with its 95 % Wilson interval."""
+    share = wilson(count, runs)
+    return f"{100 * share.value:.{digits}f} ({100 * share.low:.{digits}f} to {100 * share.high:.{digits}f})"
+
+
+def shares(table: nav.BatchSummary) -> str:
+    """Return the shares of runs with a contact while the robot moves, and only while it stands."""
+    moving = table.contacts_moving > 0
+    standing = (table.contacts_standing > 0) & ~moving
+    return "; ".join(percent(int(each.sum()), len(each)) for each in (moving, standing))
+
+
+def marks(name: str) -> tuple[str, str]:
+    """Return the lines between which tables stand on a page."""
+    return f"<!-- {name} begin -->\n", f"<!-- {name} end -->\n"
+
+
+def written(text: str, name: str) -> str:
+    """Return the tables that a page holds."""
+    begin, end = marks(name)
+    return text.split(begin)[1].split(end)[0]
+
+
+def print_or_write(page: Path, parts: Mapping[str, tuple[str, Callable[[], str]]]) -> None:
+    """Print tables, or write them into a page: the command line of the scripts that measure.
+
+    Parameters
+    ----------
+    page : Path
+        Where they stand.
+    parts : mapping of str to (str, callable)
+        Name of the marks, and what makes the tables, by the word for ``--only``.
+    """
+    parser = argparse.ArgumentParser(description=f"Tables of {page.relative_to(DOCS.parent)}.")
+    parser.add_argument("--only", choices=parts, help="one part instead of all")
+    parser.add_argument("--write", action="store_true", help="replace the tables of the page")
+    options = parser.parse_args()
+    for name, made in parts.values() if options.only is None else [parts[options.only]]:
+        tables = made()
+        if not options.write:
+            print(tables)
+            continue
+        begin, end = marks(name)
+        before, found, rest = page.read_text(encoding="utf-8").partition(begin)
+        if not found:
+            raise SystemExit(f"{page} has no line {begin.strip()}")
+        page.write_text(before + begin + tables + end + rest.partition(end)[2], encoding="utf-8")
