@@ -126,6 +126,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "crowd of less than nobody": "scenarios.random_crowd(-1, seed=0)",
         "crowd of half a person": "scenarios.random_crowd(2.5, seed=0)",
         "more runs than a recording has": "scenarios.crossings(people, runs=500)",
+        "more runs than memory holds": "scenarios.crossings(people, runs=2**53, selection='even')",
         "critical region below the contact": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=["
         "nav.Disc(center=(2.0, 0.0), radius=0.3, active_radius=0.8, critical_radius=0.4)])",
         "critical clearance below zero": "nav.Disc(center=(2.0, 0.0), radius=0.3, critical_clearance=-0.1)",
@@ -275,6 +276,11 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "scenario that is not TOML": 'scenarios.load("broken.toml")',
         "picture of no run": "plotting.paths([])",
         "picture of a scenario": "plotting.paths([scene])",
+        "frames for a year": 'plotting.animate(nav.simulate(scene, law), "run.gif", speed=1e-6)',
+        "frames without a rate": 'plotting.animate(nav.simulate(scene, law), "run.gif", frames_per_second=None)',
+        "sequence of too many instants": "plotting.time_sequence(nav.simulate(scene, law), instants=2**31)",
+        "overview of too many points": "plotting.sweep_scatter(sweep.run(sweep.Grid([axis]), study), "
+        "'peak_head_acceleration', most=10**9)",
     },
     "Command line": {
         "no command": "hrsafety",

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 __all__ = [
     "MOST_COUNT",
+    "MOST_DRAWN",
     "MOST_DRAWS",
     "MOST_EVALUATIONS",
+    "MOST_FRAMES",
     "MOST_INSTANTS",
     "MOST_LANES",
     "MOST_LAYOUTS",
@@ -49,9 +51,14 @@ MOST_LAYOUTS = 10**7
 MOST_SEEDS = 10**6
 # Runs of all sources together: their delays fill 1.6 GB.
 MOST_RUNS = 10**8
-# Tests of one kind, timed runs, instants of a picture.
+# Tests of one kind, timed runs, runs across a recording.
 MOST_REPEATS = 10**5
-MOST_INSTANTS = 1000
+# Instants of a picture, each a panel or a place.
+MOST_INSTANTS = 24
+# Pictures of an animation: a minute of drawing for every thousand.
+MOST_FRAMES = 6000
+# Points or lines of an overview; a page holds no more that could be told apart.
+MOST_DRAWN = 10**6
 # Samples of a record: 80 MB a column.
 MOST_SAMPLES = 10**7
 # Draws of a bootstrap.

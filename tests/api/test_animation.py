@@ -78,7 +78,7 @@ def test_speed_shortens_an_animation(tmp_path):
         ({"frames_per_second": np.nan}, "frames_per_second must be finite and positive"),
         ({"frames_per_second": 60}, "frames_per_second must be at most 50"),
         ({"speed": -1.0}, "speed must be finite and positive"),
-        ({"speed": 1e-3}, "speed must be high enough"),
+        ({"speed": 1e-3}, "speed must be at least 0.0183 for at most 6000 frames"),
         ({"names": ["a", "b"]}, "names must be 1 strings"),
     ],
 )

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hrsafety import HrsafetyError, InvalidParameterError, datasets, impact, reactive, scenarios, sweep
+from hrsafety import HrsafetyError, InvalidParameterError, datasets, impact, plotting, reactive, scenarios, sweep
 from hrsafety import navigation as nav
 
 HUGE = (2**31, 2**53, 2**63, 2**64, 10**400, 10**5000)
@@ -48,6 +50,13 @@ def searched(**options: Any) -> nav.GainSearch:
     return nav.optimize_gains([SCENE], **(TINY | options))
 
 
+RUN = nav.simulate(SCENE, FIELD)
+FOLLOWED = reactive.follow(reactive.FollowerLayouts(kind="static").scene(0))
+SWEPT = swept()
+WALK = datasets.Recording(time_s=[0.0, 20.0], person=[7, 7], position=[[-10.0, 1.0], [10.0, 1.0]])
+MOVIE = Path(tempfile.gettempdir()) / "never_written.gif"
+
+
 COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "rays": (lambda count: reactive.Sonar(rays=count), (10**9, *HUGE)),
     "skirt rays": (lambda count: reactive.UltrasonicSkirt(rays=count), HUGE),
@@ -83,6 +92,10 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "rows at once": (lambda count: sweep.LatinHypercube([AXIS], 2**53).rows(0, count), (2**31, 2**53)),
     "in_flight": (lambda count: swept(in_flight=count), HUGE),
     "retries": (lambda count: swept(retries=count), HUGE),
+    "runs across a recording": (lambda count: scenarios.crossings(WALK, runs=count, selection="even"), HUGE),
+    "instants": (lambda count: plotting.time_sequence(RUN, instants=count), (25, *HUGE)),
+    "points of an overview": (lambda count: plotting.sweep_scatter(SWEPT, "y", most=count), HUGE),
+    "lines of an overview": (lambda count: plotting.sweep_parallel(SWEPT, "y", most=count), HUGE),
     "sweep threads": (lambda count: swept(threads=count), HUGE),
 }
 
@@ -97,6 +110,9 @@ DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
         ),
         (1e-308, 1e-12, 1e-8),
     ),
+    "frames": (lambda rate: plotting.animate(RUN, MOVIE, frames_per_second=rate), (1e308, 1e9, 2e4)),
+    "pace": (lambda pace: plotting.animate(RUN, MOVIE, speed=pace), (1e-308, 5e-324, 1e-6)),
+    "frames of a follower": (lambda pace: plotting.reactive.animate_follower(FOLLOWED, MOVIE, speed=pace), (5e-324, 1e-6)),
     "step": (lambda step: nav.simulate(SCENE, FIELD, step=step), (1e-308, 1e-12)),
     "time limit": (lambda limit: nav.simulate(replace(SCENE, time_limit=limit), FIELD), (1e308, 1e12)),
     "tracking": (

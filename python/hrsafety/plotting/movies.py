@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import shutil
 import subprocess
@@ -14,6 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import positive
+from hrsafety._bounds import MOST_FRAMES
 from hrsafety.errors import HrsafetyError, InvalidParameterError
 from hrsafety.plotting import style
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 Frame = npt.NDArray[np.uint8]
 
 FASTEST_GIF = 50  # frames per second; viewers slow down anything faster
-MOST_FRAMES = 6000
 LAST_FRAME_TIME = 1.2  # s, for which the end of the run is held
 GIF_TICK_MS = 10  # a GIF counts time in hundredths of a second
 COLORS = 64
@@ -67,14 +67,13 @@ def checked_instants(target: Path, end: float, frames_per_second: float, speed: 
     frames_per_second, speed : float
         Frames in a second of viewing time, and simulated time over viewing time.
     """
-    for name, value in (("frames_per_second", frames_per_second), ("speed", speed)):
-        if isinstance(value, (bool, str)) or not (math.isfinite(value) and value > 0.0):
-            raise InvalidParameterError(name, "be finite and positive", value)
-    if target.suffix.lower() == ".gif" and frames_per_second > FASTEST_GIF:
+    rate, pace = positive("frames_per_second", frames_per_second), positive("speed", speed)
+    if target.suffix.lower() == ".gif" and rate > FASTEST_GIF:
         raise InvalidParameterError("frames_per_second", f"be at most {FASTEST_GIF} for a GIF", frames_per_second)
-    step = speed / frames_per_second
-    if end / step > MOST_FRAMES:
-        raise InvalidParameterError("speed", f"be high enough for at most {MOST_FRAMES} frames", speed)
+    step = pace / rate
+    if step == 0.0 or end > MOST_FRAMES * step:
+        least = end * rate / MOST_FRAMES
+        raise InvalidParameterError("speed", f"be at least {least:.3g} for at most {MOST_FRAMES} frames", speed)
     return np.arange(0.0, end, step)
 
 

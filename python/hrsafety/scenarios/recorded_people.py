@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
+from hrsafety._arguments import count as checked_count
 from hrsafety._arguments import word
+from hrsafety._bounds import MOST_REPEATS
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError, Shown
 
@@ -120,7 +122,7 @@ def crossings(
     recording : Recording
         People.
     runs : int
-        How many runs.
+        How many runs, at most 100,000.
     selection : {"busiest", "even"}
         How start instants are chosen, see above.
     spacing : float
@@ -207,8 +209,7 @@ def _scenario(
 def _check(recording: object, runs: object, selection: object) -> None:
     if not isinstance(recording, Recording):
         raise InvalidParameterError("recording", "be a Recording", recording)
-    if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
-        raise InvalidParameterError("runs", "be an integer, 1 or more", runs)
+    checked_count("runs", runs, most=MOST_REPEATS)
     word("selection", selection, ("busiest", "even"))
 
 

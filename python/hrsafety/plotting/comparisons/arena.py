@@ -9,13 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import vector
+from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, labels, notes, shapes, style
 from hrsafety.plotting.comparisons import law_looks
 from hrsafety.plotting.comparisons.law_looks import Runs
 from hrsafety.plotting.runs.scenes import _draw_path
-from hrsafety.plotting.runs.sequences import COLUMNS, MOST_INSTANTS, _draw_velocity, obstacle_velocity
+from hrsafety.plotting.runs.sequences import COLUMNS, _draw_velocity, obstacle_velocity
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

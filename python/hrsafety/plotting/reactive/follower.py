@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hrsafety._arguments import vector
+from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import labels, style
 
@@ -112,7 +114,10 @@ def _draw_run(axes: Axes, run: FollowerRun, times: Sequence[float] | None, limit
 
     named: list[Annotation] = []
     end = float(run.time[-1])
-    wanted = np.linspace(0.0, end, 5)[1:-1] if times is None else np.array([each for each in times if each < end])
+    chosen = np.linspace(0.0, end, 5)[1:-1] if times is None else vector("times", times)
+    if len(chosen) > MOST_INSTANTS:
+        raise InvalidParameterError("times", f"be at most {MOST_INSTANTS} instants in s", Shown(f"{len(chosen)}"))
+    wanted = chosen[(chosen >= 0.0) & (chosen < end)]
     axes.plot(*run.source.T, color=LEADER_COLOR, linewidth=1.2, linestyle="--")
     axes.plot(*run.source[-1], marker="*", color=LEADER_COLOR, markersize=11, linestyle="none", zorder=5)
     axes.plot(*run.position.T, color=ROBOT_COLOR, zorder=3)

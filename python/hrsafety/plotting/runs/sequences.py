@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hrsafety._arguments import count
+from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import inputs, notes, shapes, style
 
@@ -22,7 +24,6 @@ __all__ = ["time_sequence"]
 
 MARGIN = 0.6  # free space around the path of the robot, in m
 COLUMNS = 3
-MOST_INSTANTS = 24
 LEAST_SPEED = 0.02  # m/s, below which no velocity arrow is drawn
 ROBOT_COLOR = style.RUN_COLORS[0]
 LEGEND_COLUMNS = 4
@@ -124,9 +125,7 @@ def _checked_instants(run: Trajectory, instants: int | Sequence[float]) -> list[
     """Return the instants in s."""
     end = float(run.time[-1])
     if isinstance(instants, (int, np.integer)) and not isinstance(instants, bool):
-        if not 1 <= instants <= MOST_INSTANTS:
-            raise InvalidParameterError("instants", f"be from 1 to {MOST_INSTANTS}", instants)
-        return [float(instant) for instant in np.linspace(0.0, end, int(instants))]
+        return [float(instant) for instant in np.linspace(0.0, end, count("instants", instants, most=MOST_INSTANTS))]
     try:
         chosen = np.asarray(instants, dtype=np.float64)
     except (TypeError, ValueError):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety._arguments import count
+from hrsafety._bounds import MOST_DRAWN
 from hrsafety.plotting import style
 from hrsafety.plotting.inputs import Array
 from hrsafety.plotting.sweeps.lines import (
@@ -42,7 +43,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     column : str
         A column of numbers.
     most : int
-        About the most points of a panel; longer results are drawn from by chance.
+        About the most points of a panel, up to 1,000,000; longer results are drawn from by chance.
     title : str or None
         Title of the figure.
 
@@ -72,7 +73,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     ['foam stiffness (N/m)', 'foam damping (N s/m)']
     """
     drawn, varying = drawn_column(result, column), varying_axes(result)
-    points = _thinned(result, [*(axis.name for axis in varying), column], count("most", most))
+    points = _thinned(result, [*(axis.name for axis in varying), column], count("most", most, most=MOST_DRAWN))
     cases = by_case(result, points[column])
     columns = panels_beside(len(varying))
     rows = math.ceil(len(varying) / columns)
@@ -106,7 +107,7 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     column : str
         A column of numbers.
     most : int
-        About the most lines; longer results are drawn from by chance.
+        About the most lines, up to 1,000,000; longer results are drawn from by chance.
     title : str or None
         Title of the figure.
 
@@ -137,9 +138,8 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     from matplotlib.collections import LineCollection
 
     drawn, varying = drawn_column(result, column), varying_axes(result)
-    points = _thinned(
-        result, [*(axis.name for axis in varying), column], count("most", most) * max(len(result.cases), 1)
-    )
+    number = count("most", most, most=MOST_DRAWN)
+    points = _thinned(result, [*(axis.name for axis in varying), column], number * max(len(result.cases), 1))
     values = points[column].mean(axis=1)
     shown = np.flatnonzero(np.isfinite(values))
     order = shown[np.argsort(values[shown], kind="stable")]
