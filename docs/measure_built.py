@@ -120,7 +120,8 @@ def configuration_page() -> str:
     lines = [
         f"Success, then contact, in percent of {len(SEEDS)} seeds, each with its 95 % Wilson interval; without noise "
         "there is one run, and the cell says how it ended. In c1 and c3 nothing moves, so only the robot's position "
-        "can be noisy. The regions are those of the source; those of the columns *sized* know the sensing.",
+        "can be noisy. The regions are those of the source; those of the columns *sized* are larger by what the "
+        "sensing adds.",
         "",
     ]
     for gains in GAINS:

@@ -106,15 +106,21 @@ def sized_exactly(obstacle: nav.Human | nav.MovingDisc) -> nav.Human | nav.Movin
 
 
 def sized_for_sensing(scenario: nav.Scenario) -> nav.Scenario:
-    """Return a scenario with regions for the speed of each obstacle and its sensing, and no smaller than they were."""
+    """Return a scenario with regions larger by what the speed of each obstacle and its sensing add."""
 
     def sized(obstacle: nav.Obstacle) -> nav.Obstacle:
         known = obstacle
         if isinstance(obstacle, (nav.Human, nav.MovingDisc)):
             known = replace(obstacle, max_speed=max(obstacle.max_speed or 0.0, math.hypot(*obstacle.velocity)))
-        radii = nav.region_radii(scenario.robot, known, scenario.control_period, measurement=scenario.measurement)
-        larger = {name: max(radius, getattr(obstacle, name)) for name, radius in radii._asdict().items()}
-        return replace(known, **larger)
+        robot, period = scenario.robot, scenario.control_period
+        before = nav.region_radii(robot, obstacle, period)
+        after = nav.region_radii(robot, known, period, measurement=scenario.measurement)
+        critical, active = (larger - smaller for larger, smaller in zip(after, before, strict=True))
+        return replace(
+            known,
+            critical_radius=obstacle.critical_radius + critical,
+            active_radius=obstacle.active_radius + active,
+        )
 
     return replace(scenario, obstacles=tuple(map(sized, scenario.obstacles)))
 

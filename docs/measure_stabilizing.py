@@ -154,7 +154,7 @@ def sensing_page() -> str:
     """Return the tables of contacts with each sensing."""
     words = {
         False: "Regions of the source, for people of 1.0 m/s and exact sensing.",
-        True: "Regions sized for the speed of each person and the sensing of each column, and no smaller than those.",
+        True: "Regions sized for the speed of each person and the sensing of each column: larger by what both add.",
     }
     lines = [entry for sized in words for entry in (words[sized], "", *sensing_table(sized))]
     return "\n" + "\n".join(lines) + "\n"

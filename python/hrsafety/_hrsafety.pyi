@@ -115,6 +115,7 @@ __all__ = [
     "region_radii",
     "search_gains",
     "search_gains_globally",
+    "signal_push",
     "simulate",
     "simulate_batch",
     "simulate_direct_drive",
@@ -959,6 +960,9 @@ def foam_fastest(
 
 def hic(time: _Array, acceleration_g: _Array, window: float, interpolate: bool) -> _Triple:
     """Return value, start and end of the head injury criterion of a signal."""
+
+def signal_push(time: _Array, acceleration_g: _Array, start: float, end: float) -> _Triple:
+    """Return the least and the largest value of a signal, and the area of the push around a window."""
 
 def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the largest moving average of a signal."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import io
 import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -65,27 +68,38 @@ def error_line(capsys: pytest.CaptureFixture[str]) -> str:
     return captured.err
 
 
-def test_example_passes_foam_1_and_fails_foams_2_and_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["foam", str(EXAMPLE), "--out", str(tmp_path)]) == 0
-    text = capsys.readouterr().out
+class Answer(NamedTuple):
+    """What the command wrote and printed."""
+
+    folder: Path
+    text: str
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Answer:
+    """Answer the example once for all who look at it."""
+    folder, said = tmp_path_factory.mktemp("example"), io.StringIO()
+    with contextlib.redirect_stdout(said):
+        assert main(["foam", str(EXAMPLE), "--out", str(folder)]) == 0
+    return Answer(folder, said.getvalue())
+
+
+def test_example_passes_foam_1_and_fails_foams_2_and_3(example: Answer) -> None:
+    folder, text = example
     assert verdicts(text) == {"Foam 1": "fits", "Foam 2": "does not fit", "Foam 3": "does not fit"}
     for name in ("summary.html", "boundaries.csv", "boundaries.png"):
-        assert f"wrote {tmp_path / name}" in text
-        assert (tmp_path / name).stat().st_size > 1000
+        assert f"wrote {folder / name}" in text
+        assert (folder / name).stat().st_size > 1000
 
 
-def test_example_fails_foam_2_for_its_compression_and_foam_3_for_its_acceleration(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["foam", str(EXAMPLE), "--out", str(tmp_path)]) == 0
-    lines = {line[:6]: line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("Foam ")}
+def test_example_fails_foam_2_for_its_compression_and_foam_3_for_its_acceleration(example: Answer) -> None:
+    lines = {line[:6]: line.split() for line in example.text.splitlines() if line.startswith("Foam ")}
     assert lines["Foam 2"][-4:-1] == ["5.022", "24.048", "!"]
     assert lines["Foam 3"][-4:-1] == ["11.548", "!", "10.121"]
 
 
-def test_page_is_whole_and_carries_the_picture(tmp_path: Path) -> None:
-    assert main(["foam", str(EXAMPLE), "--out", str(tmp_path)]) == 0
-    text = (tmp_path / "summary.html").read_text(encoding="utf-8")
+def test_page_is_whole_and_carries_the_picture(example: Answer) -> None:
+    text = (example.folder / "summary.html").read_text(encoding="utf-8")
     page = Page()
     page.feed(text)
     assert page.open == []
@@ -94,12 +108,11 @@ def test_page_is_whole_and_carries_the_picture(tmp_path: Path) -> None:
     assert "There are foams that fit" in text
 
 
-def test_boundaries_are_those_of_the_library(tmp_path: Path) -> None:
-    assert main(["foam", str(EXAMPLE), "--out", str(tmp_path)]) == 0
+def test_boundaries_are_those_of_the_library(example: Answer) -> None:
     described = load(str(EXAMPLE))
     design = impact.design_foam(described.manipulator, described.limits, closing_speed=described.closing_speed)
     upper, lower = design.upper(described.damping), design.lower(described.damping)
-    with (tmp_path / "boundaries.csv").open(newline="", encoding="utf-8") as file:
+    with (example.folder / "boundaries.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(described.damping) == 139
     for index in (0, 29, 138):
@@ -110,11 +123,8 @@ def test_boundaries_are_those_of_the_library(tmp_path: Path) -> None:
         assert row["lower_status"] == lower.status[index]
 
 
-def test_fits_up_to_is_the_speed_at_which_a_foam_sits_on_its_limit(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["foam", str(EXAMPLE), "--out", str(tmp_path)]) == 0
-    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("Foam ")]
+def test_fits_up_to_is_the_speed_at_which_a_foam_sits_on_its_limit(example: Answer) -> None:
+    lines = [line for line in example.text.splitlines() if line.startswith("Foam ")]
     described = load(str(EXAMPLE))
     for line in lines:
         name, speed = line[:6], float(line.split()[-1])

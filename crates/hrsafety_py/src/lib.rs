@@ -71,7 +71,7 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::impact::signal::{
         contiguous_level, hic, hic_half_sine, hic_square, hic_triangle, moving_average,
-        recorded_metrics,
+        recorded_metrics, signal_push,
     };
     #[pymodule_export]
     use crate::impact::single::{impact_gradient_names, impact_gradients, impact_metrics};

@@ -107,14 +107,16 @@ impl WheelDrive {
         command: f64,
         start_angle: f64,
         periods: usize,
-    ) -> Bound<'py, PyAny> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let test = OpenLoopTest {
             command,
             start_angle,
             periods,
         };
-        let angles = py.detach(|| wheels::open_loop_angles(&self.0, &test));
-        angles.into_pyarray(py).into_any()
+        let angles = watched(py, Report::none(), |control| {
+            wheels::open_loop_angles(&self.0, &test, &|| control.interrupted())
+        })?;
+        Ok(angles.into_pyarray(py).into_any())
     }
 
     /// Histories of the wheel after a wanted motion, one row per wheel period.

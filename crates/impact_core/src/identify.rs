@@ -12,7 +12,7 @@ mod line;
 pub use cylinder::{CylinderController, DesiredMotion};
 pub use drive::{
     DirectDriveFit, DriveConstants, OpenLoop, PdGains, Tube, TubeInertia, fit_open_loop,
-    identify_direct_drive, pd_gains, tube_inertia,
+    fit_open_loop_until, identify_direct_drive, pd_gains, tube_inertia,
 };
 pub use drop_test::{DropContact, DropModel, drop_trajectory, drop_trajectory_until};
 pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam, identify_foam_until};

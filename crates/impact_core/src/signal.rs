@@ -7,12 +7,14 @@
 mod cells;
 mod closed_form;
 mod injury;
+mod push;
 mod recorded;
 pub(crate) mod search;
 mod windows;
 
 pub use closed_form::{hic_half_sine, hic_square, hic_triangle};
 pub use injury::{HeadInjury, hic, hic_until};
+pub use push::{Push, push_around};
 pub use recorded::Recording;
 pub use windows::{
     Level, contiguous_level, contiguous_level_until, moving_average, moving_average_until,

@@ -154,8 +154,10 @@ pub fn fit_open_loop<'py>(
     time: Samples<'py>,
     angle: Samples<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let fit =
-        identify::fit_open_loop(time.as_slice()?, angle.as_slice()?).map_err(CoreError::from)?;
+    let (time, angle) = (time.as_slice()?, angle.as_slice()?);
+    let fit = watched(py, Report::none(), |control| {
+        identify::fit_open_loop_until(time, angle, &|| control.interrupted())
+    })?;
     let fields = Fields::new(py);
     fields.value("acceleration", fit.acceleration)?;
     fields.value("decay", fit.decay)?;

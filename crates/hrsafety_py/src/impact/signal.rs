@@ -56,6 +56,19 @@ pub fn hic(
     Ok((found.value, found.start, found.end))
 }
 
+/// Extremes of a signal and the area of the push around a window.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+pub fn signal_push(
+    time: Samples<'_>,
+    acceleration_g: Samples<'_>,
+    start: f64,
+    end: f64,
+) -> PyResult<Window> {
+    let found = signal::push_around(time.as_slice()?, acceleration_g.as_slice()?, start, end);
+    Ok((found.least, found.most, found.area))
+}
+
 /// Largest moving average of a signal: value, start, end.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard

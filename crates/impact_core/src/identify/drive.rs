@@ -3,6 +3,7 @@
 use super::check_samples;
 use super::least_squares::{Start, minimize};
 use super::line::{CONFIDENCE, fit_line, student_quantile};
+use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::signal::check_time;
 
@@ -27,6 +28,18 @@ pub struct OpenLoop {
 /// # Errors
 /// Fewer than four samples, times that do not rise, unequal lengths, a joint that does not move.
 pub fn fit_open_loop(time: &[f64], angle: &[f64]) -> Result<OpenLoop> {
+    fit_open_loop_until(time, angle, &|| false)
+}
+
+/// The same unless the caller asks to stop, which is looked at whenever the residuals are asked for.
+///
+/// # Errors
+/// Also that the caller asked to stop.
+pub fn fit_open_loop_until(
+    time: &[f64],
+    angle: &[f64],
+    interrupted: Interrupted<'_>,
+) -> Result<OpenLoop> {
     check_time("time", time)?;
     let like_time = "have as many values as time, at least 4";
     check_samples("angle", angle, time.len(), 4, like_time)?;
@@ -52,12 +65,19 @@ pub fn fit_open_loop(time: &[f64], angle: &[f64]) -> Result<OpenLoop> {
         lower: vec![f64::NEG_INFINITY; 2],
     };
     let found = minimize(&start, |parameters| {
+        if interrupted() {
+            // Without residuals there is nothing left to minimize.
+            return Vec::new();
+        }
         let pairs = elapsed.iter().zip(angle);
         pairs
             .map(|(time, angle)| angle - parameters[0] * time * time * lag(parameters[1] * time))
             .collect()
-    })
-    .ok_or_else(moving)?;
+    });
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    let found = found.ok_or_else(moving)?;
     let degrees = elapsed.len() - 2;
     let squares: f64 = found.residuals.iter().map(|left| left * left).sum();
     let variance = squares / degrees as f64;

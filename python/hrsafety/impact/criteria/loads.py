@@ -172,6 +172,11 @@ class MovingLevel(_Window):
 # Faster ones would only overflow: loads go with up to the power 2.5 of the speed.
 MOST_SPEED = 1e100
 _LEAST_PLAUSIBLE, _MOST_PLAUSIBLE = RANGES["closing_speed"][:2]
+# Ends of the ranges of the mean step, the smallest and largest acceleration and the gained velocity.
+_PLAUSIBLE_SIGNAL = tuple(
+    RANGES[name][:2]
+    for name in ("sampling_step", "head_acceleration_g", "head_acceleration_g", "head_velocity_gain")
+)
 
 
 def check_speeds(closing_speed: float, manipulator_speed: float | None = None) -> None:
@@ -261,7 +266,9 @@ def metrics(
         # Classes are checked only when something went wrong: the call takes microseconds.
         check_parts(manipulator, foam, head)
         raise
-    doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(closing_speed, manipulator_speed)
+    doubts = manipulator.warnings + foam.warnings + head.warnings
+    if manipulator_speed is not None or not _LEAST_PLAUSIBLE <= closing_speed <= _MOST_PLAUSIBLE:
+        doubts += speed_warnings(closing_speed, manipulator_speed)
     return judged(values, foam, doubts)
 
 
@@ -402,19 +409,15 @@ def _moving_level(
 
 def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doubts:
     """Return what is doubtful about a sampled acceleration, from its mean step, its peaks and its strongest window."""
-    first, last = np.searchsorted(time, (window.start, window.end))
-    # The whole push around the window: back and on to where the acceleration changes its sign.
-    ends = np.flatnonzero(acceleration_g <= 0.0)
-    before, after = ends.searchsorted((first, last))
-    push = slice(ends[before - 1] + 1 if before else 0, ends[after] if after < len(ends) else None)
-    acceleration, instants = acceleration_g[push], time[push]
-    with np.errstate(over="ignore", invalid="ignore"):
-        areas = (acceleration[1:] + acceleration[:-1]) * (instants[1:] - instants[:-1])
-        gain = 0.5 * STANDARD_GRAVITY * float(areas.sum())
+    least, most, area = _hrsafety.signal_push(time, acceleration_g, window.start, window.end)
+    values = (float(time[-1] - time[0]) / (len(time) - 1), least, most, STANDARD_GRAVITY * area)
+    if all(low <= value <= high for value, (low, high) in zip(values, _PLAUSIBLE_SIGNAL, strict=True)):
+        return ()  # nearly always, and far faster than building the sentences
+    step, _, _, gain = values
     return implausible(
         {
-            "time": float(time[-1] - time[0]) / (len(time) - 1),
-            "acceleration_g": np.array([acceleration_g.min(), acceleration_g.max()]),
+            "time": step,
+            "acceleration_g": np.array([least, most]),
             "velocity that the head gains by acceleration_g": gain,
         },
         {

@@ -7,7 +7,7 @@ use super::reference::WheelWish;
 use crate::error::{Failure, Result};
 
 /// Periods between two looks at whether to stop.
-const LOOK: usize = 1 << 14;
+pub(super) const LOOK: usize = 1 << 14;
 
 /// What a wheel did, one value for each wish; states are those of the moment of the wish, currents
 /// and voltages those of the period after it.

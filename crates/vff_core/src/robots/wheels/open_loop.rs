@@ -2,6 +2,8 @@
 
 use super::drive::WheelDrive;
 use super::dynamics::{HeldStep, WheelState};
+use super::follow::LOOK;
+use crate::error::{Failure, Result};
 
 /// One open-loop test from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +18,14 @@ pub struct OpenLoopTest {
 
 /// Angle turned since the start as the encoder reads it, in rad, at the start and after every wheel
 /// period.
-#[must_use]
-pub fn open_loop_angles(drive: &WheelDrive, test: &OpenLoopTest) -> Vec<f64> {
+///
+/// # Errors
+/// The caller asks to stop.
+pub fn open_loop_angles(
+    drive: &WheelDrive,
+    test: &OpenLoopTest,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Vec<f64>> {
     let step = HeldStep::new(&drive.dynamics, drive.period);
     let mut state = WheelState {
         angle: test.start_angle,
@@ -26,12 +34,15 @@ pub fn open_loop_angles(drive: &WheelDrive, test: &OpenLoopTest) -> Vec<f64> {
     let zero = drive.read(state.angle);
     let mut angles = Vec::with_capacity(test.periods + 1);
     angles.push(0.0);
-    for _ in 0..test.periods {
+    for period in 0..test.periods {
+        if period % LOOK == 0 && interrupted() {
+            return Err(Failure::Interrupted);
+        }
         let wanted = drive.motor.amplifier_gain * test.command;
         state = step.advance(state, drive.motor.limited(wanted, state.speed));
         angles.push(drive.read(state.angle) - zero);
     }
-    angles
+    Ok(angles)
 }
 
 #[cfg(test)]
@@ -50,7 +61,7 @@ mod tests {
     #[test]
     fn angles_are_those_of_the_formula_to_half_a_count() {
         let drive = holonomic_wheels()[2];
-        let angles = open_loop_angles(&drive, &test(-0.4));
+        let angles = open_loop_angles(&drive, &test(-0.4), &|| false).unwrap();
         let (decay, slope): (f64, f64) = (0.37, -(155.0 * 0.4 - 28.3));
         for (index, angle) in angles.iter().enumerate() {
             let x = decay * index as f64 * 1e-3;
@@ -61,9 +72,9 @@ mod tests {
 
     #[test]
     fn friction_holds_the_second_wheel_at_a_quarter_volt() {
-        let angles = open_loop_angles(&differential_wheels()[1], &test(0.25));
+        let angles = open_loop_angles(&differential_wheels()[1], &test(0.25), &|| false).unwrap();
         assert!(angles.iter().all(|&angle| angle == 0.0));
-        let moved = open_loop_angles(&differential_wheels()[1], &test(0.3));
+        let moved = open_loop_angles(&differential_wheels()[1], &test(0.3), &|| false).unwrap();
         assert!(moved[1000] > 1.0);
     }
 }

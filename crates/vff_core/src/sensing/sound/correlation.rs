@@ -129,7 +129,19 @@ impl Correlator {
     /// Likeness of M1 with M2 and with M3 at the lags `-limit ..= limit`.
     ///
     /// Two real channels share each transform, and so do the two real results.
-    pub fn curves(&mut self, channels: [&[f64]; 3], phase_of: Option<PhaseBins>) -> [Vec<f64>; 2] {
+    ///
+    /// # Errors
+    /// The caller asks to stop, which is looked at between the transforms.
+    pub fn curves(
+        &mut self,
+        channels: [&[f64]; 3],
+        phase_of: Option<PhaseBins>,
+        interrupted: Interrupted<'_>,
+    ) -> Result<[Vec<f64>; 2]> {
+        let attend = || match interrupted() {
+            true => Err(Failure::Interrupted),
+            false => Ok(()),
+        };
         let zero = Number::new(0.0, 0.0);
         self.first.fill(zero);
         self.others.fill(zero);
@@ -140,10 +152,13 @@ impl Correlator {
         for (bin, (second, third)) in self.others.iter_mut().zip(pairs) {
             *bin = Number::new(*second, *third);
         }
+        attend()?;
         self.forward
             .process_with_scratch(&mut self.first, &mut self.scratch);
+        attend()?;
         self.forward
             .process_with_scratch(&mut self.others, &mut self.scratch);
+        attend()?;
         let scale = match phase_of {
             None => {
                 self.multiply();
@@ -151,9 +166,10 @@ impl Correlator {
             }
             Some(bins) => self.multiply_phases(bins),
         };
+        attend()?;
         self.inverse
             .process_with_scratch(&mut self.others, &mut self.scratch);
-        self.unpacked(scale, phase_of.is_none())
+        Ok(self.unpacked(scale, phase_of.is_none()))
     }
 
     /// Products with the conjugate spectrum of M1.

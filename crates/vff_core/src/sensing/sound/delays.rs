@@ -176,7 +176,7 @@ impl DelayFinder {
                     }
                     _ => None,
                 };
-                correlator.curves([first, second, third], bins)
+                correlator.curves([first, second, third], bins, interrupted)?
             }
         };
         // A transform has the lags of the outer pair for both.
