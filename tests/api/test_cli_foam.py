@@ -10,10 +10,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from hrsafety import impact
 from hrsafety.cli import main
+from hrsafety.cli.foam_curves import Remembered
 from hrsafety.cli.foam_file import load
 from hrsafety.cli.parsers import _FOAM_EXAMPLE, parser
 
@@ -264,3 +266,22 @@ def test_guide_prints_the_loads_and_verdicts_of_the_example() -> None:
         assert words == f"{name}, {foam.stiffness / 1000.0:g} kN/m, {foam.damping:g} N s/m"
         assert (acceleration, compression) == tuple(f"{load:.2f}" for load in loads)
         assert verdict.startswith("fits" if design.accepts(foam) else "does not fit")
+
+
+def test_remembered_boundaries_are_those_of_the_design_and_computed_once() -> None:
+    described = load(str(EXAMPLE))
+    design = impact.design_foam(described.manipulator, described.limits, closing_speed=described.closing_speed)
+    asked: list[float] = []
+
+    def lower(damping: np.ndarray) -> impact.FoamBoundary:
+        asked.extend(damping.tolist())
+        return design.lower(damping)
+
+    curve = Remembered(lower)
+    for damping in ([0.0, 100.0, 340.0], [0.0, 50.0, 100.0], [340.0, 50.0, 340.0]):
+        found, expected = curve(np.array(damping)), design.lower(damping)
+        for name in ("damping", "stiffness", "status", "limited_by", "holds_below", "holds_above"):
+            np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+        assert [each.tolist() for each in found.crossings] == [each.tolist() for each in expected.crossings]
+        assert found.crossing_status == expected.crossing_status
+    assert asked == [0.0, 100.0, 340.0, 50.0]

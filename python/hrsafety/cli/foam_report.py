@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from hrsafety import impact
-from hrsafety.cli.foam_file import Array, FoamDesignFile
+from hrsafety.cli.foam_file import FoamDesignFile
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Check", "FoamReport", "Judged", "Range"]
@@ -106,8 +106,6 @@ class FoamReport:
         Widest range of stiffness that keeps the margin, if any foam does.
     feasibility : FoamFeasibility
         Whether some foam of the range of damping fits with the margin, and up to which closing speed.
-    fitting : (ndarray, ndarray)
-        Least and largest stiffness that keep the limits at each damping, without a margin.
     warnings : tuple of ResultWarning
         Numbers of the file that are hardly what was meant.
     """
@@ -118,5 +116,4 @@ class FoamReport:
     foams: tuple[Judged, ...]
     widest: Range | None
     feasibility: impact.FoamFeasibility
-    fitting: tuple[Array, Array]
     warnings: tuple[ResultWarning, ...] = ()

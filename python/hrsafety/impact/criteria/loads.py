@@ -174,8 +174,7 @@ MOST_SPEED = 1e100
 _LEAST_PLAUSIBLE, _MOST_PLAUSIBLE = RANGES["closing_speed"][:2]
 # Ends of the ranges of the mean step, the smallest and largest acceleration and the gained velocity.
 _PLAUSIBLE_SIGNAL = tuple(
-    RANGES[name][:2]
-    for name in ("sampling_step", "head_acceleration_g", "head_acceleration_g", "head_velocity_gain")
+    RANGES[name][:2] for name in ("sampling_step", "head_acceleration_g", "head_acceleration_g", "head_velocity_gain")
 )
 
 
