@@ -112,7 +112,10 @@ DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
     ),
     "frames": (lambda rate: plotting.animate(RUN, MOVIE, frames_per_second=rate), (1e308, 1e9, 2e4)),
     "pace": (lambda pace: plotting.animate(RUN, MOVIE, speed=pace), (1e-308, 5e-324, 1e-6)),
-    "frames of a follower": (lambda pace: plotting.reactive.animate_follower(FOLLOWED, MOVIE, speed=pace), (5e-324, 1e-6)),
+    "frames of a follower": (
+        lambda pace: plotting.reactive.animate_follower(FOLLOWED, MOVIE, speed=pace),
+        (5e-324, 1e-6),
+    ),
     "step": (lambda step: nav.simulate(SCENE, FIELD, step=step), (1e-308, 1e-12)),
     "time limit": (lambda limit: nav.simulate(replace(SCENE, time_limit=limit), FIELD), (1e308, 1e12)),
     "tracking": (
