@@ -24,13 +24,7 @@ _INSTANTS = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
 def make() -> list[Picture]:
-    """Draw every picture.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source's figures.
-    """
+    """Draw every picture."""
     return [picture(name, caption, draw()) for name, caption, draw in _pictures()]
 
 

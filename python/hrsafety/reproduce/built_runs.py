@@ -28,18 +28,7 @@ EXPERIMENTS = {
 
 
 def scene(name: str) -> nav.Scenario:
-    """Return a configuration with the robot of its chapter: two wheels for chapter 7.
-
-    Parameters
-    ----------
-    name : str
-        ``c1`` to ``c4``, ``n1`` to ``n4`` or ``multiple_obstacles``.
-
-    Returns
-    -------
-    Scenario
-        A two-wheel robot looks at the goal at first.
-    """
+    """Return a configuration with the robot of its chapter: two wheels for chapter 7."""
     scenario = scenarios.configuration(name)
     if name.startswith("c"):
         return scenario
@@ -48,34 +37,12 @@ def scene(name: str) -> nav.Scenario:
 
 @functools.cache
 def score(name: str) -> nav.Performance:
-    """Return the run of a configuration with the two-wheel robot, ideal wheels and exact sensing.
-
-    Parameters
-    ----------
-    name : str
-        ``n1`` to ``n4`` or ``multiple_obstacles``.
-
-    Returns
-    -------
-    Performance
-        Run, free run and score; the law without its stabilizing force.
-    """
+    """Return the run of a configuration with the two-wheel robot, ideal wheels and exact sensing."""
     return nav.evaluate(scene(name), LAW)
 
 
 def two_wheels(name: str) -> Measured:
-    """Return the numbers of `score` under the names of the tables.
-
-    Parameters
-    ----------
-    name : str
-        ``n1`` to ``n4``.
-
-    Returns
-    -------
-    Measured
-        The run.
-    """
+    """Return the numbers of `score` under the names of the tables."""
     result = score(name)
     run, free = result.trajectory, result.nominal
     distances = _by_kind(run.scenario, run.min_distance)
@@ -90,19 +57,7 @@ def two_wheels(name: str) -> Measured:
 
 
 def as_built(scenario: nav.Scenario) -> nav.robots.AsBuilt:
-    """Return the robot of a scenario as the source describes it: wheels, and the camera's mean error.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        Whose robot.
-
-    Returns
-    -------
-    AsBuilt
-        Wheels with controllers, 16.7 frames per second with a mean error of 4 mm of robot and person,
-        velocities by difference, no slip, no delay.
-    """
+    """Return the robot of a scenario as the source describes it: wheels, and the camera's mean error."""
     holonomic = isinstance(scenario.robot, nav.HolonomicRobot)
     camera = nav.sensing.Vision(error=nav.sensing.PositionNoise(distribution="gaussian", scale=0.0032))
     return nav.robots.AsBuilt(
@@ -114,20 +69,7 @@ def as_built(scenario: nav.Scenario) -> nav.robots.AsBuilt:
 
 @functools.cache
 def repeated(name: str, seeds: int = SEEDS) -> nav.metrics.Repeated:
-    """Return noisy runs of a configuration with the robot as built.
-
-    Parameters
-    ----------
-    name : str
-        Configuration.
-    seeds : int
-        Number of runs.
-
-    Returns
-    -------
-    Repeated
-        The runs.
-    """
+    """Return noisy runs of a configuration with the robot as built."""
     scenario = scene(name)
     return nav.metrics.repeat(scenario, LAW, seeds=seeds, built=as_built(scenario))
 
@@ -152,18 +94,7 @@ class Experiment:
 
 @functools.cache
 def experiment(table: str) -> Experiment:
-    """Return the noisy runs in the place of the experiment of a table.
-
-    Parameters
-    ----------
-    table : str
-        Number of the table, among `EXPERIMENTS`.
-
-    Returns
-    -------
-    Experiment
-        Medians and shares.
-    """
+    """Return the noisy runs in the place of the experiment of a table."""
     runs = repeated(EXPERIMENTS[table])
     scenario = runs.scenario
     free = nav.built.evaluate_built(scenario, LAW, built=as_built(scenario)).nominal

@@ -32,35 +32,14 @@ _EARLIER = (
 
 
 def experiment_cell(table: str, row: str, column: str, *, printed: float, unit: str) -> Cell:
-    """Return a cell of an experiment beside the noisy runs.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place.
-    printed : float
-        As printed.
-    unit : str
-        Of both values.
-
-    Returns
-    -------
-    Cell
-        Without verdict.
-    """
+    """Return a cell of an experiment beside the noisy runs."""
     found = experiment(table)
     reason = _NOISY.format(arrived=found.success.count, runs=SEEDS, more=_MORE.get(column[0], "")).strip()
     return listed(table, row, column, printed=printed, measured=found.values[column], unit=unit, reason=reason)
 
 
 def multiple_obstacles() -> Iterator[Cell]:
-    """Yield what section 7.5.5 says about a person, a disc and a robot at once.
-
-    Yields
-    ------
-    Cell
-        Contact and arrival, arrival time, and when the robot meets and leaves each obstacle.
-    """
+    """Yield what section 7.5.5 says about a person, a disc and a robot at once."""
     run = score("multiple_obstacles").trajectory
     least = ", ".join(f"{word} {run.min_distance[index]:.2f} m" for word, (index, _, _) in _ENCOUNTERS.items())
     yield claim(

@@ -18,13 +18,7 @@ SPEED, WALKED = 1.0, 3.4  # m/s and m, of the person of configuration 2
 
 
 def make() -> list[Picture]:
-    """Draw errors of the calibrated camera and estimated velocities.
-
-    Returns
-    -------
-    list of Picture
-        Two pictures.
-    """
+    """Draw errors of the calibrated camera and estimated velocities."""
     noise = camera_tables.NOISES[-1]
     time = np.arange(0.0, END + 0.5 * STEP, STEP)
     walking = time < WALKED / SPEED

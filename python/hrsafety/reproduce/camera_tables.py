@@ -41,29 +41,12 @@ NEW_PLACES = (
 
 @cache
 def study(noise: float) -> nav.sensing.CalibrationStudy:
-    """Return calibrations of the printed camera with noise.
-
-    Parameters
-    ----------
-    noise : float
-        Standard deviation of each coordinate in pixels.
-
-    Returns
-    -------
-    CalibrationStudy
-        200 calibrations, made once.
-    """
+    """Return calibrations of the printed camera with noise."""
     return nav.sensing.calibration_study(pixel_deviation_px=noise, seeds=SEEDS)
 
 
 def cells() -> list[Cell]:
-    """Return the cells of section D.4.
-
-    Returns
-    -------
-    list of Cell
-        Numbers of the camera, then errors of positions.
-    """
+    """Return the cells of section D.4."""
     return [*_camera(), *_errors()]
 
 

@@ -38,18 +38,7 @@ ENERGY = Tolerance(0.25, relative=True)
 
 
 def tolerance_of(column: str) -> Tolerance:
-    """Return the tolerance of a column by its name.
-
-    Parameters
-    ----------
-    column : str
-        Name as in the published tables, for example ``"T_arrive_2"``.
-
-    Returns
-    -------
-    Tolerance
-        Bound and kind.
-    """
+    """Return the tolerance of a column by its name."""
     for prefix, tolerance in (("T_", ARRIVAL_TIME), ("d_", DISTANCE), ("H", SCORE), ("L_", ENERGY)):
         if column.startswith(prefix):
             return tolerance
@@ -110,24 +99,7 @@ class Cell:
         tolerance: Tolerance,
         unit: str,
     ) -> Cell:
-        """Return the cell of a measured value, judged; its reason is still empty.
-
-        Parameters
-        ----------
-        table, row, column : str
-            Place.
-        printed, measured : float
-            Values in ``unit``; a measured NaN (no arrival) is never within.
-        tolerance : Tolerance
-            What counts as agreement.
-        unit : str
-            Unit of both values.
-
-        Returns
-        -------
-        Cell
-            With deviation and verdict.
-        """
+        """Return the cell of a measured value, judged; its reason is still empty."""
         deviation = measured - printed
         if tolerance.relative:
             deviation /= printed
@@ -148,24 +120,7 @@ class Cell:
 
     @classmethod
     def listed(cls, *, table: str, row: str, column: str, printed: float | str, unit: str, reason: str) -> Cell:
-        """Return the cell of a printed value that nothing was measured for.
-
-        Parameters
-        ----------
-        table, row, column : str
-            Place.
-        printed : float or str
-            Value as printed.
-        unit : str
-            Its unit.
-        reason : str
-            Why there is no measured value.
-
-        Returns
-        -------
-        Cell
-            Without measured value and verdict.
-        """
+        """Return the cell of a printed value that nothing was measured for."""
         return cls(
             table=table,
             row=row,

@@ -31,18 +31,7 @@ _KEPT = (
 
 
 def section(result: Study) -> Iterator[str]:
-    """Yield the comparison of the stabilizing modes.
-
-    Parameters
-    ----------
-    result : Study
-        What to show.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield the comparison of the stabilizing modes."""
     yield _RULE + _KEPT
     yield _rankings(result.rankings)
     yield "<p>Shares of runs stand with their 95 % Wilson intervals.</p>"

@@ -63,29 +63,12 @@ class Picture:
 
 
 def make() -> list[Picture]:
-    """Draw every picture.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source's figures.
-    """
+    """Draw every picture."""
     return [picture(name, caption, draw()) for name, caption, draw in _pictures()]
 
 
 def of_study(study: Study) -> list[Picture]:
-    """Draw outcomes and clearances of the experiments with many runs.
-
-    Parameters
-    ----------
-    study : Study
-        The comparison of the stabilizing modes.
-
-    Returns
-    -------
-    list of Picture
-        Two pictures for each kind of crowd and one for each kind of noise.
-    """
+    """Draw outcomes and clearances of the experiments with many runs."""
     pictures = []
     side = next(iter(SIDES))
     for experiment in dict.fromkeys(key.experiment for key in study.runs):
@@ -119,22 +102,7 @@ def _outcomes(groups: Mapping[str, Outcomes]) -> Figure:
 
 
 def picture(name: str, caption: str, figure: Figure) -> Picture:
-    """Return a figure as a picture of the page.
-
-    Parameters
-    ----------
-    name : str
-        File name without ending.
-    caption : str
-        What it shows.
-    figure : matplotlib.figure.Figure
-        What to render.
-
-    Returns
-    -------
-    Picture
-        Rendered as PNG.
-    """
+    """Return a figure as a picture of the page."""
     from PIL import Image  # comes with matplotlib
 
     drawn, content = io.BytesIO(), io.BytesIO()
@@ -180,30 +148,7 @@ def paths_and_distances(
     whose: str = "",
     relation: str = "as",
 ) -> Iterator[Drawing]:
-    """Yield paths and distances of runs through one scene.
-
-    Parameters
-    ----------
-    runs : sequence of Trajectory
-        The runs.
-    labels : sequence of str
-        One name for each run.
-    numbers : (str, str)
-        Numbers of the source's figures of paths and of distances.
-    name : str
-        End of the file names.
-    where : str
-        End of the captions: scene and law.
-    whose : str
-        Whose paths they are, for the caption.
-    relation : str
-        ``"as"`` or ``"in place of"`` the source's figures.
-
-    Yields
-    ------
-    tuple
-        Name, caption and drawing function.
-    """
+    """Yield paths and distances of runs through one scene."""
     paths, distances = numbers
     yield (
         f"figure-{paths}-paths-{name}",

@@ -46,18 +46,7 @@ _MORE_SENSITIVE = {
 
 
 def search(runs: GainRuns) -> Iterator[Cell]:
-    """Yield what section C.2 says about the search beside the own one.
-
-    Parameters
-    ----------
-    runs : GainRuns
-        With the search.
-
-    Yields
-    ------
-    Cell
-        Sizes and increments of the grids, and the local searches.
-    """
+    """Yield what section C.2 says about the search beside the own one."""
     rounds = runs.search.history
     sizes = [entry.evaluations for entry in rounds]
     yield claim(
@@ -92,18 +81,7 @@ def search(runs: GainRuns) -> Iterator[Cell]:
 
 
 def sensitivities(runs: GainRuns) -> Iterator[Cell]:
-    """Yield the largest and average sensitivities of the text of section C.3.
-
-    Parameters
-    ----------
-    runs : GainRuns
-        With one gain changed at a time.
-
-    Yields
-    ------
-    Cell
-        Two for each gain.
-    """
+    """Yield the largest and average sensitivities of the text of section C.3."""
     found = (100.0 * runs.changed.largest_sensitivity(), 100.0 * runs.changed.average_sensitivity())
     for index, (name, printed) in enumerate(_SENSITIVITIES.items()):
         for word, value, measured in zip(("largest", "average"), printed, found, strict=True):
@@ -125,18 +103,7 @@ def sensitivities(runs: GainRuns) -> Iterator[Cell]:
 
 
 def trends(runs: GainRuns) -> Iterator[Cell]:
-    """Yield what the source says about trends, with the own numbers and whether they hold.
-
-    Parameters
-    ----------
-    runs : GainRuns
-        With one gain changed at a time.
-
-    Yields
-    ------
-    Cell
-        First what is reproduced, then what is not.
-    """
+    """Yield what the source says about trends, with the own numbers and whether they hold."""
     yield from _monotone(runs)
     yield _flat(runs)
     yield from _insensitive(runs)
@@ -264,41 +231,13 @@ def _energy(runs: GainRuns) -> Iterator[Cell]:
 
 
 def column(runs: GainRuns, gain: str, quantity: str, place: int) -> Array:
-    """Return a quantity of one configuration over the changes of a gain.
-
-    Parameters
-    ----------
-    runs : GainRuns
-        With one gain changed at a time.
-    gain, quantity : str
-        Names as in the tables.
-    place : int
-        Index of the configuration.
-
-    Returns
-    -------
-    ndarray, shape (changes,)
-        In the order of `CHANGES_PERCENT`.
-    """
+    """Return a quantity of one configuration over the changes of a gain."""
     index = list(GAIN_TABLES).index(gain)
     rows = (runs.measured(index, change)[place] for change in range(len(CHANGES_PERCENT)))
     return np.array([row.values[quantity] for row in rows])
 
 
 def printed_column(gain: str, name: str, *, scores: bool = False) -> Array:
-    """Return a printed column over the changes of a gain.
-
-    Parameters
-    ----------
-    gain, name : str
-        Names as in the tables.
-    scores : bool
-        Whether it is a column of the table of scores.
-
-    Returns
-    -------
-    ndarray, shape (changes,)
-        In the order of `CHANGES_PERCENT`.
-    """
+    """Return a printed column over the changes of a gain."""
     rows = {row["change_percent"]: row for row in printed_rows(GAIN_TABLES[gain][scores])}
     return np.array([float(rows[change][name]) for change in CHANGES_PERCENT])

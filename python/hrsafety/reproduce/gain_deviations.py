@@ -38,18 +38,7 @@ _QUANTITIES = (("T", ("T_arrive",)), ("d", ("d_circle_min", "d_human_min", "d_re
 
 
 def deviations(cells: Sequence[Cell]) -> Iterator[Deviation]:
-    """Yield the deviations of T, d and H in each configuration over all rows of Tables C.2 to C.9.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        The cells of the tables, and any others.
-
-    Yields
-    ------
-    Deviation
-        Configuration by configuration.
-    """
+    """Yield the deviations of T, d and H in each configuration over all rows of Tables C.2 to C.9."""
     tables = {table for pair in GAIN_TABLES.values() for table in pair}
     own = [cell for cell in cells if cell.table in tables and isinstance(cell.measured, float)]
     for place in (1, 2, 3):

@@ -10,13 +10,7 @@ __all__ = ["make"]
 
 
 def make() -> list[Picture]:
-    """Draw flatness, history and sensitivity.
-
-    Returns
-    -------
-    list of Picture
-        Three pictures.
-    """
+    """Draw flatness, history and sensitivity."""
     runs = gain_runs()
     printed = {"printed optimum": (runs.changed.law.gains, float(runs.changed.reference_performance.mean()))}
     share = f"{100.0 * runs.flatness.tolerance:g} %"

@@ -28,20 +28,7 @@ _FOLDED = tuple(f"C.{number}" for number in range(2, 10))
 
 
 def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
-    """Yield tables, claims and pictures of appendix C.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Cells of the page; those of other parts are left out.
-    pictures : sequence of Picture
-        Pictures of the search.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield tables, claims and pictures of appendix C."""
     yield _INTRO
     tables = markup.by_table(cells)
     for table in _SUMMARY:

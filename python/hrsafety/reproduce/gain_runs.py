@@ -58,34 +58,12 @@ class GainRuns:
     flatness: nav.gains.Flatness
 
     def measured(self, gain: int, change: int) -> list[Measured]:
-        """Return the runs of one gain set under the names of the tables, one for each configuration.
-
-        Parameters
-        ----------
-        gain, change : int
-            Indices of the gain and of its change.
-
-        Returns
-        -------
-        list of Measured
-            In the order of `CONFIGURATIONS`.
-        """
+        """Return the runs of one gain set under the names of the tables, one for each configuration."""
         nominal = (float(self.nominal_time[gain, change]), float(self.nominal_energy[gain, change]))
         return _measured(self.changed, gain, change, nominal)
 
     def at_zero(self, gain: int) -> list[Measured]:
-        """Return the runs with one gain at zero, one for each configuration, without T* and L*.
-
-        Parameters
-        ----------
-        gain : int
-            Index of the gain.
-
-        Returns
-        -------
-        list of Measured
-            In the order of `CONFIGURATIONS`.
-        """
+        """Return the runs with one gain at zero, one for each configuration, without T* and L*."""
         return _measured(self.zero, gain, 0, (math.nan, math.nan))
 
 
@@ -113,13 +91,7 @@ def _measured(table: nav.gains.GainSensitivity, gain: int, change: int, nominal:
 
 @cache
 def gain_runs() -> GainRuns:
-    """Run everything that appendix C is compared with, once in a process.
-
-    Returns
-    -------
-    GainRuns
-        With the stabilizing force off, as the printed tables were made.
-    """
+    """Run everything that appendix C is compared with, once in a process."""
     places = [scenarios.configuration(name) for name in CONFIGURATIONS]
     attraction, repulsion, detour, ratio = GAIN_SETS["new_vff_optimised"]
     law = nav.VirtualForceField(

@@ -23,14 +23,7 @@ _SENSITIVITY_ROUNDING_PERCENT = 0.5e-2
 
 
 def appendix_c() -> list[Cell]:
-    """Return the cells of Tables C.1 to C.9 and the claims of sections C.2 and C.3.
-
-    Returns
-    -------
-    list of Cell
-        Every printed number once, one cell for each outcome that the tables have in words, and
-        one for each claim of the text.
-    """
+    """Return the cells of Tables C.1 to C.9 and the claims of sections C.2 and C.3."""
     runs = gain_runs()
     cells = [*_optimum(runs), *gain_claims.search(runs)]
     for index, (distances, scores) in enumerate(GAIN_TABLES.values()):

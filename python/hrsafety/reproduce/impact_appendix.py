@@ -22,13 +22,7 @@ RECOVERED = Tolerance(0.05, relative=True)  # of one seed; intervals are tested 
 
 
 def cells() -> list[Cell]:
-    """Return the cells of appendix A.
-
-    Returns
-    -------
-    list of Cell
-        Sections A.1 to A.3 and Table A.1.
-    """
+    """Return the cells of appendix A."""
     return [*_foam(), *impact_rig.arm(), *_table(), *_constants(), *_gains(), *_saturation(), *impact_rig.cylinder()]
 
 
@@ -154,13 +148,7 @@ def _constants() -> Iterator[Cell]:
 
 @cache
 def drives() -> dict[str, impact.joints.DirectDrive]:
-    """Return the joint of Manipulator 1 with the printed constants and with the right ones.
-
-    Returns
-    -------
-    dict of str to DirectDrive
-        ``"printed"`` and ``"right"``; gains for 20 kN/m and 250 N s/m.
-    """
+    """Return the joint of Manipulator 1 with the printed constants and with the right ones."""
     fit = _fit()
     wanted = manipulator(1)
     made = {}

@@ -63,13 +63,7 @@ class ParameterSet:
 
 @cache
 def parameter_sets() -> tuple[ParameterSet, ParameterSet]:
-    """Return the two readings: as printed, and as measured in appendix A.
-
-    Returns
-    -------
-    tuple of ParameterSet
-        A and B.
-    """
+    """Return the two readings: as printed, and as measured in appendix A."""
     soft = {13.8: impact.Foam(stiffness=13800.0, damping=43.8)}
     printed = ParameterSet(
         name="A",
@@ -89,54 +83,19 @@ def parameter_sets() -> tuple[ParameterSet, ParameterSet]:
 
 
 def manipulator(number: int, **changes: float) -> impact.Manipulator:
-    """Return a manipulator of Table 3.1, with changes.
-
-    Parameters
-    ----------
-    number : int
-        1 (direct drive) or 2 (Puma 560).
-    **changes : float
-        Other mass, damping or stiffness.
-
-    Returns
-    -------
-    Manipulator
-        At the impact point.
-    """
+    """Return a manipulator of Table 3.1, with changes."""
     row = _row("3.1", "manipulator", number)
     values: dict[str, Any] = {"mass": row["M_r"], "damping": row["C_r"], "stiffness": KILO * row["K_r"]}
     return impact.Manipulator(**(values | changes))
 
 
 def published_lever_arm(number: int) -> float:
-    """Return the distance in m at which Table 3.1 gives a manipulator.
-
-    Parameters
-    ----------
-    number : int
-        1 or 2.
-
-    Returns
-    -------
-    float
-        l_1.
-    """
+    """Return the distance in m at which Table 3.1 gives a manipulator."""
     return float(_row("3.1", "manipulator", number)["l_1"])
 
 
 def foam(number: int) -> impact.Foam:
-    """Return a foam of Table 3.3.
-
-    Parameters
-    ----------
-    number : int
-        1 to 3.
-
-    Returns
-    -------
-    Foam
-        As printed.
-    """
+    """Return a foam of Table 3.3."""
     row = _row("3.3", "foam", number)
     return impact.Foam(stiffness=KILO * row["K_c"], damping=row["C_c"])
 
@@ -147,13 +106,7 @@ def damping_ratios() -> dict[int, float]:
 
 
 def simulations() -> dict[int, tuple[impact.Manipulator, impact.Head]]:
-    """Return manipulator and head of the four simulations of Table 3.2.
-
-    Returns
-    -------
-    dict of int to (Manipulator, Head)
-        By number of the simulation.
-    """
+    """Return manipulator and head of the four simulations of Table 3.2."""
     return {
         row["simulation"]: (
             manipulator(row["manipulator"]),
@@ -169,19 +122,6 @@ def _row(table: str, key: str, number: int) -> dict[str, Any]:
 
 
 def printed_metrics(arm: impact.Manipulator, head: impact.Head) -> impact.ImpactMetrics:
-    """Return the peaks that the printed coefficient q_2 of (3.5.14) gives with the foam of the figures.
-
-    Parameters
-    ----------
-    arm : Manipulator
-        What hits.
-    head : Head
-        What is hit.
-
-    Returns
-    -------
-    ImpactMetrics
-        Peaks and impact period; the other numbers are NaN.
-    """
+    """Return the peaks that the printed coefficient q_2 of (3.5.14) gives with the foam of the figures."""
     run = impact.simulate(arm, FOAM_OF_FIGURES, head, closing_speed=CLOSING_SPEED, equations="as_printed")
     return run.metrics

@@ -34,26 +34,7 @@ def number(
     unit: str,
     reason: str = "",
 ) -> Cell:
-    """Return a judged number; the reason is kept only where it is off or says what to know.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place.
-    printed, measured : float
-        Values in ``unit``.
-    tolerance : Tolerance
-        What counts as agreement.
-    unit : str
-        Unit of both.
-    reason : str
-        Why they differ.
-
-    Returns
-    -------
-    Cell
-        With verdict.
-    """
+    """Return a judged number; the reason is kept only where it is off or says what to know."""
     cell = Cell.compared(
         table=table,
         row=row,
@@ -67,26 +48,7 @@ def number(
 
 
 def claim(table: str, row: str, column: str, *, printed: str, measured: str, holds: bool, reason: str = "") -> Cell:
-    """Return a judged claim in words.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place.
-    printed : str
-        What the source says, in own words.
-    measured : str
-        What was found, with numbers.
-    holds : bool
-        Whether the claim holds.
-    reason : str
-        Why not, or what to know.
-
-    Returns
-    -------
-    Cell
-        With verdict and without deviation.
-    """
+    """Return a judged claim in words."""
     cell = Cell.listed(table=table, row=row, column=column, printed=printed, unit="", reason=reason)
     return replace(cell, measured=measured, within=bool(holds))
 
@@ -94,26 +56,7 @@ def claim(table: str, row: str, column: str, *, printed: str, measured: str, hol
 def listed(
     table: str, row: str, column: str, *, printed: float | str, measured: float | str, unit: str, reason: str
 ) -> Cell:
-    """Return a value beside another that is no judgment of the source, for example an experiment.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place.
-    printed : float or str
-        Printed value.
-    measured : float or str
-        Own value.
-    unit : str
-        Unit of both.
-    reason : str
-        What the comparison is.
-
-    Returns
-    -------
-    Cell
-        With deviation, without verdict.
-    """
+    """Return a value beside another that is no judgment of the source, for example an experiment."""
     cell = Cell.listed(table=table, row=row, column=column, printed=printed, unit=unit, reason=reason)
     if isinstance(printed, str) or isinstance(measured, str):
         return replace(cell, measured=measured)

@@ -33,13 +33,7 @@ _RATIO = "A ratio of parameters of Tables 3.1 and 3.2."
 
 
 def cells() -> list[Cell]:
-    """Return the cells of sections 3.6 and 3.9.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the text.
-    """
+    """Return the cells of sections 3.6 and 3.9."""
     return [*_section_6(), *_section_9()]
 
 

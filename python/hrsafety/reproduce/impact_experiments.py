@@ -26,13 +26,7 @@ _RUN_BY_RUN = "Printed simulations against printed single runs, relative to the 
 
 
 def cells() -> list[Cell]:
-    """Return the cells of sections 4.3 to 4.5.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the text.
-    """
+    """Return the cells of sections 4.3 to 4.5."""
     return [*_direct_drive(), *_puma(), *_conclusions()]
 
 

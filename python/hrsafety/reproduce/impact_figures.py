@@ -45,13 +45,7 @@ Drawing = tuple[str, str, Callable[[], "Figure"]]
 
 
 def make() -> list[Picture]:
-    """Draw every picture.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source's figures.
-    """
+    """Draw every picture."""
     return [picture(name, caption, draw()) for name, caption, draw in _drawings()]
 
 

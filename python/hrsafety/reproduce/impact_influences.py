@@ -23,13 +23,7 @@ def _ratio_percent(first: float, second: float) -> float:
 
 
 def cells() -> list[Cell]:
-    """Return the cells of section 3.7.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the text.
-    """
+    """Return the cells of section 3.7."""
     return [*_mass_and_stiffness(), *_foam_parameters(), *_impact_point()]
 
 

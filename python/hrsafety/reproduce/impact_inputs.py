@@ -12,13 +12,7 @@ _NAMES = {"3.1": ("manipulator", "Manipulator"), "3.2": ("simulation", "Simulati
 
 
 def cells() -> list[Cell]:
-    """Return the printed parameters of manipulators, heads and foams, without verdicts.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the source.
-    """
+    """Return the printed parameters of manipulators, heads and foams, without verdicts."""
     found: list[Cell] = []
     for number, (key, name) in _NAMES.items():
         table = published_tables()[f"zeng2011:{number}"]

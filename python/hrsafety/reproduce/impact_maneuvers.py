@@ -48,18 +48,7 @@ def _accelerated(acceleration: float, *, feed_forward: bool) -> impact.ImpactRes
 
 @cache
 def maneuvers(*, feed_forward: bool) -> dict[str, impact.ImpactResponse]:
-    """Return the impacts of Fig. 3.17.
-
-    Parameters
-    ----------
-    feed_forward : bool
-        Whether the control feeds the acceleration forward.
-
-    Returns
-    -------
-    dict of str to ImpactResponse
-        Constant speed, speeding up, slowing down.
-    """
+    """Return the impacts of Fig. 3.17."""
     return {
         "constant speed": _run(impact.SetPoint()),
         "speeding up": _accelerated(ACCELERATION, feed_forward=feed_forward),
@@ -69,13 +58,7 @@ def maneuvers(*, feed_forward: bool) -> dict[str, impact.ImpactResponse]:
 
 @cache
 def stops() -> dict[str, impact.ImpactResponse]:
-    """Return the impact without and with a stop after detection.
-
-    Returns
-    -------
-    dict of str to ImpactResponse
-        Constant speed until 4 ms, at rest at 50 ms.
-    """
+    """Return the impact without and with a stop after detection."""
     braking = [
         impact.SetPoint.stopping(
             manipulator_speed=MANIPULATOR_SPEED, detection=DETECTION, rest=LASTING, feed_forward=feed_forward
@@ -90,13 +73,7 @@ def stops() -> dict[str, impact.ImpactResponse]:
 
 
 def cells() -> list[Cell]:
-    """Return the cells of section 3.8.
-
-    Returns
-    -------
-    list of Cell
-        Percentages of acceleration and deceleration, and the stop after detection.
-    """
+    """Return the cells of section 3.8."""
     return [*_percentages(), *_stopped()]
 
 

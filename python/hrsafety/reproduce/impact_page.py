@@ -30,20 +30,7 @@ _DIGITS = {"a_h_max": 3, "impact_period": 4, "compression_max": 5}
 
 
 def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
-    """Yield the tables, claims and pictures of the impact part.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        All cells of the part.
-    pictures : sequence of Picture
-        Its pictures.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield the tables, claims and pictures of the impact part."""
     yield _INTRO
     yield markup.count_table(cells)
     groups = markup.by_table(cells)

@@ -19,13 +19,7 @@ __all__ = ["cells", "pictures"]
 
 
 def cells() -> list[Cell]:
-    """Return every cell of chapters 3 and 4 and appendix A.
-
-    Returns
-    -------
-    list of Cell
-        Tables 3.1 to 3.3, sections 3.6 to 3.9, Tables 4.1 and 4.2, sections 4.3 to 4.5, appendix A.
-    """
+    """Return every cell of chapters 3 and 4 and appendix A."""
     chapter_3 = sorted(
         [*impact_claims.cells(), *impact_influences.cells(), *impact_maneuvers.cells()], key=lambda cell: cell.table
     )
@@ -39,11 +33,5 @@ def cells() -> list[Cell]:
 
 
 def pictures() -> list[Picture]:
-    """Return every picture of the part.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source's figures.
-    """
+    """Return every picture of the part."""
     return impact_figures.make()

@@ -98,24 +98,12 @@ class Experiment:
 
 @cache
 def experiments() -> tuple[Experiment, ...]:
-    """Return every row of both tables with its exact responses.
-
-    Returns
-    -------
-    tuple of Experiment
-        Fifteen rows.
-    """
+    """Return every row of both tables with its exact responses."""
     return tuple([*_direct_drive(), *_puma()])
 
 
 def cells() -> list[Cell]:
-    """Return a cell for every printed simulation (twice, sets A and B) and every experiment.
-
-    Returns
-    -------
-    list of Cell
-        Table by table.
-    """
+    """Return a cell for every printed simulation (twice, sets A and B) and every experiment."""
     return [cell for row in experiments() for cell in _cells_of(row)]
 
 

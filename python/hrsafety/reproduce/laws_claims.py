@@ -37,18 +37,7 @@ _OWN_PARAMETERS = (
 
 
 def cells(study: LawsStudy) -> list[Cell]:
-    """Return every claim of the part.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        The runs.
-
-    Returns
-    -------
-    list of Cell
-        Sections 2.2.5, 5.7, 6.4.1, 6.4.2 and 6.4.5.
-    """
+    """Return every claim of the part."""
     return [*_collinear(study), *_unpredictable(study), *_oscillation(study), *_head_on(), *_parallel(study)]
 
 

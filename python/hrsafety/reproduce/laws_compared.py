@@ -67,13 +67,7 @@ _COURSE = math.radians(30.0)
 
 
 def printed_walk() -> nav.Scenario:
-    """Return the scenario of section 5.7 as printed.
-
-    Returns
-    -------
-    Scenario
-        The person walks 1 s at 1 m/s, slows down at 1 m/s^2 to rest and walks off sideways.
-    """
+    """Return the scenario of section 5.7 as printed."""
     return scenarios.configuration("unpredictable_human")
 
 
@@ -85,16 +79,6 @@ def varied_walk(seed: int) -> nav.Scenario:
     walking time from 0.5 to 2.0 s, the deceleration to rest and the acceleration afterwards from
     0.5 to 2.0 m/s^2, the speed reached from 0.5 to 1.0 m/s, and the course: left or right with
     equal chance, within 30 degrees of straight across. Nothing is drawn again or left out.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of the draw and of the scenario.
-
-    Returns
-    -------
-    Scenario
-        The same for the same seed.
     """
     draw = np.random.Generator(np.random.PCG64(seed)).random(9).tolist()
 

@@ -24,18 +24,7 @@ OSCILLATION_TIME = 12.0  # s
 
 
 def make(study: LawsStudy) -> list[Picture]:
-    """Draw both demonstrations.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        The runs.
-
-    Returns
-    -------
-    list of Picture
-        Two pictures.
-    """
+    """Draw both demonstrations."""
     return [
         picture(
             "figure-2.5-collinear",

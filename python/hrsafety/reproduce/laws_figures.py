@@ -37,18 +37,7 @@ CONTACT: dict[str, Any] = {
 
 
 def make(study: LawsStudy) -> list[Picture]:
-    """Draw paths, distances and instants with the unpredictable person, and Figs 6.19 and 6.20.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        The runs.
-
-    Returns
-    -------
-    list of Picture
-        Six pictures.
-    """
+    """Draw paths, distances and instants with the unpredictable person, and Figs 6.19 and 6.20."""
     walk = "a person who slows down to rest and walks off sideways"
     parallel = [study.parallel["new_vff"], study.parallel["masoud"]]
     labels = ["New VFF", "Masoud"]

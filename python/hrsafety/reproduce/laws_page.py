@@ -48,22 +48,7 @@ _CATEGORIES = (
 
 
 def section(study: LawsStudy, cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
-    """Yield tables, claims and pictures of the compared laws.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        The runs.
-    cells : sequence of Cell
-        Cells of the page; those of other parts are left out.
-    pictures : sequence of Picture
-        Pictures of the part.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield tables, claims and pictures of the compared laws."""
     yield _INTRO
     tables = markup.by_table(cells)
     yield "<h3>Demonstrations of section 2.2.5</h3>" + _demonstrations(study)

@@ -131,18 +131,7 @@ class LawsStudy:
 
 
 def compare(progress: Callable[[str], object] | None = None) -> LawsStudy:
-    """Run every law with the printed walk and its variations, and the demonstrations.
-
-    Parameters
-    ----------
-    progress : callable or None
-        Called with a line of text when a law begins.
-
-    Returns
-    -------
-    LawsStudy
-        The same in every run.
-    """
+    """Run every law with the printed walk and its variations, and the demonstrations."""
     everything = {**COMPARED, **LIKE_SOURCE}
     walks = [varied_walk(seed) for seed in range(WALKS)]
     varied = {}
@@ -215,18 +204,7 @@ def _scores(law: nav.Law) -> Array:
 
 
 def rows(study: LawsStudy) -> list[dict[str, Any]]:
-    """Return one row for each law with the unpredictable person, columns with units.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        The runs.
-
-    Returns
-    -------
-    list of dict
-        Unknown numbers are None.
-    """
+    """Return one row for each law with the unpredictable person, columns with units."""
     table = []
     for name, entry in {**COMPARED, **LIKE_SOURCE}.items():
         run, many = study.printed[name], study.varied[name]

@@ -52,18 +52,7 @@ _VERDICTS = {None: ("none", "&ndash;"), True: ("good", "&#10003; yes"), False: (
 
 
 def by_table(cells: Iterable[Cell]) -> dict[str, list[Cell]]:
-    """Return cells grouped by the table they belong to.
-
-    Parameters
-    ----------
-    cells : iterable of Cell
-        Any cells.
-
-    Returns
-    -------
-    dict of str to list of Cell
-        In the order of first appearance.
-    """
+    """Return cells grouped by the table they belong to."""
     groups: dict[str, list[Cell]] = {}
     for cell in cells:
         groups.setdefault(cell.table, []).append(cell)
@@ -71,18 +60,7 @@ def by_table(cells: Iterable[Cell]) -> dict[str, list[Cell]]:
 
 
 def counts(cells: Sequence[Cell]) -> str:
-    """Return the table that counts agreements by published table.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        All cells.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Return the table that counts agreements by published table."""
     return (
         f"<p><strong>{_agreement(cells)}</strong> {_WHY}</p><p>Tolerances: arrival time "
         "5 %, distance 6 %, energy 25 %, score H 0.03; a sensitivity must agree within the rounding of the printed "
@@ -101,18 +79,7 @@ _WHY = (
 
 
 def count_table(cells: Sequence[Cell]) -> str:
-    """Return how many values agree, by published table, without the tolerances.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        The cells of a part.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Return how many values agree, by published table, without the tolerances."""
     return f"<p><strong>{_agreement(cells)}</strong></p>" + _count_lines(cells)
 
 
@@ -129,18 +96,7 @@ def _count_lines(cells: Sequence[Cell]) -> str:
 
 
 def anchor(table: str) -> str:
-    """Return the name that a link to a table leads to.
-
-    Parameters
-    ----------
-    table : str
-        Number of a table, or ``"Section"`` and the number of a section.
-
-    Returns
-    -------
-    str
-        Without spaces.
-    """
+    """Return the name that a link to a table leads to."""
     return f"table-{table.replace(' ', '-')}"
 
 
@@ -155,20 +111,7 @@ def _count_row(name: str, cells: Sequence[Cell]) -> str:
 
 
 def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
-    """Return one published table: printed, measured, deviation, verdict and reason.
-
-    Parameters
-    ----------
-    table : str
-        Its number.
-    cells : sequence of Cell
-        Its cells.
-
-    Returns
-    -------
-    str
-        HTML. Tables C.2 to C.9 come as a matrix first and as a folded list.
-    """
+    """Return one published table: printed, measured, deviation, verdict and reason."""
     judged = [cell for cell in cells if cell.within is not None]
     within = sum(bool(cell.within) for cell in judged)
     verdict = f"{within} of {len(judged)} within tolerance" if judged else "inputs"
@@ -182,22 +125,7 @@ def table_of_cells(table: str, cells: Sequence[Cell]) -> str:
 
 
 def table_with_pictures(table: str, cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
-    """Yield one published table and, below it, the pictures that belong to it.
-
-    Parameters
-    ----------
-    table : str
-        Its number.
-    cells : sequence of Cell
-        Its cells.
-    pictures : sequence of Picture
-        Pictures of the part.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield one published table and, below it, the pictures that belong to it."""
     yield table_of_cells(table, cells)
     yield from figures(placement.of_table(table, pictures))
 
@@ -328,20 +256,7 @@ def _signed(value: float, cell: Cell, *, sign: bool = True) -> str:
 
 
 def head(names: Sequence[str], *, escaped: bool = False) -> str:
-    """Return the head of a table.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the columns.
-    escaped : bool
-        Whether they are HTML already.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Return the head of a table."""
     looks = (' class="text"' if name in _LEFT else "" for name in names)
     titles = (name if escaped else escape(name) for name in names)
     cells = "".join(f'<th scope="col"{look}>{title}</th>' for look, title in zip(looks, titles, strict=True))
@@ -349,58 +264,19 @@ def head(names: Sequence[str], *, escaped: bool = False) -> str:
 
 
 def scroll(content: str) -> str:
-    """Return wide content in a box that scrolls sideways on a small screen.
-
-    Parameters
-    ----------
-    content : str
-        HTML.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Return wide content in a box that scrolls sideways on a small screen."""
     return f'<div class="scroll">{content}</div>'
 
 
 def figures(pictures: Iterable[Picture], *beginnings: str) -> Iterator[str]:
-    """Yield pictures with their captions, embedded.
-
-    Parameters
-    ----------
-    pictures : iterable of Picture
-        What to show.
-    *beginnings : str
-        Only pictures whose names begin with one of these; all without any.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield pictures with their captions, embedded."""
     for each in pictures:
         if each.name.startswith(beginnings or ""):
             yield figure(each.caption, each.png, name=each.name)
 
 
 def figure(caption: str, png: bytes, *, name: str = "") -> str:
-    """Return a picture with its caption, embedded.
-
-    Parameters
-    ----------
-    caption : str
-        What it shows.
-    png : bytes
-        The picture.
-    name : str, default ""
-        What a link to it names; empty: nothing can lead to it.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """Return a picture with its caption, embedded."""
     data = base64.b64encode(png).decode("ascii")
     words = escape(caption)
     link = f' id="{escape(name)}"' if name else ""

@@ -74,20 +74,7 @@ class Measured:
 
 
 def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]]:
-    """Run every gain set in every configuration, stabilizing force off, in one batch.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Configurations, see `hrsafety.scenarios.configuration`.
-    gains : iterable of tuple
-        Gain sets K_1, K_3, K_5, b.
-
-    Returns
-    -------
-    list of list of Measured
-        Indexed by gain set, then configuration.
-    """
+    """Run every gain set in every configuration, stabilizing force off, in one batch."""
     places = [scenarios.configuration(name) for name in names]
     sets = np.array(list(gains), dtype=np.float64)
     summary = nav.simulate_batch(places, nav.VirtualForceField(stabilizing="off"), sets)
@@ -96,20 +83,7 @@ def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]
 
 
 def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list[Measured]]:
-    """Run the law of each row of the tables in every configuration.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Configurations, see `hrsafety.scenarios.configuration`.
-    methods : iterable of str
-        Rows, among `LAWS`.
-
-    Returns
-    -------
-    dict of str to list of Measured
-        By row; indexed by configuration.
-    """
+    """Run the law of each row of the tables in every configuration."""
     places = [scenarios.configuration(name) for name in names]
     runs = {}
     for method in methods:
@@ -146,20 +120,6 @@ def score_of_parts(run: Measured, *, time: float, energy: float, distances: Mapp
     """Return the score H that given times, energies and distances would have.
 
     ``H = (T*/T + mean of min(d_s/d_s*, 1) + L*/L) / 3`` with the T* and L* of the run.
-
-    Parameters
-    ----------
-    run : Measured
-        Gives T*, L* and the regions of the obstacles.
-    time, energy : float
-        T in s, L in J.
-    distances : mapping of str to float
-        Least distances in m by column name.
-
-    Returns
-    -------
-    float
-        The score.
     """
     shares = []
     for obstacle in run.scenario.obstacles:

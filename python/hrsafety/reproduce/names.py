@@ -87,36 +87,12 @@ _COLUMNS = {
 
 
 def row_label(row: str) -> str:
-    """Return the name of a row.
-
-    Parameters
-    ----------
-    row : str
-        Key of the row in the published tables, or a change in percent.
-
-    Returns
-    -------
-    str
-        Plain text.
-    """
+    """Return the name of a row."""
     return _ROWS.get(row, row)
 
 
 def column_label(column: str, unit: str = "") -> str:
-    """Return the name of a column, with its unit if it has one.
-
-    Parameters
-    ----------
-    column : str
-        Key of the column in the published tables.
-    unit : str
-        Unit; none is shown for ``"1"`` and for empty ones.
-
-    Returns
-    -------
-    str
-        Plain text that needs no escaping in HTML.
-    """
+    """Return the name of a column, with its unit if it has one."""
     match = re.fullmatch(r"((?:T|L|d|outcome).*?)_([123])", column)
     stem, where = (match[1], f", c{match[2]}") if match else (column, "")
     name = _COLUMNS.get(stem) or re.sub(r"_(\d|max|[a-z]{1,2}(?:,max)?)\b", r"<sub>\1</sub>", stem)

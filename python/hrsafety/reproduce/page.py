@@ -99,20 +99,7 @@ class Report:
 
 
 def write(report: Report, folder: Path) -> Path:
-    """Write the page, the values and the pictures, each file whole or not at all.
-
-    Parameters
-    ----------
-    report : Report
-        What was measured.
-    folder : Path
-        Existing folder.
-
-    Returns
-    -------
-    Path
-        The page, written last.
-    """
+    """Write the page, the values and the pictures, each file whole or not at all."""
     if report.all_pictures:
         (folder / "figures").mkdir(exist_ok=True)
     for picture in report.all_pictures:
@@ -130,18 +117,7 @@ def write(report: Report, folder: Path) -> Path:
 
 
 def html(report: Report) -> str:
-    """Return the page: style and pictures inside, nothing loaded from elsewhere.
-
-    Parameters
-    ----------
-    report : Report
-        What was measured.
-
-    Returns
-    -------
-    str
-        A complete HTML document.
-    """
+    """Return the page: style and pictures inside, nothing loaded from elsewhere."""
     style = resources.files("hrsafety.reproduce").joinpath("page.css").read_text(encoding="utf-8")
     return "\n".join(
         [

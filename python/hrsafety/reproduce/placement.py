@@ -36,38 +36,12 @@ _PLACES: dict[str, tuple[str, ...]] = {
 
 
 def of_table(table: str, pictures: Iterable[Picture]) -> list[Picture]:
-    """Return the pictures that stand beside a table.
-
-    Parameters
-    ----------
-    table : str
-        Number of the table, or ``"Section"`` and the number of a section.
-    pictures : iterable of Picture
-        Pictures of the part.
-
-    Returns
-    -------
-    list of Picture
-        In their order; each picture belongs to the first table of the list that names it.
-    """
+    """Return the pictures that stand beside a table."""
     return [each for each in pictures if _place(each) == table]
 
 
 def unplaced(pictures: Iterable[Picture], tables: Sequence[str]) -> list[Picture]:
-    """Return the pictures that stand beside none of some tables.
-
-    Parameters
-    ----------
-    pictures : iterable of Picture
-        Pictures of the part.
-    tables : sequence of str
-        Tables that are on the page.
-
-    Returns
-    -------
-    list of Picture
-        In their order.
-    """
+    """Return the pictures that stand beside none of some tables."""
     return [each for each in pictures if _place(each) not in tables]
 
 

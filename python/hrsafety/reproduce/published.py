@@ -32,37 +32,13 @@ def published_tables() -> dict[str, Any]:
 
 
 def printed_rows(number: str) -> list[Row]:
-    """Return the rows of one table of Zeng (2011).
-
-    Parameters
-    ----------
-    number : str
-        Number of the table, for example ``"C.2"``.
-
-    Returns
-    -------
-    list of dict
-        Column name to printed value.
-    """
+    """Return the rows of one table of Zeng (2011)."""
     rows: list[Row] = published_tables()[f"zeng2011:{number}"]["rows"]
     return rows
 
 
 def printed_figure(section: str, figure: str) -> float:
-    """Return a figure that stands in the text of a section of Zeng (2011).
-
-    Parameters
-    ----------
-    section : str
-        Number of the section, for example ``"3.6"``.
-    figure : str
-        Its name in the shipped file.
-
-    Returns
-    -------
-    float
-        As printed, in the unit that the file names.
-    """
+    """Return a figure that stands in the text of a section of Zeng (2011)."""
     (row,) = (row for row in printed_rows(f"section {section}") if row["figure"] == figure)
     return float(row["value"])
 

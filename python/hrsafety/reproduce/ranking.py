@@ -85,18 +85,6 @@ def rank(experiments: Mapping[str, Mapping[str, Outcomes]], *, gains: str, side:
        runs with a contact.
     3. The same for runs without arrival.
     4. The highest mean score decides.
-
-    Parameters
-    ----------
-    experiments : mapping of str to mapping of str to Outcomes
-        By name of the experiment and mode; all modes of an experiment met the same runs.
-    gains, side : str
-        Names for the result.
-
-    Returns
-    -------
-    Ranking
-        The choice and its steps.
     """
     names = list(next(iter(experiments.values())))
     contact = {mode: _joined(experiments, mode, "contact") for mode in names}

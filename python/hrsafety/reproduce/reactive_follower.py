@@ -13,19 +13,6 @@ __all__ = ["make"]
 
 
 def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
-    """Run the experiments in 1,000 layouts each, and draw them.
-
-    Parameters
-    ----------
-    say : callable
-        Called with a line of text when a long step begins.
-
-    Returns
-    -------
-    cells : list of Cell
-        What the source says beside rates with intervals, and what they depend on.
-    pictures : list of Picture
-        Laws, single layouts, rates.
-    """
+    """Run the experiments in 1,000 layouts each, and draw them."""
     study = run_study(say)
     return reactive_follower_tables.cells(study), reactive_follower_figures.make(study)

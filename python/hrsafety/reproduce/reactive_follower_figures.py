@@ -20,18 +20,7 @@ PUBLISHED = {"static": "13", "one_dynamic": "15", "two_dynamic": "16"}
 
 
 def make(study: FollowerStudy) -> list[Picture]:
-    """Draw every picture.
-
-    Parameters
-    ----------
-    study : FollowerStudy
-        All runs.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source's figures.
-    """
+    """Draw every picture."""
     return [picture(name, caption, figure) for name, caption, figure in _drawings(study)]
 
 

@@ -60,13 +60,7 @@ def _variant(
 
 
 def variants() -> dict[str, Variant]:
-    """Return every change that is looked at, by its words.
-
-    Returns
-    -------
-    dict of str to Variant
-        The first one is no change.
-    """
+    """Return every change that is looked at, by its words."""
     dynamic, one, active = KINDS[1:], KINDS[1:2], LAWS[1:]
     return {
         "as specified": _variant(),
@@ -117,22 +111,7 @@ class FollowerStudy:
 def run_study(
     say: Callable[[str], object] | None = None, *, layouts: int = LAYOUTS, base_layouts: int = BASE_LAYOUTS
 ) -> FollowerStudy:
-    """Run every variant.
-
-    Parameters
-    ----------
-    say : callable or None
-        Called with a line of text before each variant.
-    layouts : int
-        Number of layouts of each change.
-    base_layouts : int
-        Number of layouts without any change.
-
-    Returns
-    -------
-    FollowerStudy
-        All runs.
-    """
+    """Run every variant."""
     found: dict[str, Found] = {}
     for name, variant in variants().items():
         if say is not None:

@@ -87,18 +87,7 @@ _WORDS = {
 
 
 def cells(study: FollowerStudy) -> list[Cell]:
-    """Return the cells of experiments 1 to 3, and what their rates depend on.
-
-    Parameters
-    ----------
-    study : FollowerStudy
-        All runs.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the source.
-    """
+    """Return the cells of experiments 1 to 3, and what their rates depend on."""
     return [*_robots(), *_tracking(), *_rates(study), *_directions(study), *_influences(study)]
 
 

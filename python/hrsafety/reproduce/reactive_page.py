@@ -19,20 +19,7 @@ _INTRO = (
 
 
 def section(cells: Sequence[Cell], pictures: Sequence[Picture]) -> Iterator[str]:
-    """Yield the tables and pictures of the reactive part.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        All cells of the part.
-    pictures : sequence of Picture
-        Its pictures.
-
-    Yields
-    ------
-    str
-        HTML.
-    """
+    """Yield the tables and pictures of the reactive part."""
     yield _INTRO
     yield markup.count_table(cells)
     groups = markup.by_table(cells)

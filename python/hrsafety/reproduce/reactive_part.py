@@ -12,20 +12,7 @@ __all__ = ["make"]
 
 
 def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
-    """Make the part, in the order of the page.
-
-    Parameters
-    ----------
-    say : callable
-        Called with a line of text when a long step begins.
-
-    Returns
-    -------
-    cells : list of Cell
-        Tables, sections and experiments of the three papers.
-    pictures : list of Picture
-        Their pictures.
-    """
+    """Make the part, in the order of the page."""
     cells: list[Cell] = []
     pictures: list[Picture] = []
     for each in (reactive_sound.make, reactive_follower.make, reactive_skirt.make):

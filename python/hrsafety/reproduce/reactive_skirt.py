@@ -13,20 +13,7 @@ __all__ = ["make"]
 
 
 def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
-    """Measure the section's numbers and Tables 1 to 4, and draw them.
-
-    Parameters
-    ----------
-    say : callable
-        Called with a line of text when a long step begins.
-
-    Returns
-    -------
-    cells : list of Cell
-        Printed beside measured values.
-    pictures : list of Picture
-        Ring, runs, curve over the limit of "closely", number of sensors.
-    """
+    """Measure the section's numbers and Tables 1 to 4, and draw them."""
     say("skirt: 8 x 5 tests in 100 layouts under nine conditions")
     study = run_study()
     cells = [*reactive_skirt_tables.cells(), *reactive_skirt_tables.cells_of_tests(study)]

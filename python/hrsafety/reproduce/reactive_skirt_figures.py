@@ -19,18 +19,7 @@ CURVES = ("ideal", LOW, "beam 10 deg", "0.5 m/s")
 
 
 def make(study: SkirtStudy) -> list[Picture]:
-    """Draw the ring, runs, the curve over the limit, and the number of sensors.
-
-    Parameters
-    ----------
-    study : SkirtStudy
-        The tests.
-
-    Returns
-    -------
-    list of Picture
-        Four pictures.
-    """
+    """Draw the ring, runs, the curve over the limit, and the number of sensors."""
     return [_ring(), _runs(study), _curve(study), _counts()]
 
 

@@ -43,18 +43,7 @@ class SkirtStudy:
 
 
 def run_study(layouts: int = LAYOUTS) -> SkirtStudy:
-    """Run the test under every condition.
-
-    Parameters
-    ----------
-    layouts : int
-        Rounds of 40 tests.
-
-    Returns
-    -------
-    SkirtStudy
-        The tests.
-    """
+    """Run the test under every condition."""
     skirt, scene, motion = reactive.UltrasonicSkirt, reactive.SkirtScene, reactive.SkirtMotion
     changes: dict[str, dict[str, object]] = {
         IDEAL: {},
@@ -76,18 +65,5 @@ def run_study(layouts: int = LAYOUTS) -> SkirtStudy:
 
 
 def limit_for(test: reactive.SkirtTest, share: float) -> float:
-    """Return the limit of "closely" at which a share of the tests avoids completely.
-
-    Parameters
-    ----------
-    test : SkirtTest
-        The tests.
-    share : float
-        The share, from 0 to 1.
-
-    Returns
-    -------
-    float
-        Clearance in m that this share of the tests keeps.
-    """
+    """Return the limit of "closely" at which a share of the tests avoids completely."""
     return float(np.quantile(test.min_clearance, 1.0 - share))

@@ -33,29 +33,12 @@ _WORDS = {"spin": "spin", "keep": "arbitrary"}
 
 
 def cells() -> list[Cell]:
-    """Return the cells of the sensors and of Tables 1 to 3.
-
-    Returns
-    -------
-    list of Cell
-        In the order of the source.
-    """
+    """Return the cells of the sensors and of Tables 1 to 3."""
     return [*_sensors(), *_states(), *_vectors(), *_motions()]
 
 
 def cells_of_tests(study: SkirtStudy) -> list[Cell]:
-    """Return the cells of Table 4.
-
-    Parameters
-    ----------
-    study : SkirtStudy
-        The tests.
-
-    Returns
-    -------
-    list of Cell
-        The two shares of the text, and what they depend on.
-    """
+    """Return the cells of Table 4."""
     return [*_published_shares(study), *_conditions(study)]
 
 

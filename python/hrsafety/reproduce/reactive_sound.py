@@ -12,20 +12,7 @@ __all__ = ["make"]
 
 
 def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
-    """Make the part.
-
-    Parameters
-    ----------
-    say : callable
-        Called with a line of text when a long step begins.
-
-    Returns
-    -------
-    cells : list of Cell
-        Formulas, Table 1, Table 2.
-    pictures : list of Picture
-        A burst, likeness over lag, scattered fixes.
-    """
+    """Make the part."""
     say("sound: 100 bursts from each place of Tables 1 and 2, at four levels of noise")
     measured = reactive_sound_study.measure()
     return reactive_sound_tables.cells(measured), reactive_sound_figures.make()

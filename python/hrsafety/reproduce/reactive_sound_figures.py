@@ -25,13 +25,7 @@ SOURCES = ((1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (2.0, 30.0), (3.0, 30.0), (2.0, -
 
 
 def make() -> list[Picture]:
-    """Draw every picture.
-
-    Returns
-    -------
-    list of Picture
-        In the order of the source.
-    """
+    """Draw every picture."""
     return [picture(name, caption, figure) for name, caption, figure in _drawings()]
 
 

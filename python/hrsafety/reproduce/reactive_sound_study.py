@@ -73,13 +73,7 @@ class SoundStudy:
 
 @cache
 def places() -> tuple[Place, ...]:
-    """Return the twelve places of both tables.
-
-    Returns
-    -------
-    tuple of Place
-        In the order of the source.
-    """
+    """Return the twelve places of both tables."""
     tables = published_tables()
     pairs = zip(tables["avi2019:1"]["rows"], tables["avi2019:2"]["rows"], strict=True)
     return tuple(
@@ -97,13 +91,7 @@ def places() -> tuple[Place, ...]:
 
 @cache
 def measure() -> SoundStudy:
-    """Measure from every place, by jitter and by full waveforms.
-
-    Returns
-    -------
-    SoundStudy
-        One row for each place.
-    """
+    """Measure from every place, by jitter and by full waveforms."""
     distance = np.array([place.distance for place in places()])
     bearing = np.radians([place.angle for place in places()])
     return SoundStudy(

@@ -49,18 +49,7 @@ _RIGHT = "The corrected formula is exact, see the page of equations."
 
 
 def cells(study: SoundStudy) -> list[Cell]:
-    """Return every cell of the part.
-
-    Parameters
-    ----------
-    study : SoundStudy
-        The measurements.
-
-    Returns
-    -------
-    list of Cell
-        Formulas, Table 1, Table 2.
-    """
+    """Return every cell of the part."""
     return [*_formulas(), *_trends(study), *_means(study), *_scatter(study)]
 
 

@@ -220,50 +220,15 @@ def _first(causes: tuple[_Cause, ...], table: str, row: str, column: str) -> str
 
 
 def cause_of(table: str, row: str, column: str) -> str:
-    """Return why a cell differs.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place of the cell.
-
-    Returns
-    -------
-    str
-        The documented cause; empty if none is known.
-    """
+    """Return why a cell differs."""
     return _first(_CAUSES, table, row, column)
 
 
 def note_of(table: str, row: str, column: str) -> str:
-    """Return what a reader must know about a cell even where it agrees.
-
-    Parameters
-    ----------
-    table, row, column : str
-        Place of the cell.
-
-    Returns
-    -------
-    str
-        The note; empty for most cells.
-    """
+    """Return what a reader must know about a cell even where it agrees."""
     return _first(_NOTES, table, row, column)
 
 
 def why_not_judged(method: str, column: str) -> str:
-    """Return why a value is shown beside the printed one without a verdict.
-
-    Parameters
-    ----------
-    method : str
-        Name of the row, for example ``"ge_cui"``.
-    column : str
-        Name of the column.
-
-    Returns
-    -------
-    str
-        The reason; empty if the value is judged.
-    """
+    """Return why a value is shown beside the printed one without a verdict."""
     return _CHATTER if method == "ge_cui" and not column.startswith("d_") else ""

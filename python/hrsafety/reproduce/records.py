@@ -18,100 +18,34 @@ __all__ = ["cells_csv", "cells_json", "laws_csv", "laws_json", "study_csv", "stu
 
 
 def cells_csv(cells: Sequence[Cell]) -> str:
-    """Return cells as CSV, one line each; ``deviation`` is a share of printed if ``relative``.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        What to write.
-
-    Returns
-    -------
-    str
-        Text with a header line.
-    """
+    """Return cells as CSV, one line each; ``deviation`` is a share of printed if ``relative``."""
     return _csv([entry.name for entry in fields(Cell)], [asdict(cell) for cell in cells])
 
 
 def cells_json(cells: Sequence[Cell]) -> str:
-    """Return cells as a JSON list of objects.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        What to write.
-
-    Returns
-    -------
-    str
-        JSON text.
-    """
+    """Return cells as a JSON list of objects."""
     return json.dumps([asdict(cell) for cell in cells], indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def laws_csv(study: LawsStudy) -> str:
-    """Return every law with the unpredictable person as CSV.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        What to write.
-
-    Returns
-    -------
-    str
-        One line for each law.
-    """
+    """Return every law with the unpredictable person as CSV."""
     table = rows(study)
     return _csv(list(table[0]), table)
 
 
 def laws_json(study: LawsStudy) -> str:
-    """Return every law with the unpredictable person as a JSON list of objects.
-
-    Parameters
-    ----------
-    study : LawsStudy
-        What to write.
-
-    Returns
-    -------
-    str
-        JSON text.
-    """
+    """Return every law with the unpredictable person as a JSON list of objects."""
     return json.dumps(rows(study), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def study_csv(study: Study) -> str:
-    """Return the comparison of the stabilizing modes as CSV.
-
-    Parameters
-    ----------
-    study : Study
-        What to write.
-
-    Returns
-    -------
-    str
-        One line for each experiment, gain set and mode.
-    """
+    """Return the comparison of the stabilizing modes as CSV."""
     rows = [_flat(aggregate) for aggregate in study.aggregates]
     return _csv(list(rows[0]), rows)
 
 
 def study_json(study: Study) -> str:
-    """Return the comparison of the stabilizing modes and the recommended mode as JSON.
-
-    Parameters
-    ----------
-    study : Study
-        What to write.
-
-    Returns
-    -------
-    str
-        JSON text.
-    """
+    """Return the comparison of the stabilizing modes and the recommended mode as JSON."""
     content = {
         "recommended": study.recommended,
         "rankings": [asdict(ranking) for ranking in study.rankings],

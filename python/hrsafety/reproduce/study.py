@@ -127,16 +127,6 @@ def compare(progress: Callable[[str], object] | None = None) -> Study:
     difference) of the moving obstacles, and of robot and moving obstacles; 500 crowds each of 3
     and 12 walking people. They decide by `hrsafety.reproduce.ranking.rank`. Shown beside them
     are c1 to c4 with the milder noise of a camera, and all of it with the side of a detour kept.
-
-    Parameters
-    ----------
-    progress : callable or None
-        Called with a line of text when an experiment begins.
-
-    Returns
-    -------
-    Study
-        Aggregates and recommended mode.
     """
     runs: dict[Key, Outcomes] = {}
     ranked: list[str] = []

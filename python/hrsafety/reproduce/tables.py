@@ -48,13 +48,7 @@ _DIGITS_OF_SCORES = 2
 
 
 def chapter_6() -> list[Cell]:
-    """Return the cells of Tables 6.1 to 6.5: gains, and configurations c1 to c4.
-
-    Returns
-    -------
-    list of Cell
-        Every printed number once.
-    """
+    """Return the cells of Tables 6.1 to 6.5: gains, and configurations c1 to c4."""
     names = ("c1", "c2", "c3", "c4")
     runs = measure_laws(names, LAWS)
     cells = _gain_cells("6.1")
@@ -64,13 +58,7 @@ def chapter_6() -> list[Cell]:
 
 
 def chapter_7() -> list[Cell]:
-    """Return the cells of Tables 7.1 to 7.4, configurations n1 to n4, and of section 7.5.5.
-
-    Returns
-    -------
-    list of Cell
-        Every printed number of the tables once, then the times of the section.
-    """
+    """Return the cells of Tables 7.1 to 7.4, configurations n1 to n4, and of section 7.5.5."""
     names = ("n1", "n2", "n3", "n4")
     runs = measure_laws(names, ["new_vff"])["new_vff"]
     cells = []
@@ -81,13 +69,7 @@ def chapter_7() -> list[Cell]:
 
 
 def unpredictable_human() -> list[Cell]:
-    """Return the cells of Table 5.1: a person who stops and turns.
-
-    Returns
-    -------
-    list of Cell
-        Every printed number once.
-    """
+    """Return the cells of Table 5.1: a person who stops and turns."""
     runs = measure_laws(["unpredictable_human"], ["masoud", "ge_cui", "new_vff"])
     renamed = {
         method: replace(run, values=run.values | {"d_min": run.values["d_human_min"]})
@@ -113,20 +95,7 @@ def _gain_cells(table: str) -> list[Cell]:
 
 
 def input_cell(table: str, method: str, column: str, printed: float) -> Cell:
-    """Return the cell of a printed gain that the runs use.
-
-    Parameters
-    ----------
-    table, method, column : str
-        Place.
-    printed : float
-        As printed.
-
-    Returns
-    -------
-    Cell
-        Without verdict; it says which value is used.
-    """
+    """Return the cell of a printed gain that the runs use."""
     names = _GE_CUI_GAINS if method == "ge_cui" else _GAINS
     field, unit = names[column]
     used = getattr(LAWS[method], field)

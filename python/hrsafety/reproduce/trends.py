@@ -28,18 +28,7 @@ COLORS = ("#0072B2", "#D55E00", "#009E73")
 
 
 def make(cells: Sequence[Cell]) -> list[Picture]:
-    """Draw one picture for each gain: time, distance and score over its change.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        The cells of Tables C.2 to C.9, and any others.
-
-    Returns
-    -------
-    list of Picture
-        Four pictures.
-    """
+    """Draw one picture for each gain: time, distance and score over its change."""
     pictures = []
     for gain, *tables in GAINS:
         own = [cell for cell in cells if cell.table in tables]

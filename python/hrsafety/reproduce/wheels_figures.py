@@ -13,13 +13,7 @@ NAMES = {"D": ("holonomic robot", "D.4"), "E": ("differential-drive robot", "E.2
 
 
 def make() -> list[Picture]:
-    """Draw tracking with and without observer, and open-loop tests with the identified wheel.
-
-    Returns
-    -------
-    list of Picture
-        Two for each robot.
-    """
+    """Draw tracking with and without observer, and open-loop tests with the identified wheel."""
     made = []
     for letter, wheels in ROBOTS.items():
         name, figure = NAMES[letter]

@@ -43,13 +43,7 @@ MILLI = 1000.0
 
 
 def cells() -> list[Cell]:
-    """Return the cells of both appendices.
-
-    Returns
-    -------
-    list of Cell
-        Tables D.1, D.2, E.1, E.2 and sections D.2, D.3, E.2, E.3.
-    """
+    """Return the cells of both appendices."""
     made: list[Cell] = []
     for letter in ROBOTS:
         made += [*_recovered(letter), *_means(letter), *_feed_forward(letter), *_loops(letter)]
@@ -57,20 +51,7 @@ def cells() -> list[Cell]:
 
 
 def in_direction(wheel: nav.robots.WheelDrive, row: Row) -> nav.robots.WheelDrive:
-    """Return a wheel with the parameters that are printed for one direction.
-
-    Parameters
-    ----------
-    wheel : WheelDrive
-        Motor, encoder and controller.
-    row : dict
-        Row of Table D.1 or E.1.
-
-    Returns
-    -------
-    WheelDrive
-        With another motion.
-    """
+    """Return a wheel with the parameters that are printed for one direction."""
     gain = row["K_over_J"]
     return dataclasses.replace(
         wheel, inertia=1.0 / gain, viscous_friction=row["B_over_J"] / gain, static_friction=row["tau_over_J"] / gain
@@ -148,23 +129,8 @@ def _feed_forward(letter: str) -> Iterator[Cell]:
 
 
 @cache
-def sine_runs(letter: str, feedback: nav.robots.wheels.Feedback, quantized: bool) -> tuple[nav.robots.WheelRun, ...]:
-    """Return the wheels of a robot after a sine of 1 rad/s and 0.5 Hz for 8 s.
-
-    Parameters
-    ----------
-    letter : str
-        Of the appendix.
-    feedback : str
-        Where the controller takes angle and speed from.
-    quantized : bool
-        Whether the encoder has counts.
-
-    Returns
-    -------
-    tuple of WheelRun
-        One for each wheel.
-    """
+def sine_runs(letter: str, feedback: nav.wheels.Feedback, quantized: bool) -> tuple[nav.robots.WheelRun, ...]:
+    """Return the wheels of a robot after a sine of 1 rad/s and 0.5 Hz for 8 s."""
     reference = nav.robots.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
     wheels = [dataclasses.replace(wheel, feedback=feedback) for wheel in ROBOTS[letter]]
     if not quantized:
