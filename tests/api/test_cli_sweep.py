@@ -182,7 +182,7 @@ def test_unbalanced_sobol_design_is_told_on_terminal_and_page(
         assert main(["sweep", file, "--out", str(tmp_path / str(size))]) == 0
         page = (tmp_path / str(size) / "summary.html").read_text(encoding="utf-8")
         assert (f"warning: {told.format(size)}" in capsys.readouterr().out) == wrong
-        assert (f'<p class="banner no"><strong>Warning.</strong> {told.format(size)}' in page) == wrong
+        assert (f'<div class="banner no"><strong>Warnings</strong><ul><li>{told.format(size)}' in page) == wrong
 
 
 @pytest.mark.parametrize(

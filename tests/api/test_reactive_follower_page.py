@@ -35,7 +35,11 @@ def test_every_known_rate_has_a_cell(study: FollowerStudy) -> None:
     cells = reactive_follower_tables.cells(study)
     for value, runs in reactive_follower_tables.SECOND.values():
         assert [cell for cell in cells if f"has {value:.3f} (" in cell.reason and f"{runs:,} layouts" in cell.reason]
-    for (name, kind, law), value in reactive_follower_tables.SECOND_CHANGED.items():
+    changed = reactive_follower_tables.SECOND_CHANGED
+    rates = {(name, place): value for name, values in changed.items() for place, value in values.items()}
+    assert len(rates) == 28
+    for (name, where), value in rates.items():
+        kind, _, law = where.rpartition("_")
         place = (name, f"{reactive_follower_study.SETTINGS[kind]}, {law}")
         found = [cell for cell in cells if (cell.row, cell.column) == place]
         assert f"{value:.2f}" in str(found[0].printed)

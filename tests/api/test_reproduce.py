@@ -130,7 +130,7 @@ def test_cells_that_are_off_or_not_measured_say_why(all_cells: list[Cell]) -> No
 
 def test_every_documented_cause_explains_some_cell_that_is_off(all_cells: list[Cell]) -> None:
     off = [cell for cell in all_cells if cell.within is False]
-    for cause in reasons._CAUSES:
+    for cause in reasons.CAUSES:
         assert any(cell.reason.startswith(cause.text) for cell in off), cause
 
 

@@ -8,17 +8,19 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from hrsafety.reproduce import figures, markup, page, placement, tables
-from hrsafety.reproduce.figures import Picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce import figures, names, page, tables
+from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.parts import Made
 
 NAMES = [name for name, _, _ in figures._pictures()]
 
 
 @pytest.fixture(scope="module")
 def html() -> str:
-    report = page.Report(command="", parts=("tables-6", "figures-6"), cells=tables.chapter_6())
-    report.pictures = [Picture(name=name, caption=f"About {name}.", png=b"png") for name in NAMES]
-    return page.html(report)
+    pictures = [Picture(name=name, caption=f"About {name}.", png=b"png") for name in NAMES]
+    made = {"tables-6": Made(cells=tables.chapter_6()), "figures-6": Made(pictures=pictures)}
+    return page.html(page.Report(command="", made=made))
 
 
 def test_every_picture_stands_below_the_table_of_its_configuration(html: str) -> None:
@@ -41,14 +43,24 @@ def test_page_says_why_a_right_value_differs(html: str) -> None:
 def test_no_picture_is_lost_or_shown_twice() -> None:
     pictures = [Picture(name=name, caption="A.", png=b"") for name in [*NAMES, "unheard-of"]]
     placed = ["6.2", "6.3"]
-    shown = [each for table in placed for each in placement.of_table(table, pictures)]
-    rest = placement.unplaced(pictures, placed)
+    shown = [each for table in placed for each in names.beside(table, pictures)]
+    rest = names.beside_none(placed, pictures)
     assert sorted(each.name for each in [*shown, *rest]) == sorted(each.name for each in pictures)
 
 
 def test_reasons_wrap_and_names_of_rows_too() -> None:
-    style = page.html(page.Report(command="", parts=()))
+    style = page.html(page.Report(command=""))
     for selector in ("td.reason", 'th[scope="rowgroup"], td.text'):
         rule = style[style.index(f"{selector} {{") :].split("}")[0]
         assert "white-space: normal" in rule
-    assert markup.scroll("") == '<div class="scroll"></div>'
+
+
+def test_text_is_escaped_and_names_of_columns_keep_their_indices() -> None:
+    cell = Cell.listed(
+        table="6.1", row="<b>row</b>", column="K_1", printed="<i>1</i>", unit="N/m", reason="a < b & <script>"
+    )
+    html = page.html(page.Report(command="<command>", made={"tables-6": Made(cells=[cell])}))
+    for text in ("<b>row</b>", "<i>1</i>", "<script>", "<command>"):
+        assert text not in html
+        assert text.replace("<", "&lt;").replace(">", "&gt;") in html
+    assert "K<sub>1</sub> (N/m)" in html

@@ -18,9 +18,8 @@ from hrsafety import reproduce
 from hrsafety.reproduce import (
     gain_tables,
     impact_inputs,
-    impact_page,
     impact_part,
-    markup,
+    page,
     reactive_follower_tables,
     reactive_skirt_study,
     reactive_skirt_tables,
@@ -30,6 +29,8 @@ from hrsafety.reproduce import (
     wheels_tables,
 )
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.parts import Made
+from hrsafety.reproduce.views import by_table, view
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
 # The specification has 203; of five wheels the package ships both directions in place of their mean.
@@ -77,7 +78,6 @@ def shown() -> dict[str, set[float]]:
     """Numbers that the page shows, by its tables."""
     impacts = impact_part.cells()
     cells: list[Cell] = [
-        *impacts,
         *tables.chapter_6(),
         *tables.chapter_7(),
         *tables.unpredictable_human(),
@@ -87,11 +87,18 @@ def shown() -> dict[str, set[float]]:
         *reactive_follower_tables._robots(),
         *reactive_skirt_tables.cells_of_tests(reactive_skirt_study.run_study(layouts=20)),
     ]
-    html = {table: markup.table_of_cells(table, own) for table, own in markup.by_table(cells).items()}
-    groups = markup.by_table(impacts)
-    html |= {table: "".join(impact_page._experiments(table, groups[table])) for table in ("4.1", "4.2")}
-    words = {table: unescape(re.sub(r"<[^>]*>", " ", text)) for table, text in html.items()}
+    html = by_anchor(
+        page.html(page.Report(command="", made={"impact": Made(cells=impacts), "wheels": Made(cells=cells)}))
+    )
+    anchors = {table: f"table-{table.replace(' ', '-')}" for table in by_table([*impacts, *cells])}
+    words = {table: unescape(re.sub(r"<[^>]*>", " ", html[anchor])) for table, anchor in anchors.items()}
     return {table: {float(each) for each in NUMBER.findall(text)} for table, text in words.items()}
+
+
+def by_anchor(html: str) -> dict[str, str]:
+    """Return what the page shows below the heading of each table."""
+    pieces = re.split(r'<h3 id="([^"]+)">', html)
+    return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
 
 def on_page(value: float, found: set[float]) -> bool:
@@ -122,5 +129,5 @@ def test_inputs_are_marked_as_inputs() -> None:
     assert all(cell.within is None and cell.reason == impact_inputs.INPUT for cell in cells)
     leader = [cell for cell in reactive_follower_tables._robots() if cell.table == "avi2019 Table 5"]
     assert {cell.printed for cell in leader} == {5.3, 0.29, 0.06, 0.352, 0.326, 0.32}
-    for table, own in markup.by_table([*(cell for cell in cells if cell.table != "A.1"), *leader]).items():
-        assert "(inputs)" in markup.table_of_cells(table, own)
+    for table, own in by_table([*(cell for cell in cells if cell.table != "A.1"), *leader]).items():
+        assert view(table, own).verdict == "inputs"

@@ -16,6 +16,7 @@ from hrsafety.cli import foam_page, output
 from hrsafety.cli.foam_curves import Remembered
 from hrsafety.cli.foam_file import Array, FoamDesignFile, load
 from hrsafety.cli.foam_report import Check, FoamReport, Judged, Range
+from hrsafety.pages import require_jinja
 from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def design_file(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_matplotlib("foam")
+    require_jinja("foam")
     with output.located(options.design):
         described = load(options.design)
     place = output.folder(options.out)

@@ -28,6 +28,7 @@ from hrsafety.cli.optimize_report import (
 )
 from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown
 from hrsafety.navigation.gains.metrics import is_maximized
+from hrsafety.pages import Picture, require_jinja
 
 __all__ = ["optimize_file"]
 
@@ -76,6 +77,7 @@ def optimize_file(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_matplotlib("optimize")
+    require_jinja("optimize")
     study = _loaded(options.study)
     new = not Path(options.out).exists()
     place = output.folder(options.out)
@@ -326,5 +328,9 @@ def _write(report: GainReport, place: Path) -> Iterator[Path]:
     if report.front is not None:
         yield report.front.to_csv(place / "front.csv")
     yield output.write_text(place / "results.json", optimize_record.results(report))
-    shown = {name: (f"{picture.caption}.", drawn[name].read_bytes()) for name, picture in pictures.items()}
-    yield output.write_text(place / "summary.html", optimize_page.html(report, shown))
+    shown = {
+        name: Picture(name=name, caption=f"{picture.caption}.", png=drawn[name].read_bytes())
+        for name, picture in pictures.items()
+    }
+    warned = list(dict.fromkeys(map(str, output.warnings_of(*report.study.scenarios, report.search))))
+    yield output.write_text(place / "summary.html", optimize_page.html(report, shown, warned))

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import datetime
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from html import escape
-from importlib import resources
+from collections.abc import Mapping, Sequence
 
-from hrsafety import __version__
+from hrsafety import navigation as nav
 from hrsafety.cli import optimize_record
 from hrsafety.cli.optimize_report import (
     METRIC_UNITS,
     MOST_PATHS,
     NOT_EVERYWHERE,
     GainReport,
+    Table,
     confidence_words,
     gain_words,
     scenario_table,
@@ -22,211 +20,138 @@ from hrsafety.cli.optimize_report import (
     search_words,
     set_table,
 )
-from hrsafety.reproduce.markup import figure, scroll
+from hrsafety.pages import Picture, written
 
 __all__ = ["html"]
 
 GAIN_TITLES = ("K_1 (N/m)", "K_3 (N/m)", "K_5 (N/m^2)", "b (s)")
 MOST_ROWS = 20  # scenarios that are listed unfolded
-PictureBytes = tuple[str, bytes]
+Rows = list[tuple[str, ...]]
 
 
-def html(report: GainReport, pictures: Mapping[str, PictureBytes]) -> str:
-    """Return the page: style and pictures inside, nothing loaded from elsewhere.
+def html(report: GainReport, pictures: Mapping[str, Picture], warned: Sequence[str] = ()) -> str:
+    """Return the page.
 
     Parameters
     ----------
     report : GainReport
         What was found.
-    pictures : mapping of str to (str, bytes)
-        Caption and PNG of each picture by name.
+    pictures : mapping of str to Picture
+        By name.
+    warned : sequence of str
+        Warnings of scenarios and search.
 
     Returns
     -------
     str
         A complete HTML document.
     """
-    style = resources.files("hrsafety.reproduce").joinpath("page.css").read_text(encoding="utf-8")
-    title = escape(report.study.title)
-    return "\n".join(
-        [
-            "<!DOCTYPE html>",
-            '<html lang="en"><head><meta charset="utf-8">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{title}</title>",
-            f"<style>{style}</style></head><body><main>",
-            f"<h1>{title}</h1>",
-            *_answer(report),
-            *_paths(report, pictures),
-            *_flatness(report, pictures),
-            *_history(report, pictures),
-            *_front(report, pictures),
-            *_settings(report),
-            *_foot(report, pictures),
-            "</main></body></html>\n",
-        ]
+    search, study, front = report.search, report.study, report.front
+    scenario_titles, scenario_rows = _titled(scenario_table(report))
+    return written(
+        "optimize.html",
+        title=study.title,
+        warned=warned,
+        report=report,
+        search=search,
+        scenarios=scenario_words(study),
+        search_words=search_words(search),
+        gains=gain_words(report.sets[0].law.gains),
+        reached=_reached(report),
+        not_everywhere=NOT_EVERYWHERE,
+        sets=_titled(set_table(report)),
+        scenario_titles=scenario_titles,
+        scenario_rows=scenario_rows,
+        most_rows=MOST_ROWS,
+        noisy=any(scenario.measurement is not None for scenario in study.scenarios),
+        paths=[pictures[f"paths-{name}"] for name in study.names[:MOST_PATHS]],
+        pictures={name: pictures.get(name) for name in ("flatness", "sensitivity", "history", "front")},
+        flatness=report.flatness,
+        flat_rows=_flat_rows(report),
+        gain_titles=GAIN_TITLES,
+        history_rows=_history_rows(search),
+        local_rows=_local_rows(search),
+        front=front,
+        front_names="" if front is None else " and ".join(name.replace("_", " ") for name in front.objectives),
+        front_titles=() if front is None else _front_titles(front),
+        front_rows=[] if front is None else _front_rows(front),
+        settings=[
+            (name.replace("_", " "), _shown(value))
+            for name, value in optimize_record.settings(study, search.settings).items()
+        ],
+        files=[
+            "results.json with every value",
+            *(["front.csv"] if front is not None else []),
+            *(f"{name}.png" for name in pictures),
+        ],
     )
 
 
-def _answer(report: GainReport) -> Iterator[str]:
-    """Yield the best gains, what they reach in each scenario, and what others reach."""
-    search, best = report.search, report.sets[0]
+def _titled(table: Table) -> tuple[list[str], Rows]:
+    """Return a table with the units in the titles."""
+    (names, units), rows = table
+    return [f"{name} ({unit})" if unit else name for name, unit in zip(names, units, strict=True)], rows
+
+
+def _reached(report: GainReport) -> str:
     unit = f" {METRIC_UNITS[report.objective]}".rstrip()
-    yield f"<p>Scenarios: {escape(scenario_words(report.study))}. Search: {escape(search_words(search))}.</p>"
-    look = "banner" if search.feasible else "banner no"
-    gains, objective = escape(gain_words(best.law.gains)), escape(report.objective.replace("_", " "))
-    reached = f"{objective} {best.value:.5f}{unit}{escape(confidence_words(search))}"
-    if search.valid:
-        doubt = "" if search.feasible else f" Not feasible: {NOT_EVERYWHERE}."
-        yield f'<p class="{look}"><strong>Best gains: {gains}.</strong> {reached}.{doubt}</p>'
-    else:
-        yield (
-            f'<p class="{look}"><strong>Not feasible: {escape(search.shortcoming)}.</strong> To mend it, '
-            f"{escape(search.remedy)}. Everything below is of the nearest gain set, which is no result: "
-            f"{gains}; {reached}.</p>"
-        )
-    yield (
-        f"<p>{search.evaluations:,} gain sets were evaluated in {search.episodes:,} runs; {search.failures:,} of them "
-        f"touched something or did not arrive somewhere, and count. It took {report.seconds:.2f} s"
-        f"{' since it was resumed' if report.resumed else ''}.</p>"
-    )
-    yield _table(*set_table(report))
-    yield f"<h2>{best.name.capitalize()} gains, scenario by scenario</h2>"
-    header, rows = scenario_table(report)
-    yield _table(header, rows[:MOST_ROWS])
-    if len(rows) > MOST_ROWS:
-        yield f"<details><summary>All {len(rows)} scenarios</summary>{_table(header, rows)}</details>"
-    if any(scenario.measurement is not None for scenario in report.study.scenarios):
-        yield "<p>These are single runs with the noise seed of the scenario; the objective is over all seeds.</p>"
+    value = f"{report.sets[0].value:.5f}{unit}"
+    return f"{report.objective.replace('_', ' ')} {value}{confidence_words(report.search)}"
 
 
-def _paths(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
-    yield "<h2>Paths</h2>"
-    yield from (figure(*pictures[f"paths-{name}"]) for name in report.study.names[:MOST_PATHS])
-    if len(report.study.names) > MOST_PATHS:
-        yield f"<p>Of {len(report.study.names)} scenarios the first {MOST_PATHS} are drawn.</p>"
-
-
-def _flatness(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
-    """Yield how flat the optimum is and which gain matters."""
-    found = report.flatness
-    yield "<h2>How flat the optimum is, and which gain matters</h2>"
-    share = 100.0 * found.near_best_share
-    kept = "" if math.isnan(share) else f" {share:.0f} % of the best grid points are within this range of values."
-    yield (
-        f"<p>Within the ranges of this table one gain can change on its own and costs no more than "
-        f"{100.0 * found.tolerance:g} % of the objective.{kept}</p>"
-    )
-    low, high = (report.search.settings.bounds[:, column] for column in (0, 1))
+def _flat_rows(report: GainReport) -> Rows:
+    """Return each gain with the range that is as good, its bounds and its sensitivity."""
+    found, bounds = report.flatness, report.search.settings.bounds
     average, largest = report.sensitivity.average_sensitivity(), report.sensitivity.largest_sensitivity()
-    rows = [
+    return [
         (
-            GAIN_TITLES[index],
+            title,
             f"{found.best_gains[index]:.4g}",
             f"{found.low[index]:.4g} to {found.high[index]:.4g}",
-            f"{low[index]:g} to {high[index]:g}",
+            f"{bounds[index, 0]:g} to {bounds[index, 1]:g}",
             *(_percent(float(values[index])) for values in (average, largest)),
         )
-        for index in range(len(GAIN_TITLES))
+        for index, title in enumerate(GAIN_TITLES)
     ]
-    titles = ("Gain", "Best", "As good", "Bounds", "Sensitivity of mean H, average (%)", "largest (%)")
-    yield _table((titles, ("",) * len(titles)), rows)
-    yield figure(*pictures["flatness"])
-    yield figure(*pictures["sensitivity"])
 
 
-def _history(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
-    """Yield the rounds of the grid and the local searches."""
-    search = report.search
-    yield "<h2>History</h2>"
-    yield figure(*pictures["history"])
-    if search.history:
-        titles = ("Grid", "Gain sets", "Failed", "Best", "Worst survivor", *GAIN_TITLES)
-        rows = [
-            (
-                str(index),
-                f"{entry.evaluations:,}",
-                f"{entry.failures:,}",
-                f"{entry.best_value:.5f}",
-                f"{entry.worst_survivor:.5f}",
-                *(f"{axis[0]:.4g} to {axis[-1]:.4g}" for axis in entry.axes),
-            )
-            for index, entry in enumerate(search.history, start=1)
-        ]
-        yield _table((titles, ("",) * len(titles)), rows)
-    if search.local:
-        titles = ("Local search", "From", "To", *GAIN_TITLES, "Gain sets", "Ended")
-        rows = [
-            (
-                str(index),
-                f"{entry.start_value:.5f}",
-                f"{entry.value:.5f}",
-                *(f"{gain:.4g}" for gain in entry.gains),
-                f"{entry.evaluations:,}",
-                entry.status.replace("_", " "),
-            )
-            for index, entry in enumerate(search.local, start=1)
-        ]
-        listed = _table((titles, ("",) * len(titles)), rows)
-        yield f"<details><summary>All {len(rows)} local searches</summary>{listed}</details>"
+def _history_rows(search: nav.GainSearch) -> Rows:
+    return [
+        (
+            str(index),
+            f"{entry.evaluations:,}",
+            f"{entry.failures:,}",
+            f"{entry.best_value:.5f}",
+            f"{entry.worst_survivor:.5f}",
+            *(f"{axis[0]:.4g} to {axis[-1]:.4g}" for axis in entry.axes),
+        )
+        for index, entry in enumerate(search.history, start=1)
+    ]
 
 
-def _front(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
-    """Yield the front, if there is one."""
-    front = report.front
-    if front is None:
-        return
-    yield "<h2>Pareto front</h2>"
-    names = " and ".join(name.replace("_", " ") for name in front.objectives)
-    yield (
-        f"<p>{len(front)} of {front.evaluations:,} gain sets are not beaten by another one in {escape(names)}. "
-        f"Hypervolume over the ranges of the front: {front.hypervolume:.3f}.</p>"
-    )
-    if "front" not in pictures:
-        return
-    yield figure(*pictures["front"])
-    titles = (*GAIN_TITLES, *(f"{name} ({METRIC_UNITS[name]})".replace(" ()", "") for name in front.objectives))
-    rows = [
+def _local_rows(search: nav.GainSearch) -> Rows:
+    return [
+        (
+            str(index),
+            f"{entry.start_value:.5f}",
+            f"{entry.value:.5f}",
+            *(f"{gain:.4g}" for gain in entry.gains),
+            f"{entry.evaluations:,}",
+            entry.status.replace("_", " "),
+        )
+        for index, entry in enumerate(search.local, start=1)
+    ]
+
+
+def _front_titles(front: nav.gains.ParetoFront) -> tuple[str, ...]:
+    return (*GAIN_TITLES, *(f"{name} ({METRIC_UNITS[name]})".replace(" ()", "") for name in front.objectives))
+
+
+def _front_rows(front: nav.gains.ParetoFront) -> Rows:
+    return [
         (*(f"{gain:.4g}" for gain in gains), *(f"{value:.4f}" for value in values))
         for gains, values in zip(front.gains, front.values, strict=True)
     ]
-    listed = _table((titles, ("",) * len(titles)), rows)
-    yield f"<details><summary>All {len(rows)} gain sets of the front</summary>{listed}</details>"
-
-
-def _settings(report: GainReport) -> Iterator[str]:
-    yield "<h2>Settings</h2>"
-    rows = [
-        (name.replace("_", " "), _shown(value))
-        for name, value in optimize_record.settings(report.study, report.search.settings).items()
-    ]
-    lines = "".join(
-        f'<tr><th scope="row">{escape(name)}</th><td class="words">{escape(value)}</td></tr>' for name, value in rows
-    )
-    yield scroll(f"<table><tbody>{lines}</tbody></table>")
-
-
-def _foot(report: GainReport, pictures: Mapping[str, PictureBytes]) -> Iterator[str]:
-    made = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-    files = ["results.json with every value", *(["front.csv"] if report.front is not None else [])]
-    files += [f"{name}.png" for name in pictures]
-    yield f"<p><small>hrsafety {escape(__version__)}, made {made} from {escape(report.path)}. "
-    yield f"Beside this page: {escape(', '.join(files))}.</small></p>"
-
-
-# ---- fragments --------------------------------------------------------------------------------------
-
-
-def _table(header: tuple[Sequence[str], Sequence[str]], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table whose first column names the row."""
-    titles = [f"{name} ({unit})" if unit else name for name, unit in zip(*header, strict=True)]
-    lines = "".join(
-        f'<tr><th scope="row">{escape(row[0])}</th>{"".join(f"<td>{escape(cell)}</td>" for cell in row[1:])}</tr>'
-        for row in rows
-    )
-    looks = (' class="text"', *[""] * (len(titles) - 1))
-    heads = "".join(f'<th scope="col"{look}>{escape(title)}</th>' for look, title in zip(looks, titles, strict=True))
-    return scroll(f'<table class="wide"><thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>')
 
 
 def _percent(share: float) -> str:

@@ -19,6 +19,7 @@ from hrsafety.cli import output, progress, sweep_page, sweep_pictures
 from hrsafety.cli.sweep_file import SweepFile, load
 from hrsafety.cli.sweep_summary import Summary, summarized
 from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.pages import Picture, require_jinja
 
 __all__ = ["sweep_file"]
 
@@ -40,6 +41,7 @@ def sweep_file(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_matplotlib("sweep")
+    require_jinja("sweep")
     if options.table is not None:
         output.target("--table", options.table, _FORMATS)
     if options.workers is not None and options.workers < 1:
@@ -133,10 +135,10 @@ def _words(options: argparse.Namespace, described: SweepFile, summary: Summary, 
 
 
 def _write(options: argparse.Namespace, described: SweepFile, summary: Summary, place: Path) -> Iterator[Path]:
-    pictures: dict[str, tuple[str, bytes]] = {}
+    pictures = []
     for name, figure, caption in sweep_pictures.make(summary.result, described.show):
         drawn = output.write_picture(place / f"{name}.png", figure)
-        pictures[name] = (caption, drawn.read_bytes())
+        pictures.append(Picture(name=name, caption=f"{caption}.", png=drawn.read_bytes()))
         yield drawn
     if options.table is not None:
         target = Path(options.table)

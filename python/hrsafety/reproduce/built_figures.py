@@ -7,8 +7,9 @@ from functools import partial
 
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
+from hrsafety.pages import Picture
 from hrsafety.reproduce.built_runs import LAW, SEEDS, as_built, repeated, scene, score
-from hrsafety.reproduce.figures import Drawing, Picture, paths_and_distances, picture
+from hrsafety.reproduce.figures import Drawing, paths_and_distances, picture
 
 __all__ = ["make"]
 

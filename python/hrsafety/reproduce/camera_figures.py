@@ -6,8 +6,9 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import plotting
+from hrsafety.pages import Picture
 from hrsafety.reproduce import camera_tables
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.figures import picture
 
 __all__ = ["make"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 __all__ = ["Cell", "Tolerance", "tolerance_of"]
@@ -134,3 +134,15 @@ class Cell:
             within=None,
             reason=reason,
         )
+
+    @classmethod
+    def beside(
+        cls, *, table: str, row: str, column: str, printed: float | str, measured: float | str, unit: str, reason: str
+    ) -> Cell:
+        """Return a value beside another that is no judgment of the source: with deviation, without verdict."""
+        cell = cls.listed(table=table, row=row, column=column, printed=printed, unit=unit, reason=reason)
+        if isinstance(printed, str) or isinstance(measured, str):
+            return replace(cell, measured=measured)
+        deviation = measured / printed - 1.0 if printed else math.nan
+        known = math.isfinite(deviation)
+        return replace(cell, measured=float(measured), deviation=deviation if known else None, relative=known)

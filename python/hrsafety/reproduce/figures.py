@@ -10,7 +10,6 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
+from hrsafety.pages import Picture
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes
@@ -26,7 +26,7 @@ from hrsafety.reproduce.study import MODES, NOISE_SCALE, SIDES, Key, Study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Picture", "make", "of_study", "picture"]
+__all__ = ["make", "of_study", "picture"]
 
 DOTS_PER_INCH = 120
 SCENES = {
@@ -41,25 +41,6 @@ COMPARED_MODES = ("off", "capped, 10 N", "capped, 0.1 m|V|/T_s")
 # Numbers of the source's figures: paths and distances with several laws, and of the new law alone.
 PATHS = {"c1": ("6.4", "6.6"), "c2": ("6.8", "6.8"), "c3": ("6.10", "6.13"), "c4": ("6.15", "6.17")}
 DISTANCES = {"c1": ("6.5", "6.7"), "c2": ("6.9", "6.9"), "c3": ("6.11", "6.14"), "c4": ("6.16", "6.18")}
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Picture:
-    """One picture of the page.
-
-    Attributes
-    ----------
-    name : str
-        File name without ending.
-    caption : str
-        What it shows.
-    png : bytes
-        The picture.
-    """
-
-    name: str
-    caption: str
-    png: bytes
 
 
 def make() -> list[Picture]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from hrsafety import plotting
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.gain_runs import gain_runs
 
 __all__ = ["make"]

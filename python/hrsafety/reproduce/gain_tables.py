@@ -9,7 +9,6 @@ from typing import Any
 from hrsafety.reproduce import gain_claims
 from hrsafety.reproduce.cells import SCORE, Cell, Tolerance, tolerance_of
 from hrsafety.reproduce.gain_runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns, gain_runs
-from hrsafety.reproduce.impact_cells import listed
 from hrsafety.reproduce.measured import measure_laws
 from hrsafety.reproduce.published import Row, printed_rows
 from hrsafety.reproduce.reasons import note_of, why_not_judged
@@ -64,7 +63,7 @@ def _optimum(runs: GainRuns) -> Iterator[Cell]:
                 yield explained(Cell.compared(**place, measured=best, tolerance=SCORE, unit="1"))
             else:
                 reason = _why_another_gain(runs, list(GAIN_UNITS).index(column))
-                yield listed(**place, measured=found[column], unit=GAIN_UNITS[column], reason=reason)
+                yield Cell.beside(**place, measured=found[column], unit=GAIN_UNITS[column], reason=reason)
 
 
 def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> Cell:
@@ -76,7 +75,7 @@ def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> Ce
     measured = sum(scores) / len(scores)
     unjudged = why_not_judged(row, column)
     if unjudged:
-        return listed(**place, measured=measured, unit="1", reason=f"{note_of(table, row, column)} {unjudged}")
+        return Cell.beside(**place, measured=measured, unit="1", reason=f"{note_of(table, row, column)} {unjudged}")
     return explained(Cell.compared(**place, measured=measured, tolerance=SCORE, unit="1"))
 
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety import impact, plotting
+from hrsafety.pages import Picture
 from hrsafety.plotting.impacts.boundaries import refined
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.impact_appendix import drives
 from hrsafety.reproduce.impact_cases import (
     CLOSING_SPEED,

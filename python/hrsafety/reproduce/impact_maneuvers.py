@@ -16,11 +16,11 @@ from hrsafety.reproduce.impact_cases import (
     STANDARD_GRAVITY,
     manipulator,
 )
-from hrsafety.reproduce.impact_cells import PERCENT, listed, number
-from hrsafety.reproduce.published import printed_figure
+from hrsafety.reproduce.sheets import Sheet
 
 __all__ = ["cells", "maneuvers", "stops"]
 
+SHEET = Sheet("chapter_3")
 ACCELERATION = 0.51 * STANDARD_GRAVITY
 LASTING = 0.05  # s
 DETECTION = 0.004  # s, the published detection time that section 3.6 quotes
@@ -88,17 +88,11 @@ def _percentages() -> Iterator[Cell]:
             ("f_c,max", "peak_contact_force", "force"),
             ("a_h,max", "peak_head_acceleration", "acceleration"),
         ):
-            without = _change(alone[name], alone["constant speed"], quantity)
-            yield number(
-                "Section 3.8",
-                f"Manipulator {name}, 0.51 g for 50 ms",
-                column,
-                printed=printed_figure("3.8", f"{key}_{kind}"),
-                measured=_change(fed[name], fed["constant speed"], quantity),
-                tolerance=PERCENT,
-                unit="%",
-                reason=f"With the acceleration fed forward, which the printed figure needs; by position control alone "
-                f"{without:+.2f} %.",
+            yield SHEET.number(
+                "maneuver",
+                _change(fed[name], fed["constant speed"], quantity),
+                **{"name": name, "column": column, "figure": f"{key}_{kind}"},
+                without=_change(alone[name], alone["constant speed"], quantity),
             )
 
 
@@ -107,14 +101,11 @@ def _stopped() -> Iterator[Cell]:
     base = runs["no stop"]
     late = {name: float(np.max(run.contact_force[run.time >= 0.04])) for name, run in runs.items()}
     for name in list(runs)[1:]:
-        yield listed(
-            "Section 3.8",
-            f"Stop after detection in 4 ms: {name}",
-            "what it does",
-            printed="prevents a further rise of the force",
-            measured=f"f_c,max {_change(runs[name], base, 'peak_contact_force'):+.2f} %, a_h,max "
-            f"{_change(runs[name], base, 'peak_head_acceleration'):+.2f} %; largest force from 40 to 60 ms "
-            f"{late[name]:.0f} N instead of {late['no stop']:.0f} N",
-            unit="",
-            reason="The torso walks on at 1.0 m/s in this model, so part of the ramp stays.",
+        yield SHEET.listed(
+            "stop",
+            name=name,
+            force=_change(runs[name], base, "peak_contact_force"),
+            acceleration=_change(runs[name], base, "peak_head_acceleration"),
+            late=late[name],
+            unstopped=late["no stop"],
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hrsafety.pages import Picture
 from hrsafety.reproduce import (
     impact_appendix,
     impact_claims,
@@ -13,7 +14,6 @@ from hrsafety.reproduce import (
     impact_tables,
 )
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.figures import Picture
 
 __all__ = ["cells", "pictures"]
 

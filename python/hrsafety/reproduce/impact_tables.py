@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -12,8 +12,8 @@ import numpy as np
 from hrsafety import impact
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.impact_cases import KILO, ParameterSet, foam, manipulator, parameter_sets
-from hrsafety.reproduce.impact_cells import SIMULATED, listed, number
 from hrsafety.reproduce.published import printed_rows
+from hrsafety.reproduce.sheets import Sheet
 
 __all__ = ["COLUMNS", "Experiment", "cells", "experiments"]
 
@@ -24,23 +24,7 @@ COLUMNS = {
 }
 """Printed column to its name on the page and its unit."""
 
-_EXPERIMENT = "An experiment: the deviation is that of the exact response of set A from this run."
-_HYSTERESIS = "Measured periods are longer: real foam gives back less force than it took (hysteresis)."
-_TREND = (
-    "Not reproducible by a linear model: with {}, the exact impact period becomes {}, while the printed one becomes {}."
-)
-_STIFFER = _TREND.format("half the manipulator stiffness", "shorter", "longer")
-_DAMPED = (
-    "The rows with C_r = 500 N s/m are not reproducible by any linear model: more manipulator damping raises peak and "
-    "period here, while the printed ones hardly move."
-)
-_SLOW_PUMA = (
-    "Breaks the proportionality to the closing speed that the model has: 2.47 g at 0.4 m/s would be 7.72 g at 1.25 "
-    "m/s, but 7.38 g is printed."
-)
-_FOAM_2 = "The stiffness behind the printed row is most likely 13.48 kN/m of appendix A, see set B."
-_SOFTER = "Just outside: the softer foam of set B lengthens the period, while its peak and compression fit better."
-_ROUNDED = "Close to the tolerance: the printed value has two digits."
+SHEET = Sheet("chapter_4")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,34 +141,32 @@ def _simulated(row: Experiment, choice: ParameterSet) -> dict[str, float]:
 def _cells_of(row: Experiment) -> Iterator[Cell]:
     for choice in parameter_sets():
         for column, (name, unit) in COLUMNS.items():
-            cell = number(
-                row.table,
-                row.name,
-                f"{name}, set {choice.name}",
+            yield SHEET.number(
+                "simulated",
+                row.simulated[choice.name][column],
                 printed=row.printed[column],
-                measured=row.simulated[choice.name][column],
-                tolerance=SIMULATED[name],
-                unit=unit,
+                **_words(row, name, unit),
+                set=choice.name,
+                why=SHEET.text(_reason(row, column)),
             )
-            yield cell if cell.within else replace(cell, reason=_reason(row, column))
     for column, (name, unit) in COLUMNS.items():
-        for index, value in enumerate(row.measured[column], start=1):
-            yield listed(
-                row.table,
-                row.name,
-                f"{name}, run {index}",
-                printed=value,
-                measured=row.simulated["A"][column],
-                unit=unit,
-                reason=f"{_EXPERIMENT} {_HYSTERESIS}" if column == "impact_period" else _EXPERIMENT,
-            )
+        texts = ("experiment", "hysteresis") if column == "impact_period" else ("experiment",)
+        why = " ".join(SHEET.text(text) for text in texts)
+        for run, value in enumerate(row.measured[column], start=1):
+            own = row.simulated["A"][column]
+            yield SHEET.listed("run", own, printed=value, **_words(row, name, unit), run=run, why=why)
+
+
+def _words(row: Experiment, name: str, unit: str) -> dict[str, Any]:
+    return {"number": row.table, "row": row.name, "name": name, "unit": unit}
 
 
 def _reason(row: Experiment, column: str) -> str:
+    """Return the name of the text that says why a printed simulation differs."""
     if row.table == "4.2":
-        return _SLOW_PUMA if row.closing_speed < 1.0 else _ROUNDED
+        return "slow_puma" if row.closing_speed < 1.0 else "rounded"
     if row.damping > 250.0:
-        return _DAMPED
+        return "damped"
     if row.foam_number == 2:
-        return _FOAM_2 if column != "impact_period" else _SOFTER
-    return _STIFFER if column == "impact_period" and row.stiffness < 20000.0 else _ROUNDED
+        return "foam_2" if column != "impact_period" else "softer"
+    return "stiffer" if column == "impact_period" and row.stiffness < 20000.0 else "rounded"

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.laws_compared import FORCES
 from hrsafety.reproduce.laws_figures import CONTACT, GOAL_COLOR, PERSON_COLOR, frame
 from hrsafety.reproduce.laws_study import LawsStudy

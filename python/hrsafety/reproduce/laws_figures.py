@@ -9,7 +9,8 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import plotting
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.laws_compared import COMPARED, FORCES, PLANNERS, Compared
 from hrsafety.reproduce.laws_study import LawsStudy
 

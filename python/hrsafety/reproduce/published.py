@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from functools import cache
-from importlib import resources
 from typing import Any
+
+from hrsafety.reproduce import data
 
 __all__ = ["printed_figure", "printed_rows", "published_tables"]
 
@@ -27,7 +27,7 @@ def published_tables() -> dict[str, Any]:
     >>> reproduce.published_tables()["zeng2011:6.2"]["rows"][0]["T_arrive"]
     6.7
     """
-    tables: dict[str, Any] = json.loads(_text())
+    tables: dict[str, Any] = json.loads(data.printed_text())
     return tables
 
 
@@ -41,8 +41,3 @@ def printed_figure(section: str, figure: str) -> float:
     """Return a figure that stands in the text of a section of Zeng (2011)."""
     (row,) = (row for row in printed_rows(f"section {section}") if row["figure"] == figure)
     return float(row["value"])
-
-
-@cache
-def _text() -> str:
-    return resources.files("hrsafety.reproduce").joinpath("published.json").read_text(encoding="utf-8")

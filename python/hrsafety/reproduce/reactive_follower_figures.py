@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from hrsafety import plotting, reactive
+from hrsafety.pages import Picture
 from hrsafety.reactive.follower.layouts import Kind
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, SETTINGS, FollowerStudy
 from hrsafety.reproduce.reactive_follower_tables import SECOND
 
@@ -56,7 +57,7 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
         "implementation of the same description in other layouts.",
         plotting.reactive.follower_rates(
             {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
-            marks={SETTINGS[kind]: {law: SECOND[kind, law][0] for law in LAWS} for kind in KINDS},
+            marks={SETTINGS[kind]: {law: SECOND[f"{kind}_{law}"][0] for law in LAWS} for kind in KINDS},
             marks_label="second implementation",
         ),
     )

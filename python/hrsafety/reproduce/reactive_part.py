@@ -4,19 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from hrsafety.reproduce import reactive_follower, reactive_skirt, reactive_sound
+from hrsafety.pages import Picture
+from hrsafety.reproduce import (
+    reactive_follower_figures,
+    reactive_follower_study,
+    reactive_follower_tables,
+    reactive_skirt_figures,
+    reactive_skirt_study,
+    reactive_skirt_tables,
+    reactive_sound_figures,
+    reactive_sound_study,
+    reactive_sound_tables,
+)
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.figures import Picture
 
 __all__ = ["make"]
 
 
 def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
-    """Make the part, in the order of the page."""
-    cells: list[Cell] = []
-    pictures: list[Picture] = []
-    for each in (reactive_sound.make, reactive_follower.make, reactive_skirt.make):
-        own_cells, own_pictures = each(say)
-        cells.extend(own_cells)
-        pictures.extend(own_pictures)
-    return cells, pictures
+    """Measure and draw what three papers print; call ``say`` with a line when a long step begins."""
+    say("sound: 100 bursts from each place of Tables 1 and 2, at four levels of noise")
+    cells = reactive_sound_tables.cells(reactive_sound_study.measure())
+    pictures = reactive_sound_figures.make()
+    follower = reactive_follower_study.run_study(say)
+    cells += reactive_follower_tables.cells(follower)
+    pictures += reactive_follower_figures.make(follower)
+    say("skirt: 8 x 5 tests in 100 layouts under nine conditions")
+    skirt = reactive_skirt_study.run_study()
+    cells += [*reactive_skirt_tables.cells(), *reactive_skirt_tables.cells_of_tests(skirt)]
+    say("skirt: number of sensors")
+    return cells, pictures + reactive_skirt_figures.make(skirt)

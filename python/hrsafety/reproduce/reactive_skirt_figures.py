@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from hrsafety import plotting, reactive
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.reactive_skirt_study import LOW, LOW_SHARE, SkirtStudy
 
 __all__ = ["make"]

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety import plotting, reactive
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.reactive_sound_study import BURST, NOISE, ROW
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from typing import Any
 
 from hrsafety.reproduce import built_runs, built_tables
 from hrsafety.reproduce.cells import Cell, tolerance_of
-from hrsafety.reproduce.impact_cells import listed
 from hrsafety.reproduce.measured import LAWS, Measured, measure_laws, score_of_parts
 from hrsafety.reproduce.published import Row, printed_rows
 from hrsafety.reproduce.reasons import cause_of, note_of, why_not_judged
@@ -117,7 +116,7 @@ def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
                 continue
             run, unjudged = runs[method], why_not_judged(method, column)
             if unjudged:
-                cells.append(listed(**place, measured=run.values[column], unit=unit, reason=unjudged))
+                cells.append(Cell.beside(**place, measured=run.values[column], unit=unit, reason=unjudged))
                 continue
             cell = Cell.compared(**place, measured=run.values[column], tolerance=tolerance_of(column), unit=unit)
             cells.append(explained(cell, printed_score(run, row) if column == "H" else None))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from hrsafety.pages import Picture
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.reproduce.figures import picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

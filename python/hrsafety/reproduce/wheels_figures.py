@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hrsafety import navigation as nav
 from hrsafety import plotting
-from hrsafety.reproduce.figures import Picture, picture
+from hrsafety.pages import Picture
+from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.wheels_tables import COMMANDS, ROBOTS, sine_runs
 
 __all__ = ["make"]

@@ -10,16 +10,16 @@ from functools import cache
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce.cells import Cell, Tolerance
-from hrsafety.reproduce.impact_cells import claim, listed, number
+from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.published import Row, printed_rows
+from hrsafety.reproduce.sheets import Sheet
 
 __all__ = ["COMMANDS", "ROBOTS", "cells", "in_direction", "sine_runs"]
 
 COMMANDS = (0.25, 0.3, 0.35, 0.4, 0.45, 0.5)
 ROBOTS = {"D": nav.robots.HOLONOMIC_WHEELS, "E": nav.robots.DIFFERENTIAL_WHEELS}
 """Wheels by the letter of the appendix."""
-RECOVERED = Tolerance(0.02, relative=True)
+SHEET = Sheet("built")
 MODEL = {"K_over_J": "rad/(s^2 V)", "B_over_J": "1/s", "tau_over_J": "rad/s^2"}
 SYMBOLS = {
     "K_over_J": "K/J",
@@ -29,16 +29,7 @@ SYMBOLS = {
     "B_over_K": "B/K",
     "tau_over_K": "tau/K",
 }
-# Half a unit of the last printed digit, and binary rounding.
-ROUNDED = {
-    "K_over_J": 0.5001,
-    "B_over_J": 0.00501,
-    "tau_over_J": 0.0501,
-    "J_over_K": 0.0000501,
-    "B_over_K": 0.0000501,
-    "tau_over_K": 0.000501,
-}
-HALF_A_HUNDREDTH = Tolerance(0.00501, relative=False)  # tau/K of Table E.2 has two digits
+FACTORS = {"J_over_K": "V s^2", "B_over_K": "V s", "tau_over_K": "V"}
 MILLI = 1000.0
 
 
@@ -72,17 +63,8 @@ def _recovered(letter: str) -> Iterator[Cell]:
         still = int((~fit.moved).sum())
         held = f" {still} of the 12 tests do not move and are left out." if still else ""
         for name, unit in MODEL.items():
-            yield number(
-                f"{letter}.1",
-                f"Wheel {row['wheel']}, {row['direction']}",
-                SYMBOLS[name],
-                printed=row[name],
-                measured=found[name],
-                tolerance=RECOVERED,
-                unit=unit,
-                reason="The recordings are not printed. Simulated again with these values for 1 s, with the encoder's "
-                f"counts, and fitted by the corrected (D.2.3).{held}",
-            )
+            words = {"letter": letter, "wheel": row["wheel"], "direction": row["direction"], "name": SYMBOLS[name]}
+            yield SHEET.number("recovered", found[name], printed=row[name], unit=unit, held=held, **words)
 
 
 @cache
@@ -96,15 +78,8 @@ def _mean_model(letter: str) -> list[dict[str, float]]:
 def _means(letter: str) -> Iterator[Cell]:
     for row, mean in zip(printed_rows(f"{letter}.2.6"), _mean_model(letter), strict=True):
         for name, unit in MODEL.items():
-            yield number(
-                f"Section {letter}.2",
-                f"Wheel {row['wheel']}, mean of both directions",
-                SYMBOLS[name],
-                printed=row[name],
-                measured=mean[name],
-                tolerance=Tolerance(ROUNDED[name], relative=False),
-                unit=unit,
-            )
+            words = {"letter": letter, "wheel": row["wheel"], "name": SYMBOLS[name], "unit": unit, "limit": name}
+            yield SHEET.number("mean", mean[name], printed=row[name], **words)
 
 
 def _feed_forward(letter: str) -> Iterator[Cell]:
@@ -112,20 +87,11 @@ def _feed_forward(letter: str) -> Iterator[Cell]:
         gain = mean["K_over_J"]
         found = {"J_over_K": 1.0 / gain, "B_over_K": mean["B_over_J"] / gain, "tau_over_K": mean["tau_over_J"] / gain}
         for name, value in found.items():
-            two_digits = letter == "E" and name == "tau_over_K"
+            words = {"letter": letter, "wheel": row["wheel"], "name": SYMBOLS[name], "unit": FACTORS[name]}
+            limit = "half_a_hundredth" if letter == "E" and name == "tau_over_K" else name
             odd = letter == "E" and name == "J_over_K" and row["wheel"] == 1
-            yield number(
-                f"{letter}.2",
-                f"Wheel {row['wheel']}",
-                SYMBOLS[name],
-                printed=row[name],
-                measured=value,
-                tolerance=HALF_A_HUNDREDTH if two_digits else Tolerance(ROUNDED[name], relative=False),
-                unit={"J_over_K": "V s^2", "B_over_K": "V s", "tau_over_K": "V"}[name],
-                reason="1/127.5 is 0.0078; 0.0079 would be 1/127. The printed value is kept as the feed-forward."
-                if odd
-                else "",
-            )
+            why = SHEET.text("rounded_factor") if odd else ""
+            yield SHEET.number("feed_forward", value, printed=row[name], limit=limit, why=why, **words)
 
 
 @cache
@@ -144,31 +110,22 @@ def _loops(letter: str) -> Iterator[Cell]:
     for row, wheel, run in zip(printed_rows(f"{letter}.2"), ROBOTS[letter], runs, strict=True):
         frequency = math.sqrt(wheel.proportional_gain / wheel.inertia)
         ratio = (wheel.derivative_gain + wheel.viscous_friction) / (2.0 * wheel.inertia * frequency)
-        yield listed(
-            f"{letter}.2",
-            f"Wheel {row['wheel']}",
-            "K_P, K_D",
-            printed=f"{row['K_P']:g}, {row['K_D']:g}",
-            measured=f"loop of {frequency:.0f} rad/s with damping ratio {ratio:.2f}; rms error "
-            f"{MILLI * run.rms_angle_error:.2f} mrad, loss {run.energy:.2f} J (ideal {run.ideal_energy:.2f} J)",
-            unit="V/rad, V s/rad",
-            reason="Tuned by hand in the source. Measured for 1 rad/s, 0.5 Hz, 8 s with observer, counts and a wheel "
-            "period of 1 ms; the loss with the 1.16 ohm of the motor's data.",
+        yield SHEET.listed(
+            "loop",
+            **{"letter": letter, "wheel": row["wheel"], "K_P": row["K_P"], "K_D": row["K_D"]},
+            frequency=frequency,
+            ratio=ratio,
+            error=MILLI * run.rms_angle_error,
+            loss=run.energy,
+            ideal=run.ideal_energy,
         )
 
 
 def _stuck() -> Iterator[Cell]:
     run = nav.robots.open_loop_tests(nav.robots.DIFFERENTIAL_WHEELS[1], [0.25], repeats=1)[0]
     friction = nav.robots.DIFFERENTIAL_WHEELS[1].static_friction
-    yield claim(
-        "Section E.2",
-        "Wheel 2 at 0.25 V",
-        "open-loop test",
-        printed="tests at 0.25 to 0.5 V, twice each",
-        measured=f"{np.abs(run.angle).max():g} rad in 1 s: friction holds it up to {friction:.3f} V",
-        holds=bool(np.abs(run.angle).max() > 0.0),
-        reason="With the printed parameters the wheel does not start at 0.25 V, so that command can have given no fit.",
-    )
+    turned = np.abs(run.angle).max()
+    yield SHEET.claim("stuck", holds=bool(turned > 0.0), turned=turned, friction=friction)
 
 
 def _jump(runs: Sequence[nav.robots.WheelRun]) -> float:
@@ -185,16 +142,8 @@ def _observer() -> Iterator[Cell]:
             f"{sum(run.energy for run in runs):.2f} J"
             for name, runs in (("differences", rough), ("observer", smooth), ("differences without counts", exact))
         ]
-        yield claim(
-            f"Section {letter}.3",
-            "Differences of counts, or observer",
-            "oscillation",
-            printed="counts make the derivative of the error oscillate; an observer smooths it",
-            measured="; ".join(words),
-            holds=_jump(rough) > 5.0 * _jump(smooth),
-            reason="Largest rms error, largest rms change of the current between wheel periods, loss of all wheels. "
-            "The observer with poles at -10 1/s trades accuracy for a smooth current.",
-        )
+        smoother = _jump(rough) > 5.0 * _jump(smooth)
+        yield SHEET.claim("observer", holds=smoother, letter=letter, words="; ".join(words))
 
 
 def _period() -> Iterator[Cell]:
@@ -204,12 +153,4 @@ def _period() -> Iterator[Cell]:
             reference = nav.robots.WheelReference.sine(duration=8.0, period=period)
             runs = [nav.robots.follow_wheel(dataclasses.replace(wheel, period=period), reference) for wheel in wheels]
             words.append(f"{MILLI * period:g} ms {MILLI * max(run.rms_angle_error for run in runs):.3g} mrad")
-        yield listed(
-            f"Section {letter}.3",
-            "Wheel control period",
-            "largest rms error",
-            printed="not said",
-            measured=", ".join(words),
-            unit="",
-            reason="The printed gains are unstable at 20 ms; 1 ms is used.",
-        )
+        yield SHEET.listed("period", letter=letter, words=", ".join(words))
