@@ -14,7 +14,7 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 build: $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check ".[plot,test,dev,docs]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check ".[report,cli,test,dev,docs]"
 
 # Builds the native module into the source tree, for work on the package itself; incremental.
 develop: build

@@ -419,7 +419,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_progress_is_shown_as_lines_on_a_terminal_without_tqdm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_is_shown_as_lines_on_a_terminal_without_rich(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     monkeypatch.setattr(sys, "stderr", Terminal())
     with progress.live() as report:
@@ -436,8 +436,9 @@ def test_progress_is_shown_as_lines_on_a_terminal_without_tqdm(monkeypatch: pyte
     ]
 
 
-def test_progress_is_a_bar_for_each_stage_with_tqdm(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("tqdm")
+def test_progress_is_a_bar_for_each_stage_with_rich(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("rich")
+    monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())
     with progress.live() as report:
         assert report is not None

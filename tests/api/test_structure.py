@@ -247,7 +247,8 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
-    optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "tqdm", "dask", "distributed", "numba", "pandas"}
+    optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
+    optional |= {"jinja2", "markupsafe", "rich", "shtab"}
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"

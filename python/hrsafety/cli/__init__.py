@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 from hrsafety.cli import exit_codes, font_cache
 from hrsafety.cli.parsers import LAW_NAMES, UsageError, parser
+from hrsafety.cli.terminal import styled
 from hrsafety.errors import HrsafetyError, InvalidParameterError
 
 __all__ = ["LAW_NAMES", "main"]
@@ -68,7 +69,7 @@ def _run(argv: Sequence[str] | None) -> int:
 
 
 def _fail(message: str) -> int:
-    print(f"hrsafety: error: {' '.join(message.split())}", file=sys.stderr)
+    print(styled(f"hrsafety: error: {' '.join(message.split())}", "red", sys.stderr), file=sys.stderr)
     return exit_codes.ERROR
 
 

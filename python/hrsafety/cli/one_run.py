@@ -11,8 +11,9 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.cli import output, verdict
+from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.cli.simulate_page import RunTable
 
 __all__ = ["simulate_file"]
 
@@ -39,21 +40,39 @@ def simulate_file(options: argparse.Namespace) -> None:
     scenario, law = described.scenario, output.with_options(described.law, options)
     score = nav.evaluate(scenario, law, integrator=options.integrator, step=options.step, hold=options.hold)
     place = None if options.out is None else output.folder(options.out)
-    print(f"scenario  {options.scenario}")
-    print(f"law       {output.law_words(law)}")
-    print(f"stepping  {output.stepping_words(options, scenario.control_period)}")
+    setting = [
+        ("scenario", options.scenario),
+        ("law", output.law_words(law)),
+        ("stepping", output.stepping_words(options, scenario.control_period)),
+    ]
+    summary, table = list(_summary(score)), _obstacle_table(score.trajectory)
+    print("\n".join(f"{name:<10}{words}" for name, words in setting))
     print()
-    print("\n".join(_summary(score)))
+    print("\n".join(f"{name:<15}{words}" for name, words in summary))
     if scenario.obstacles:
         print()
-        print(_obstacle_table(score.trajectory))
-    written = [] if place is None else list(_write(score.trajectory, place))
+        print(terminal.table(table.headers, table.rows, left=table.left))
+    found = output.warnings_of(scenario, score.trajectory)
+    written = []
+    if place is not None:
+        pictures = dict(_draw(score.trajectory, place))
+        written = [score.trajectory.to_csv(place / "trajectory.csv"), *pictures]
+        page = simulate_page.html(
+            source=options.scenario,
+            said=_how_it_ended(score.trajectory),
+            good=score.trajectory.outcome == "arrived",
+            facts=[*setting, *summary],
+            table=table,
+            pictures=pictures,
+            files=written,
+            found=found,
+        )
+        written.append(output.write_text(place / "summary.html", page))
     if options.animate is not None:
         written.append(output.animation(score.trajectory, options.animate))
     if written:
         print()
         print("\n".join(f"wrote {path}" for path in written))
-    found = output.warnings_of(scenario, score.trajectory)
     verdict.end(_how_it_ended(score.trajectory), verdict.counted(score.trajectory), found, options, 1)
 
 
@@ -74,19 +93,19 @@ def _how_it_ended(run: nav.Trajectory) -> str:
     return f"stopped for good after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
 
 
-def _summary(score: nav.Performance) -> Iterator[str]:
+def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
     run = score.trajectory
     arrival = f"{run.arrival_time:.2f} s" if run.arrival_time == run.arrival_time else "-"
     parts = f"time H_T {score.arrival_time:.3f}, H_D {score.avoidance:.3f}, H_E {score.energy_saving:.3f}"
-    yield f"outcome        {OUTCOME_WORDS[run.outcome]}"
-    yield f"arrival time   {arrival}"
-    yield f"simulated      {run.time[-1]:.2f} s"
-    yield f"path length    {run.path_length:.2f} m"
-    yield f"energy         {run.energy:.2f} J"
-    yield f"performance H  {score.total:.3f}  ({parts})"
+    yield "outcome", OUTCOME_WORDS[run.outcome]
+    yield "arrival time", arrival
+    yield "simulated", f"{run.time[-1]:.2f} s"
+    yield "path length", f"{run.path_length:.2f} m"
+    yield "energy", f"{run.energy:.2f} J"
+    yield "performance H", f"{score.total:.3f}  ({parts})"
 
 
-def _obstacle_table(run: nav.Trajectory) -> str:
+def _obstacle_table(run: nav.Trajectory) -> RunTable:
     names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", "first contact", "robot speed then")
     units = ("", "", "m", "m", "m", "m", "s", "m/s")
     rows = [
@@ -102,15 +121,17 @@ def _obstacle_table(run: nav.Trajectory) -> str:
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]
-    return output.aligned((names, units), rows, left=(1,))
+    return RunTable(heading="Obstacles", headers=(names, units), rows=rows, left=(1,))
 
 
-def _write(run: nav.Trajectory, place: Path) -> Iterator[Path]:
-    """Write the trajectory and its pictures."""
-    yield run.to_csv(place / "trajectory.csv")
+def _draw(run: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
+    """Write the pictures; yield each with its caption."""
     from hrsafety import plotting
 
-    yield output.write_picture(place / "paths.png", plotting.paths([run]))
-    yield output.write_picture(place / "time_sequence.png", plotting.time_sequence(run))
-    yield output.write_picture(place / "distances.png", plotting.distances([run]))
-    yield output.write_picture(place / "energy.png", plotting.energy([run]))
+    for name, figure, caption in (
+        ("paths", plotting.paths([run]), "Path of the robot and of everything that moves."),
+        ("time_sequence", plotting.time_sequence(run), "The scene at instants of the run."),
+        ("distances", plotting.distances([run]), "Distance to the goal and to the obstacles over time."),
+        ("energy", plotting.energy([run]), "Wheel currents and accumulated loss over time."),
+    ):
+        yield output.write_picture(place / f"{name}.png", figure), caption

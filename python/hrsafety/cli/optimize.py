@@ -12,7 +12,7 @@ from typing import Any
 
 from hrsafety import navigation as nav
 from hrsafety._atomic import only_writer
-from hrsafety.cli import exit_codes, optimize_page, optimize_pictures, optimize_record, output, progress
+from hrsafety.cli import exit_codes, optimize_page, optimize_pictures, optimize_record, output, progress, terminal
 from hrsafety.cli.optimize_file import GAIN_NAMES, Gains, GainStudy, load
 from hrsafety.cli.optimize_report import (
     MOST_PATHS,
@@ -310,10 +310,10 @@ def _summary(report: GainReport) -> Iterator[str]:
     if search.valid and not search.feasible:
         yield f"not feasible   {NOT_EVERYWHERE}"
     yield ""
-    yield output.aligned(*set_table(report), left=(0,))
+    yield terminal.table(*set_table(report), left=(0,))
     yield ""
     header, rows = scenario_table(report)
-    yield output.aligned(header, rows[:MOST_LINES], left=(0, 1))
+    yield terminal.table(header, rows[:MOST_LINES], left=(0, 1))
     if len(rows) > MOST_LINES:
         yield f"and {len(rows) - MOST_LINES} more scenarios in results.json"
 

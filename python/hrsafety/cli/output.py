@@ -19,7 +19,9 @@ from hrsafety._arguments import meant
 from hrsafety._atomic import write_file
 from hrsafety.cli.exit_codes import WARNED
 from hrsafety.cli.progress import live
+from hrsafety.cli.terminal import styled
 from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
+from hrsafety.pages import require_jinja
 from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import law_named, name_of
 
@@ -27,7 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "aligned",
     "animation",
     "check_targets",
     "decimal",
@@ -47,36 +48,6 @@ __all__ = [
     "write_picture",
     "write_text",
 ]
-
-
-def aligned(headers: Sequence[Sequence[str]], rows: Iterable[Sequence[object]], *, left: Sequence[int] = ()) -> str:
-    """Return a table as text, numbers to the right.
-
-    Parameters
-    ----------
-    headers : sequence of sequence of str
-        One or more header lines; the last one carries the units.
-    rows : iterable of sequence
-        Cells, formatted already or printed as they are.
-    left : sequence of int
-        Columns that are aligned to the left.
-
-    Returns
-    -------
-    str
-        Lines without a final newline.
-    """
-    lines = [[str(cell) for cell in row] for row in (*headers, *rows)]
-    widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
-    text = []
-    for line in lines:
-        cells = (
-            cell.ljust(width) if column in left else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(line, widths, strict=True))
-        )
-        text.append("  ".join(cells).rstrip())
-    text.insert(len(headers), "  ".join("-" * width for width in widths))
-    return "\n".join(text)
 
 
 def decimal(value: float, digits: int = 2) -> str:
@@ -143,9 +114,8 @@ def report_warnings(found: Iterable[ResultWarning], strict: bool) -> None:
         If there are warnings and ``strict`` is true.
     """
     different = tuple(dict.fromkeys(found))
-    begin, end = ("\x1b[33m", "\x1b[0m") if _colored() else ("", "")
     for each in different:
-        print(f"{begin}hrsafety: {' '.join(str(each).split())}{end}", file=sys.stderr)
+        print(styled(f"hrsafety: {' '.join(str(each).split())}", "yellow", sys.stderr), file=sys.stderr)
     leave_if_strict(different, strict)
 
 
@@ -165,11 +135,6 @@ def leave_if_strict(found: Iterable[ResultWarning], strict: bool) -> None:
     if strict and any(True for _ in found):
         print(f"hrsafety: warnings with --strict: exit code {WARNED}", file=sys.stderr)
         raise SystemExit(WARNED)
-
-
-def _colored() -> bool:
-    """Return whether stderr is a terminal whose user does not refuse color (https://no-color.org)."""
-    return sys.stderr.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 @contextmanager
@@ -252,6 +217,7 @@ def check_targets(options: argparse.Namespace) -> None:
     if options.out is not None:
         planned_folder(options.out)
         require_matplotlib("--out")
+        require_jinja("--out")
     if options.animate is not None:
         planned_animation(options.animate)
     if options.json is not None:

@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from hrsafety import __version__
 from hrsafety._words import meant
+from hrsafety.cli.completion import SHELLS, PrintCompletion
 from hrsafety.cli.exit_codes import MEANINGS, WARNED
 from hrsafety.errors import HrsafetyError
 
@@ -129,6 +130,13 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     whole.add_argument("--version", action="version", version=f"hrsafety {__version__}")
+    whole.add_argument(
+        "--print-completion",
+        choices=SHELLS,
+        action=PrintCompletion,
+        default=argparse.SUPPRESS,
+        help="print the completion of this command line for a shell",
+    )
     commands = whole.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _add_reproduce(commands)
     _add_simulate(commands)

@@ -15,8 +15,9 @@ import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
-from hrsafety.cli import output, verdict
+from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.cli.simulate_page import RunTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
@@ -64,11 +65,13 @@ def simulate_people(options: argparse.Namespace) -> None:
     summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
     met = _encounters(crossings, summary)
     place = None if options.out is None else output.folder(options.out)
-    print("\n".join(_heading(options, recording, crossings, law)))
+    setting, table = list(_heading(options, recording, crossings, law)), _run_table(crossings, summary)
+    totals = "\n".join(_totals(summary, met))
+    print("\n".join(f"{name:<10}{words}" for name, words in setting))
     print()
-    print(_run_table(crossings, summary))
+    print(terminal.table(table.headers, table.rows, left=table.left))
     print()
-    print("\n".join(_totals(summary, met)))
+    print(totals)
     found = output.warnings_of(recording, *(crossing.scenario for crossing in crossings), summary)
     written = []
     if options.json is not None:
@@ -79,7 +82,21 @@ def simulate_people(options: argparse.Namespace) -> None:
     if place is not None or options.animate is not None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
-        written += [] if place is None else _write(crossings, summary, met, trajectory, place)
+        if place is not None:
+            pictures = dict(_draw(summary, trajectory, place))
+            files = [*_tables(crossings, summary, met, place), *pictures]
+            page = simulate_page.html(
+                source=options.people,
+                said=_how_they_ended(summary, verdict.counted(summary)),
+                good=bool((summary.outcome == "arrived").all()),
+                facts=setting,
+                table=table,
+                pictures=pictures,
+                files=files,
+                found=found,
+                totals=totals,
+            )
+            written += [*files, output.write_text(place / "summary.html", page)]
         if options.animate is not None:
             print(f"\nanimated run  {index}")
             written.append(output.animation(trajectory, options.animate))
@@ -124,19 +141,17 @@ def _heading(
     recording: datasets.Recording,
     crossings: Sequence[scenarios.Crossing],
     law: nav.Law,
-) -> Iterator[str]:
+) -> Iterator[tuple[str, str]]:
     flow, scenario = recording.main_flow(), crossings[0].scenario
     way = [f"({x:.2f}, {y:.2f})" for x, y in (scenario.start, scenario.goal)]
     single = len(recording.momentary(float(recording.time_s[0]), duration=max(recording.duration, 1.0) + 1.0))
     left_out = f", {single} of them at one instant only and left out" if single else ""
-    yield f"people    {options.people}: {len(recording.people())} people in {recording.duration:.1f} s{left_out}"
-    yield (
-        f"flow      through ({flow.center[0]:.2f}, {flow.center[1]:.2f}) m at {math.degrees(flow.angle):.0f} degrees, "
-        f"spread {flow.spread:.2f} m"
-    )
-    yield f"robot     from {way[0]} to {way[1]} m, {math.dist(scenario.start, scenario.goal):.2f} m across the flow"
-    yield f"law       {output.law_words(law)}"
-    yield f"stepping  {output.stepping_words(options, scenario.control_period)}"
+    center = f"({flow.center[0]:.2f}, {flow.center[1]:.2f}) m"
+    yield "people", f"{options.people}: {len(recording.people())} people in {recording.duration:.1f} s{left_out}"
+    yield "flow", f"through {center} at {math.degrees(flow.angle):.0f} degrees, spread {flow.spread:.2f} m"
+    yield "robot", f"from {way[0]} to {way[1]} m, {math.dist(scenario.start, scenario.goal):.2f} m across the flow"
+    yield "law", output.law_words(law)
+    yield "stepping", output.stepping_words(options, scenario.control_period)
 
 
 RUN_HEADER = (
@@ -146,7 +161,7 @@ RUN_HEADER = (
 )
 
 
-def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> str:
+def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary) -> RunTable:
     rows = [
         (
             row,
@@ -161,7 +176,7 @@ def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummar
         )
         for row, crossing in enumerate(crossings)
     ]
-    return output.aligned(RUN_HEADER, rows, left=(4,))
+    return RunTable(heading="Runs", headers=RUN_HEADER, rows=rows, left=(4,))
 
 
 def _totals(summary: nav.BatchSummary, met: _Encounters) -> Iterator[str]:
@@ -280,25 +295,25 @@ def _finite_or_none(value: object) -> object:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _write(
-    crossings: Sequence[scenarios.Crossing],
-    summary: nav.BatchSummary,
-    met: _Encounters,
-    trajectory: nav.Trajectory,
-    place: Path,
-) -> list[Path]:
-    """Write both tables and the pictures of one run."""
+def _tables(
+    crossings: Sequence[scenarios.Crossing], summary: nav.BatchSummary, met: _Encounters, place: Path
+) -> Iterator[Path]:
+    """Write what came of each run and of each person."""
+    runs, people = _run_records(crossings, summary), _person_records(crossings, met)
+    yield output.write_csv(place / "runs.csv", list(runs[0]), (list(record.values()) for record in runs))
+    yield output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people))
+
+
+def _draw(summary: nav.BatchSummary, trajectory: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
+    """Write the pictures of one run and of all; yield each with its caption."""
     from hrsafety import plotting
 
-    runs, people = _run_records(crossings, summary), _person_records(crossings, met)
-    written = [
-        output.write_csv(place / "runs.csv", list(runs[0]), (list(record.values()) for record in runs)),
-        output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people)),
-        output.write_picture(place / "paths.png", plotting.paths([trajectory], regions=False)),
-        output.write_picture(place / "time_sequence.png", plotting.time_sequence(trajectory)),
-        output.write_picture(place / "outcomes.png", plotting.outcomes({"all runs": summary})),
-    ]
+    for name, figure, caption in (
+        ("paths", plotting.paths([trajectory], regions=False), "Path of the robot across the people, in one run."),
+        ("time_sequence", plotting.time_sequence(trajectory), "Instants of the same run."),
+        ("outcomes", plotting.outcomes({"all runs": summary}), "How the runs ended."),
+    ):
+        yield output.write_picture(place / f"{name}.png", figure), caption
     if np.isfinite(summary.min_clearance).any():
-        picture = plotting.clearances({"all runs": summary})
-        written.append(output.write_picture(place / "clearances.png", picture))
-    return written
+        figure = plotting.clearances({"all runs": summary})
+        yield output.write_picture(place / "clearances.png", figure), "Least clearance of the runs."

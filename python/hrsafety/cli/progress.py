@@ -1,14 +1,14 @@
-"""Live progress of long work on a terminal: a bar if tqdm is there, else lines, else nothing."""
+"""Live progress of long work on a terminal: bars if rich is there, else lines; nothing elsewhere."""
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+
+from hrsafety.cli.terminal import can_draw, console
 
 __all__ = ["Report", "live"]
 
@@ -16,6 +16,7 @@ Report = Callable[[str, int, int, float | None], object]
 """What long work calls: stage, work done, work in all, best value so far if anything is searched."""
 
 SECONDS_BETWEEN_LINES = 2.0
+SECONDS_BETWEEN_FRAMES = 0.1
 
 
 @contextmanager
@@ -36,7 +37,7 @@ def live(*, digits: int = 5) -> Iterator[Report | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    shown = _Bars(digits) if importlib.util.find_spec("tqdm") is not None else _Lines(digits)
+    shown = _Bars(digits) if can_draw(sys.stderr) else _Lines(digits)
     try:
         yield shown
     finally:
@@ -50,30 +51,38 @@ def _best(value: float | None, digits: int) -> str:
 
 
 class _Bars:
-    """One bar of tqdm for each stage."""
+    """One bar of rich for each stage; drawn by the calls alone, without a thread of its own."""
 
     def __init__(self, digits: int) -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TextColumn
+
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[best]}"),
+        )
         self._digits = digits
-        self._stage = ""
-        self._bar: Any = None
+        self._stage: str | None = None
+        self._last = -math.inf
+        self._progress = Progress(*columns, console=console(sys.stderr), auto_refresh=False)
+        self._progress.start()
 
     def __call__(self, stage: str, done: int, total: int, best_value: float | None) -> None:
         """Show how far a stage is."""
-        if stage != self._stage or self._bar is None:
-            from tqdm import tqdm
-
-            self.close()
-            self._stage = stage
-            self._bar = tqdm(total=total, desc=stage, unit="", unit_scale=True, file=sys.stderr, leave=True)
-        self._bar.total = total
-        self._bar.set_postfix_str(_best(best_value, self._digits), refresh=False)
-        self._bar.update(done - self._bar.n)
+        if stage != self._stage:
+            self._stage, self._last = stage, -math.inf
+            self._task = self._progress.add_task(stage, total=total, best="")
+        now = time.monotonic()
+        refresh = done >= total or now - self._last > SECONDS_BETWEEN_FRAMES
+        self._last = now if refresh else self._last
+        best = _best(best_value, self._digits)
+        self._progress.update(self._task, completed=done, total=total, best=best, refresh=refresh)
 
     def close(self) -> None:
-        """Leave the bar as it is."""
-        if self._bar is not None:
-            self._bar.close()
-            self._bar = None
+        """Leave the bars as they are."""
+        self._progress.stop()
 
 
 class _Lines:

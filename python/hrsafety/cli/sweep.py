@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from hrsafety import sweep
-from hrsafety.cli import output, progress, sweep_page, sweep_pictures
+from hrsafety.cli import output, progress, sweep_page, sweep_pictures, terminal
 from hrsafety.cli.sweep_file import SweepFile, load
 from hrsafety.cli.sweep_summary import Summary, summarized
 from hrsafety.errors import InvalidParameterError, MissingExtraError
@@ -129,7 +129,7 @@ def _words(options: argparse.Namespace, described: SweepFile, summary: Summary, 
     yield from (str(warning) for warning in result.warnings)
     yield ""
     rows = [(each.label, *each.numbers()) for each in summary.numbers if each.column.name in described.show]
-    yield output.aligned((("column", "least", "mean", "largest", "without value"),), rows, left=(0,))
+    yield terminal.table((("column", "least", "mean", "largest", "without value"),), rows, left=(0,))
     for each in summary.words:
         yield f"{each.label}: {', '.join(f'{word} {number:,}' for word, number in each.counts)}"
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
-from hrsafety.cli import output
+from hrsafety.cli import output, terminal
 from hrsafety.cli.exit_codes import FAILED_RUN
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
@@ -20,6 +21,8 @@ Counts = Mapping[str, int]
 
 FAILURES = ("contact", "moving_contact", "timed_out", "stopped", "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
+# First word of the last line and its look on a terminal.
+_LOOKS = {"FAILED": "bold red", "passed": "green", "NOTE": "yellow"}
 _OTHER_WORDS = {"collided": "contact", "collision": "contact", "timeout": "timed_out"}
 
 
@@ -118,7 +121,8 @@ def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argp
     fail_on = failures_of(options.fail_on)
     output.report_warnings(found, strict=False)
     print()
-    print(sentence(said, counts, fail_on, runs))
+    last = sentence(said, counts, fail_on, runs)
+    print(terminal.styled(last, _LOOKS[last.split()[0]], sys.stdout))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
     output.leave_if_strict(found, options.strict)
