@@ -7,12 +7,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hrsafety import impact
 from hrsafety.cli import foam_page, output, terminal
+from hrsafety.cli.foam_curves import Remembered
 from hrsafety.cli.foam_file import Array, FoamDesignFile, load
 from hrsafety.cli.foam_report import Check, FoamReport, Judged, Range
 from hrsafety.pages import require_jinja
@@ -40,14 +41,19 @@ def design_file(options: argparse.Namespace) -> None:
     with output.located(options.design):
         described = load(options.design)
     place = output.folder(options.out)
-    report = _report(described)
+    design = _design(described)
+    curves = _Curves(
+        upper=Remembered(design.upper) if design.limits.given().keys() - {"max_compression"} else None,
+        lower=Remembered(design.lower),
+    )
+    report = _report(described, design, curves)
     print(f"design         {options.design}")
     print("\n".join(_summary(report)))
     if report.foams:
         print()
         print(_foam_table(report))
     print()
-    for path in _write(report, place):
+    for path in _write(report, _picture(report, design, curves), place):
         print(f"wrote {path}")
     output.report_warnings(report.warnings, options.strict)
 
@@ -76,17 +82,21 @@ def _design(file: FoamDesignFile) -> impact.FoamDesign:
     )
 
 
-def _report(file: FoamDesignFile) -> FoamReport:
-    design = _design(file)
-    upper = design.upper(file.damping) if design.limits.given().keys() - {"max_compression"} else None
+class _Curves(NamedTuple):
+    """Boundaries over the damping, for table and picture; ``None`` without a limit for them."""
+
+    upper: Remembered | None
+    lower: Remembered
+
+
+def _report(file: FoamDesignFile, design: impact.FoamDesign, curves: _Curves) -> FoamReport:
     return FoamReport(
         file=file,
-        upper=upper,
-        lower=design.lower(file.damping),
+        upper=curves.upper(file.damping) if curves.upper else None,
+        lower=curves.lower(file.damping),
         foams=tuple(_judged(design, name, foam) for name, foam in file.foams.items()),
         widest=_widest(file.damping, *design.stiffness_range(file.damping, file.margin)),
         feasibility=design.feasibility(file.damping, file.margin),
-        fitting=design.stiffness_range(file.damping, 0.0),
         warnings=_warnings(file, design),
     )
 
@@ -180,9 +190,9 @@ def _foam_table(report: FoamReport) -> str:
 # ---- files ------------------------------------------------------------------------------------------
 
 
-def _write(report: FoamReport, place: Path) -> Iterator[Path]:
+def _write(report: FoamReport, picture: Figure, place: Path) -> Iterator[Path]:
     yield output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(report))
-    drawn = output.write_picture(place / "boundaries.png", _picture(report))
+    drawn = output.write_picture(place / "boundaries.png", picture)
     yield drawn
     yield output.write_text(place / "summary.html", foam_page.html(report, drawn.read_bytes()))
 
@@ -201,18 +211,16 @@ def _rows(report: FoamReport) -> Iterator[list[object]]:
         yield row
 
 
-def _picture(report: FoamReport) -> Figure:
+def _picture(report: FoamReport, design: impact.FoamDesign, curves: _Curves) -> Figure:
     from hrsafety import plotting
     from hrsafety.plotting.impacts.boundaries import refined
 
     file = report.file
-    design = _design(file)
-    curves = [curve for curve, found in ((design.upper, report.upper), (design.lower, report.lower)) if found]
-    damping = refined(file.damping, curves)
+    damping = refined(file.damping, [curve for curve in curves if curve])
     return plotting.foam_boundaries(
         damping,
-        design.upper(damping) if report.upper else None,
-        design.lower(damping) if report.lower else None,
+        curves.upper(damping) if curves.upper else None,
+        curves.lower(damping),
         foams=report.file.foams,
         accepted={judged.name: judged.accepted for judged in report.foams},
         statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},

@@ -95,7 +95,7 @@ def _feed_forward(letter: str) -> Iterator[Cell]:
 
 
 @cache
-def sine_runs(letter: str, feedback: nav.wheels.Feedback, quantized: bool) -> tuple[nav.robots.WheelRun, ...]:
+def sine_runs(letter: str, feedback: nav.robots.wheels.Feedback, quantized: bool) -> tuple[nav.robots.WheelRun, ...]:
     """Return the wheels of a robot after a sine of 1 rad/s and 0.5 Hz for 8 s."""
     reference = nav.robots.WheelReference.sine(speed=1.0, frequency=0.5, duration=8.0)
     wheels = [dataclasses.replace(wheel, feedback=feedback) for wheel in ROBOTS[letter]]
