@@ -24,7 +24,7 @@ SENSING = {
 }
 
 
-def episode(walk: NDArray[np.float64], sized_for: nav.Measurement | None, sensing: nav.Measurement | None, seed: int):  # type: ignore[no-untyped-def]
+def person(walk: NDArray[np.float64], radii: nav.Regions) -> nav.Human | None:
     """A person who crosses the way at a place, on a course, earlier or later than the robot."""
     place, course, offset = walk.tolist()
     velocity = (SPEED * np.cos(course), SPEED * np.sin(course))
@@ -32,16 +32,34 @@ def episode(walk: NDArray[np.float64], sized_for: nav.Measurement | None, sensin
     start = (place - when * velocity[0], -when * velocity[1])
     if np.hypot(*start) < 1.5:
         return None
-    radii = nav.region_radii(ROBOT, PERSON, measurement=sized_for)._asdict()
-    person = nav.Human(start=start, velocity=velocity, max_speed=SPEED, **radii)
-    return nav.Scenario(start=(0, 0), goal=(6, 0), obstacles=(person,), measurement=sensing, seed=seed, time_limit=15.0)
+    return nav.Human(start=start, velocity=velocity, max_speed=SPEED, **radii._asdict())
 
 
-def attacks(sized_for: nav.Measurement | None, sensing: nav.Measurement | None, seed: int) -> tuple[int, int]:
+def episode(
+    walks: NDArray[np.float64], sized_for: nav.Measurement | None, sensing: nav.Measurement | None, seed: int
+) -> nav.Scenario | None:
+    """People who cross the way together, if nobody of them is near the robot at the start."""
+    radii = nav.region_radii(ROBOT, PERSON, measurement=sized_for)
+    people = [person(walk, radii) for walk in walks]
+    if None in people:
+        return None
+    return nav.Scenario(
+        start=(0, 0),
+        goal=(6, 0),
+        obstacles=tuple(filter(None, people)),
+        measurement=sensing,
+        seed=seed,
+        time_limit=15.0,
+    )
+
+
+def attacks(
+    sized_for: nav.Measurement | None, sensing: nav.Measurement | None, seed: int, people: int = 1
+) -> tuple[int, int]:
     """Return how many of how many walks touch the moving robot: drawn at first, then near the closest ones."""
     generator = np.random.default_rng(seed)
     low, high = (0.5, 0.0, -1.5), (5.5, 2 * np.pi, 1.5)
-    walks = generator.uniform(low, high, (DRAWN, 3))
+    walks = generator.uniform(low, high, (DRAWN, people, 3))
     touched = tried = 0
     for refinement in range(ROUNDS + 1):
         built = [(walk, episode(walk, sized_for, sensing, seed)) for seed, walk in enumerate(walks)]
@@ -63,7 +81,15 @@ def test_nobody_touches_the_moving_robot_where_regions_are_sized_for_the_sensing
     assert touched == 0
 
 
+@pytest.mark.parametrize("sensing", SENSING)
+def test_three_people_together_do_not_either(sensing: str) -> None:
+    touched, tried = attacks(SENSING[sensing], SENSING[sensing], seed=3, people=3)
+    assert tried > 900
+    assert touched == 0
+
+
+@pytest.mark.parametrize("people", [1, 3])
 @pytest.mark.parametrize("sensing", ["late", "late and noisy"])
-def test_the_same_adversary_touches_it_where_they_are_sized_without_latency(sensing: str) -> None:
-    touched, tried = attacks(None, SENSING[sensing], seed=1)
+def test_the_same_adversary_touches_it_where_they_are_sized_without_latency(sensing: str, people: int) -> None:
+    touched, tried = attacks(None, SENSING[sensing], seed=1, people=people)
     assert touched > 0.1 * tried
