@@ -56,6 +56,16 @@ depth = np.linspace(0.0, 0.008, 17)
 force = 24250.0 * depth + np.sin(np.arange(17.0))
 """
 BOOTSTRAP = "impact.identify_foam(force, depth, time_, np.round(drop, 4), 1.54, bootstrap=200_000)"
+STATIC = """
+depth = np.linspace(0.0, 0.01, 2_000_000)
+force = 24e3 * depth + np.sin(np.arange(len(depth)))
+"""
+WHEEL = """
+wheel = nav.HOLONOMIC_WHEELS[0]
+"""
+TESTED = """
+tests = nav.open_loop_tests(wheel, duration=2000.0, repeats=1)
+"""
 BOUNDARY = "impact.foam_stiffness_upper(parts[0], damping=np.linspace(0.0, 300.0, 400_000), closing_speed=1.25)"
 
 # Every piece of work takes many seconds, so the signal always arrives while it runs.
@@ -73,6 +83,9 @@ JOBS = {
     "one joint": (JOINT, DRIVEN),
     "bootstrap": (DROP, BOOTSTRAP),
     "boundary": (PARTS, BOUNDARY),
+    "static tests": (STATIC, "[impact.fit_static(force, depth) for _ in range(1000)]"),
+    "open-loop tests": (WHEEL, "[nav.open_loop_tests(wheel, duration=3000.0, repeats=1) for _ in range(100)]"),
+    "wheel": (WHEEL + TESTED, "[nav.identify_wheel(tests) for _ in range(1000)]"),
 }
 
 

@@ -26,6 +26,15 @@ JOBS = {
         'burst = reactive.Burst(kind="sweep", duration=500.0)',
         "reactive.record_burst(burst, row, **places, noise=0.1)",
     ),
+    "transforms of a long record": (
+        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**22)), sample_rate=48e3)",
+        "[reactive.estimate_delays(heard, row) for _ in range(100)]",
+    ),
+    "phases of a long record": (
+        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**22)), sample_rate=48e3)",
+        '[reactive.likeness(heard, row, method="phase") for _ in range(100)]',
+    ),
+    "smallest skirt": ("", "reactive.smallest_skirt(0.01, layouts=100_000)"),
     "one long comparison": (
         "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**22)), sample_rate=2e6)",
         'reactive.estimate_delays(heard, row, method="mean_square")',
