@@ -12,14 +12,12 @@ from hrsafety._arguments import vector
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plotting import inputs, labels, notes, shapes, style
+from hrsafety.plotting import floor, inputs, labels, notes, shapes, style
 from hrsafety.plotting.comparisons import law_looks
 from hrsafety.plotting.comparisons.law_looks import Runs
-from hrsafety.plotting.runs.scenes import _draw_path
-from hrsafety.plotting.runs.sequences import COLUMNS, _draw_velocity, obstacle_velocity
+from hrsafety.plotting.runs.sequences import COLUMNS
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
@@ -30,7 +28,6 @@ Rows = npt.NDArray[np.int64]
 
 INSTANT_STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # s
 MOST_PLACES = 6  # places at which one moving obstacle is drawn
-LEGEND_COLUMNS = 4
 BEYOND_MEDIAN = 2.0  # the time axis ends here, in medians of the durations
 BEYOND_REGION = 1.25  # the axis of distances ends here, in reaches of the largest region
 
@@ -85,9 +82,7 @@ def plot_arena_paths(
     limits = law_looks.limits_of(given, whole=inputs.checked_view(view))
     marks = [law_looks.handle("each second", marker=(3, 0, -90.0), markersize=8), *law_looks.event_handles(given)]
     handles = [*law_looks.law_handles(looks), *marks, *law_looks.scene_handles(given, regions=regions)]
-    figure = _scene_figure(limits, handles, title=title)
-    axes = figure.subplots()
-    style.frame_scene(axes, limits)
+    figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
     named: list[Annotation] = []
     for index, obstacle in enumerate(scenario.obstacles):
         if shapes.is_mobile(obstacle):
@@ -96,12 +91,9 @@ def plot_arena_paths(
             color = law_looks.obstacle_color(obstacle)
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), color, regions=regions)
     for name, run in given.items():
-        _draw_path(axes, run, looks[name])
+        floor.events(axes, run, looks[name])
     shapes.add_start_and_goal(axes, scenario)
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    notes.add_warnings(figure, *given.values())
-    labels.clear_labels(figure, named)
-    return figure
+    return floor.finish(figure, handles, runs=given.values(), named=named)
 
 
 @style.styled
@@ -223,29 +215,16 @@ def plot_arena_sequence(
     chosen = _checked_times(given, times)
     looks = law_looks.looks_of(given)
     limits = law_looks.limits_of(given, whole=inputs.checked_view(view), least_ratio=0.75)
-    columns = min(COLUMNS, len(chosen))
-    rows = -(-len(chosen) // columns)
     handles = [
         *law_looks.law_handles(looks, marker="o"),
         *law_looks.event_handles(given, ends=False, until=max(chosen)),
     ]
     handles += law_looks.scene_handles(given, regions=False)
-    figure = _scene_figure(limits, handles, title=title, rows=rows, columns=columns)
-    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for axes, instant in zip(panels.flat, chosen, strict=False):
-        style.frame_scene(axes, limits)
-        axes.label_outer()
-        axes.set_title(f"t = {instant:.2f} s")
+    titles = [f"t = {instant:.2f} s" for instant in chosen]
+    figure, panels = floor.panels(limits, titles=titles, columns=COLUMNS, entries=len(handles), title=title)
+    for axes, instant in zip(panels, chosen, strict=True):
         _draw_instant(axes, given, looks, instant)
-    for number, axes in enumerate(panels.flat):
-        if number >= len(chosen):
-            axes.remove()
-        elif number + columns >= len(chosen):  # nothing below it
-            axes.set_xlabel("x (m)")
-            axes.tick_params(labelbottom=True)
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    notes.add_warnings(figure, *given.values())
-    return figure
+    return floor.finish(figure, handles, runs=given.values())
 
 
 def _draw_nearest(
@@ -305,16 +284,6 @@ def _highest_shown(runs: Runs, chosen: Sequence[int]) -> float:
     return BEYOND_REGION * float((active - _radii(run)[chosen]).max()) + 0.3
 
 
-def _scene_figure(
-    limits: style.Limits, handles: Sequence[Artist], *, title: str | None, rows: int = 1, columns: int = 1
-) -> Figure:
-    """Return a figure for scenes with a legend below."""
-    legend_rows = -(-len(handles) // LEGEND_COLUMNS)
-    titled = title is not None
-    height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=legend_rows, titled=titled)
-    return style.new_figure(height, title=title, compressed=True)
-
-
 def _draw_places(axes: Axes, runs: Runs, index: int, limits: style.Limits) -> list[Annotation]:
     """Draw the way of a moving obstacle, and the obstacle while all of it is in view; return labels of times."""
     run = law_looks.longest(runs)
@@ -362,11 +331,11 @@ def _draw_instant(axes: Axes, runs: Runs, looks: Mapping[str, style.Properties],
         place = run.obstacle_position[row, index]
         shapes.add_obstacle(axes, obstacle, place, law_looks.obstacle_color(obstacle), regions=False)
         if shapes.is_mobile(obstacle):
-            _draw_velocity(axes, place, obstacle_velocity(run, row, index))
+            floor.velocity(axes, place, floor.obstacle_velocity(run, row, index))
     for name, other in runs.items():
         here = inputs.row_at(other, instant)
         path = other.position[: here + 1]
-        axes.plot(path[:, 0], path[:, 1], zorder=3.8, **(looks[name] | {"linewidth": 1.2}))
+        floor.line(axes, path, zorder=3.8, **(looks[name] | {"linewidth": 1.2}))
         shapes.add_robot(axes, scenario, path[-1], looks[name]["color"], filled=False)
         axes.plot(*path[-1], "o", color=looks[name]["color"], markersize=3.5, zorder=4.2)
         for touch in other.contact_time[other.contact_time <= instant]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.repeated import Band, Repeated
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -86,23 +86,17 @@ def repeated_paths(
         for obstacle in still
     ]
     limits = inputs.view_limits([places, *regions], margin=MARGIN)
-    figure = style.new_figure(
-        style.scene_height(limits, legend_rows=2, titled=title is not None), title=title, compressed=True
-    )
-    axes = figure.subplots()
-    style.frame_scene(axes, limits)
+    figure, (axes,) = floor.panels(limits, entries=2 * LEGEND_COLUMNS, title=title)
     looks = shapes.looks(scenario.obstacles)
     for obstacle, look in zip(scenario.obstacles, looks, strict=True):
         if not shapes.is_mobile(obstacle):
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), look.color, regions=True)
     _draw_paths(axes, repeated, band, share)
     if exact is not None:
-        axes.plot(*exact.position.T, label="compared with", zorder=5.0, **EXACT_LOOK)
+        floor.line(axes, exact.position, zorder=5.0, label="compared with", **EXACT_LOOK)
     shapes.add_start_and_goal(axes, scenario)
     handles, _ = axes.get_legend_handles_labels()
-    handles = [*handles, *shapes.start_and_goal_handles(), *_standing_handles(scenario)]
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    return figure
+    return floor.finish(figure, [*handles, *shapes.start_and_goal_handles(), *_standing_handles(scenario)])
 
 
 def _standing_handles(scenario: Scenario) -> list[Artist]:
@@ -116,7 +110,7 @@ def _draw_paths(axes: Axes, repeated: Repeated, band: Band, share: float) -> Non
     """Draw some paths, the band of all and the first contacts."""
     for row in range(min(len(repeated), MOST_PATHS)):
         label = f"{min(len(repeated), MOST_PATHS)} of {len(repeated)} paths" if row == 0 else None
-        axes.plot(*repeated.position[row].T, zorder=3.0, label=label, **PATH_LOOK)
+        floor.line(axes, repeated.position[row], zorder=3.0, label=label, **PATH_LOOK)
     start, goal = np.asarray(repeated.scenario.start), np.asarray(repeated.scenario.goal)
     along = (goal - start) / np.hypot(*(goal - start))
     across = np.array([-along[1], along[0]])
@@ -129,7 +123,7 @@ def _draw_paths(axes: Axes, repeated: Repeated, band: Band, share: float) -> Non
     axes.fill(
         *edge.T, color=style.RUN_COLORS[0], alpha=BAND_ALPHA, linewidth=0.0, label=f"{100 * share:.0f} % of the runs"
     )
-    axes.plot(*middle.T, color=style.RUN_COLORS[0], linewidth=2.0, label="median", zorder=4.0)
+    floor.line(axes, middle, zorder=4.0, color=style.RUN_COLORS[0], linewidth=2.0, label="median")
     touched = np.nanmin(
         np.where(np.isnan(repeated.contact_time), np.inf, repeated.contact_time), axis=1, initial=np.inf
     )

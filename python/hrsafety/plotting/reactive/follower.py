@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety._arguments import vector
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import labels, style
+from hrsafety.plotting import floor, labels, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -69,23 +69,14 @@ def follower_runs(
     """
     if not runs:
         raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
-    columns = min(MOST_COLUMNS, len(runs))
-    rows = math.ceil(len(runs) / columns)
     limits = view_of(list(runs.values()))
-    height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=2, titled=title is not None)
-    figure = style.new_figure(height, title=title)
-    panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
-    named: list[Annotation] = []
-    for axes, (name, run) in zip(panels, runs.items(), strict=False):
-        style.frame_scene(axes, limits)
-        named += _draw_run(axes, run, times, limits)
-        axes.label_outer()
-        axes.set_title(f"{name}\n{_ending(run)}", fontsize=style.SMALL_FONT_SIZE)
-    for axes in panels[len(runs) :]:
-        axes.set_axis_off()
-    style.legend_below(figure, _handles(list(runs.values()), panels), columns=3)
-    labels.clear_labels(figure, named)
-    return figure
+    titles = [f"{name}\n{_ending(run)}" for name, run in runs.items()]
+    places: dict[str, int] = {"columns": MOST_COLUMNS, "entries": 6, "legend_columns": 3}
+    figure, panels = floor.panels(limits, titles=titles, title=title, compressed=False, **places)
+    named = [
+        label for axes, run in zip(panels, runs.values(), strict=True) for label in _draw_run(axes, run, times, limits)
+    ]
+    return floor.finish(figure, _handles(list(runs.values()), panels), columns=3, named=named)
 
 
 def view_of(runs: Sequence[FollowerRun]) -> style.Limits:
@@ -110,26 +101,21 @@ def _ending(run: FollowerRun) -> str:
 
 def _draw_run(axes: Axes, run: FollowerRun, times: Sequence[float] | None, limits: style.Limits) -> list[Annotation]:
     """Draw one run and return the labels of its instants."""
-    from matplotlib.patches import Circle
-
     named: list[Annotation] = []
     end = float(run.time[-1])
     chosen = np.linspace(0.0, end, 5)[1:-1] if times is None else vector("times", times)
     if len(chosen) > MOST_INSTANTS:
         raise InvalidParameterError("times", f"be at most {MOST_INSTANTS} instants in s", Shown(f"{len(chosen)}"))
     wanted = chosen[(chosen >= 0.0) & (chosen < end)]
-    axes.plot(*run.source.T, color=LEADER_COLOR, linewidth=1.2, linestyle="--")
+    floor.line(axes, run.source, zorder=2, color=LEADER_COLOR, linewidth=1.2, linestyle="--")
     axes.plot(*run.source[-1], marker="*", color=LEADER_COLOR, markersize=11, linestyle="none", zorder=5)
-    axes.plot(*run.position.T, color=ROBOT_COLOR, zorder=3)
+    floor.line(axes, run.position, zorder=3, color=ROBOT_COLOR)
     shown = _apart(run, [int(np.searchsorted(run.time, each)) for each in wanted])
     for rank, row in enumerate(shown):
         last = rank == len(shown) - 1
         strength = 0.25 + 0.55 * (rank + 1) / len(shown)
         color = style.CONTACT_COLOR if last and run.collided else ROBOT_COLOR
-        axes.add_patch(Circle(tuple(run.position[row]), run.body_radius, facecolor=color, alpha=0.35 * strength))
-        axes.add_patch(
-            Circle(tuple(run.position[row]), run.body_radius, fill=False, edgecolor=color, alpha=strength, zorder=4)
-        )
+        floor.disc(axes, run.position[row], run.body_radius, color, strength=strength, face=0.35)
         named.append(_label(axes, run.position[row], f"{run.time[row]:.0f} s", color))
         for index, mover in enumerate(run.scene.movers):
             moves = mover.velocity != (0.0, 0.0)
@@ -189,17 +175,16 @@ def patch_of(shape: Any, shift: Any) -> Any:
 def _handles(runs: Sequence[FollowerRun], panels: Iterable[Axes]) -> list[Artist]:
     """Return the legend: only what is drawn."""
     from matplotlib.colors import to_rgb
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     star: style.Properties = {"marker": "*", "linestyle": "--", "linewidth": 1.2, "markersize": 10}
-    ring: style.Properties = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markersize": 10}
+    ring: style.Properties = {"marker": "o", "markerfacecolor": "none", "markersize": 10}
     handles: list[Artist] = [
-        Line2D([], [], color=ROBOT_COLOR, label="follower, with times", **(ring | {"linestyle": "-"})),
-        Line2D([], [], color=LEADER_COLOR, label="source of the sound", **star),
+        floor.handle("follower, with times", color=ROBOT_COLOR, linestyle="-", **ring),
+        floor.handle("source of the sound", color=LEADER_COLOR, **star),
     ]
     if any(run.collided for run in runs):
-        handles.append(Line2D([], [], markeredgecolor=style.CONTACT_COLOR, label="contact", **ring))
+        handles.append(floor.handle("contact", color=style.CONTACT_COLOR, **ring))
     drawn = {to_rgb(patch.get_facecolor()) for axes in panels for patch in axes.patches}
     for index, color in enumerate(style.PERSON_COLORS[:2]):
         if to_rgb(color) in drawn:

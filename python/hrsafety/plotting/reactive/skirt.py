@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import style
+from hrsafety.plotting import floor, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -155,22 +155,14 @@ def skirt_runs(runs: Mapping[str, SkirtRun], *, title: str | None = None) -> Fig
     """
     if not runs:
         raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
-    columns = min(MOST_COLUMNS, len(runs))
-    rows = math.ceil(len(runs) / columns)
     size = max(_extent(run) for run in runs.values())
     limits = ((-size, size), (-size, size))
-    height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=2, titled=title is not None)
-    figure = style.new_figure(height, title=title)
-    panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
-    for axes, (name, run) in zip(panels, runs.items(), strict=False):
+    titles = [f"{name}\n{_ending(run)}" for name, run in runs.items()]
+    places: dict[str, int] = {"columns": MOST_COLUMNS, "entries": 6, "legend_columns": 3}
+    figure, panels = floor.panels(limits, titles=titles, title=title, compressed=False, **places)
+    for axes, run in zip(panels, runs.values(), strict=True):
         _draw_run(axes, run)
-        style.frame_scene(axes, limits)
-        axes.label_outer()
-        axes.set_title(f"{name}\n{_ending(run)}", fontsize=style.SMALL_FONT_SIZE)
-    for axes in panels[len(runs) :]:
-        axes.set_axis_off()
-    style.legend_below(figure, _run_handles(list(runs.values())), columns=3)
-    return figure
+    return floor.finish(figure, _run_handles(list(runs.values())), columns=3)
 
 
 def _extent(run: SkirtRun) -> float:
@@ -191,32 +183,30 @@ def _draw_run(axes: Axes, run: SkirtRun) -> None:
         look = {"facecolor": SEEN_COLOR} if seen else {"facecolor": UNSEEN_COLOR, "hatch": "////"}
         axes.add_patch(Circle(tuple(center), radius, edgecolor="#404040", linewidth=0.8, **look))
     path = np.vstack([[0.0, 0.0], run.position])
-    axes.plot(*path.T, color=style.RUN_COLORS[0])
+    floor.line(axes, path, zorder=2, color=style.RUN_COLORS[0])
     between = np.linalg.norm(run.position[:, np.newaxis] - run.disc_center, axis=2) - run.disc_radius
     nearest = run.position[int(between.min(axis=1).argmin())]
     touched = math.isfinite(run.contact_time)
     color = style.CONTACT_COLOR if touched else style.RUN_COLORS[0]
     radius = run.skirt.chassis_radius
     axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=style.NEUTRAL, linestyle=":"))
-    axes.add_patch(Circle(tuple(nearest), radius, facecolor=color, alpha=0.25, linewidth=0))
-    axes.add_patch(Circle(tuple(nearest), radius, fill=False, edgecolor=color))
+    floor.disc(axes, nearest, radius, color, face=0.25)
 
 
 def _run_handles(runs: Sequence[SkirtRun]) -> list[Artist]:
     """Return the legend: only what is drawn."""
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    ring: style.Properties = {"marker": "o", "markersize": 11, "linestyle": "none", "markerfacecolor": "none"}
+    ring: style.Properties = {"marker": "o", "markersize": 11, "markerfacecolor": "none"}
     handles: list[Artist] = [
-        Line2D([], [], color=style.RUN_COLORS[0], label="path of the robot"),
-        Line2D([], [], markeredgecolor=style.NEUTRAL, label="at the start", **ring),
+        floor.handle("path of the robot", color=style.RUN_COLORS[0], linestyle="-"),
+        floor.handle("at the start", **ring),
     ]
     touched = [math.isfinite(run.contact_time) for run in runs]
     if not all(touched):
-        handles.append(Line2D([], [], markeredgecolor=style.RUN_COLORS[0], label="nearest to a disc", **ring))
+        handles.append(floor.handle("nearest to a disc", color=style.RUN_COLORS[0], **ring))
     if any(touched):
-        handles.append(Line2D([], [], markeredgecolor=style.CONTACT_COLOR, label="contact", **ring))
+        handles.append(floor.handle("contact", color=style.CONTACT_COLOR, **ring))
     seen = np.concatenate([run.disc_seen for run in runs])
     if seen.any():
         handles.append(Patch(facecolor=SEEN_COLOR, edgecolor="#404040", label="disc"))

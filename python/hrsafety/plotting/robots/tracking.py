@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.tracking.runs import TrackingRun
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import floor, inputs, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,18 +70,11 @@ def tracking_paths(
     >>> figure.axes[0].get_xlabel()
     'x (m)'
     """
-    from matplotlib.lines import Line2D
-
     groups = _groups(runs, labels)
     everyone = [run for _, members in groups for run in members]
     points: list[Any] = [part for run in everyone for part in (run.position, run.reference_position)]
     limits = inputs.view_limits(points, margin=MARGIN)
-    entries = len(groups) + 2
-    rows = math.ceil(entries / LEGEND_COLUMNS)
-    height = style.scene_height(limits, legend_rows=rows, titled=title is not None)
-    figure = style.new_figure(height, title=title, compressed=True)
-    axes = figure.subplots()
-    style.frame_scene(axes, limits)
+    figure, (axes,) = floor.panels(limits, entries=len(groups) + 2, legend_columns=LEGEND_COLUMNS, title=title)
     handles: list[Any] = []
     for index, (name, members) in enumerate(groups):
         for run in members:
@@ -89,9 +82,8 @@ def tracking_paths(
         line.set_label(name)
         handles.append(line)
     handles.append(_draw_references(axes, everyone))
-    handles.append(Line2D([], [], marker="o", color=style.NEUTRAL, markersize=4, linestyle="none", label="start"))
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    return figure
+    handles.append(floor.handle("start", marker="o", markersize=4))
+    return floor.finish(figure, handles, columns=LEGEND_COLUMNS)
 
 
 @style.styled
@@ -190,7 +182,7 @@ def _thinned(look: style.Properties, thin: bool) -> style.Properties:
 
 def _draw_path(axes: Axes, run: TrackingRun, look: style.Properties, *, thin: bool) -> Line2D:
     """Draw a path and the heading at its start."""
-    (line,) = axes.plot(run.position[:, 0], run.position[:, 1], zorder=3, **_thinned(look, thin))
+    line = floor.line(axes, run.position, zorder=3, **_thinned(look, thin))
     (x, y), heading = run.position[0], run.heading[0]
     tip = (x + ARROW * math.cos(heading), y + ARROW * math.sin(heading))
     arrow = {"arrowstyle": "-|>", "color": look["color"], "linewidth": 1.3, "shrinkA": 0.0, "shrinkB": 0.0}
@@ -204,7 +196,7 @@ def _draw_references(axes: Axes, runs: Sequence[TrackingRun]) -> Line2D:
     for run in runs:
         place = run.reference_position
         if np.ptp(place, axis=0).max() > 0.0:
-            (line,) = axes.plot(place[:, 0], place[:, 1], zorder=3.5, **REFERENCE_LOOK)
+            line = floor.line(axes, place, zorder=3.5, **REFERENCE_LOOK)
         else:
             (line,) = axes.plot(
                 *place[0], "x", color=REFERENCE_LOOK["color"], markersize=9, markeredgewidth=2.4, zorder=5

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety.navigation.obstacles import Human, MovingDisc
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -23,7 +23,6 @@ __all__ = ["layout"]
 MARGIN = 0.35  # free space around what must be in view, in m
 SECOND = 1.0
 SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which an arrow would point anywhere
-LEGEND_COLUMNS = 4
 
 
 @style.styled
@@ -65,11 +64,7 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     inputs.checked_scenario(scenario)
     limits = _limits_of_layout(scenario, regions=regions)
     handles = _layout_handles(scenario, regions=regions)
-    legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
-    height = style.scene_height(limits, legend_rows=legend_rows, titled=title is not None)
-    figure = style.new_figure(height, title=title, compressed=True)
-    axes = figure.subplots()
-    style.frame_scene(axes, limits)
+    figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
     axes.plot(*zip(scenario.start, scenario.goal, strict=True), color="#B0B0B0", linewidth=1.0, zorder=1.5)
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
         place = shapes.first_position(obstacle)
@@ -80,8 +75,7 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
             _draw_motion(axes, obstacle, look.color)
     shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
     shapes.add_start_and_goal(axes, scenario)
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    return figure
+    return floor.finish(figure, handles)
 
 
 def _shows_regions(scenario: Scenario, obstacle: Obstacle) -> bool:
@@ -134,7 +128,7 @@ def _draw_motion(axes: Axes, obstacle: Human | MovingDisc, color: str) -> None:
     from matplotlib.patches import FancyArrowPatch
 
     way = np.asarray(_way(obstacle), dtype=np.float64)
-    axes.plot(way[:, 0], way[:, 1], ":", color=color, linewidth=1.6, zorder=2.5)
+    floor.line(axes, way, zorder=2.5, linestyle=":", color=color, linewidth=1.6)
     if obstacle.stop is not None:
         axes.plot(*obstacle.stop, "|", markersize=12, markeredgewidth=2.0, color=color, zorder=3.2)
     ends = _arrow(obstacle)

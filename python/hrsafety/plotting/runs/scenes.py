@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.plotting import inputs, notes, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style
 from hrsafety.plotting import labels as placing
 
 if TYPE_CHECKING:
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["paths"]
 
 MARGIN = 0.35  # free space around what must be in view, in m
-SECOND = 1.0
-SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which a direction marker would point anywhere
-LEGEND_COLUMNS = 4
 NARROWEST, STEP_OF_WIDTH = 1.5, 2.4  # pt, widths of paths that lie on each other
 CLOSE_PATHS = 0.008  # of the extent of both paths: about the width of a line
 SHARE_ON_EACH_OTHER = 0.4
@@ -94,11 +90,7 @@ def paths(
     scenario = runs[0].scenario
     looks = _run_looks(runs)
     handles = _path_handles(runs, names, looks, limits, regions=regions)
-    legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
-    height = style.scene_height(limits, legend_rows=legend_rows, titled=title is not None)
-    figure = style.new_figure(height, title=title, compressed=True)
-    axes = figure.subplots()
-    style.frame_scene(axes, limits)
+    figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
     named: list[Annotation] = []
     for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
         if shapes.is_mobile(obstacle):
@@ -106,12 +98,9 @@ def paths(
         else:
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), look.color, regions=regions)
     for index, run in enumerate(runs):
-        _draw_path(axes, run, looks[index])
+        floor.events(axes, run, looks[index])
     shapes.add_start_and_goal(axes, scenario, sorted({run.scenario.start for run in runs}))
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    notes.add_warnings(figure, *runs)
-    placing.clear_labels(figure, named)
-    return figure
+    return floor.finish(figure, handles, runs=runs, named=named)
 
 
 def _run_looks(runs: Sequence[Trajectory]) -> list[style.Properties]:
@@ -160,7 +149,7 @@ def _draw_encounters(
     met = list(_encounters(runs, index))
     if met or not many:
         trace = longest.obstacle_position[:, index]
-        axes.plot(trace[:, 0], trace[:, 1], ":", color=look.color, linewidth=1.0 if many else 1.6, zorder=2.5)
+        floor.line(axes, trace, zorder=2.5, linestyle=":", color=look.color, linewidth=1.0 if many else 1.6)
     named: list[Annotation] = []
     drawn: list[inputs.Array] = []
     for number, run, row in met:
@@ -194,37 +183,6 @@ def _encounters(runs: Sequence[Trajectory], index: int) -> Iterator[tuple[int, T
             yield number, run, row
 
 
-def _draw_path(axes: Axes, run: Trajectory, look: style.Properties) -> None:
-    """Draw the path of a robot, with direction markers each second, contacts and an end without arrival."""
-    axes.plot(run.position[:, 0], run.position[:, 1], zorder=5.0, **look)
-    for instant in np.arange(SECOND, run.time[-1], SECOND):
-        row = inputs.row_at(run, float(instant))
-        velocity = run.velocity[row]
-        if np.hypot(*velocity) >= SLOWEST_WITH_DIRECTION:
-            marker = (3, 0, math.degrees(math.atan2(velocity[1], velocity[0])) - 90.0)
-            shape: style.Properties = {
-                "marker": marker,
-                "markersize": 8.5,
-                "markeredgecolor": "white",
-                "markeredgewidth": 0.7,
-            }
-            axes.plot(*run.position[row], color=look["color"], linestyle="none", zorder=5.5, **shape)
-    for instant in run.contact_time[np.isfinite(run.contact_time)]:
-        x, y = run.position[inputs.row_at(run, float(instant))]
-        axes.plot(x, y, **_CONTACT, zorder=7.0)
-    if not np.isfinite(run.arrival_time):
-        axes.plot(*run.position[-1], "s", markersize=7, color=look["color"], markeredgecolor="white", zorder=5.6)
-
-
-_CONTACT: style.Properties = {
-    "marker": "X",
-    "markersize": 11,
-    "color": style.CONTACT_COLOR,
-    "markeredgecolor": "white",
-    "linestyle": "none",
-}
-
-
 def _in_view(runs: Sequence[Trajectory], limits: style.Limits) -> list[int]:
     """Return which obstacles, or their ways, are at least partly in view."""
     longest = max(runs, key=lambda run: (len(run.scenario.obstacles), float(run.time[-1])))
@@ -252,17 +210,13 @@ def _path_handles(
     regions: bool,
 ) -> list[Artist]:
     """Return the legend of a picture of paths: only what is in view."""
-    from matplotlib.lines import Line2D
-
-    handles: list[Artist] = [Line2D([], [], label=name, **look) for name, look in zip(names, looks, strict=True)]
-    mark: style.Properties = {"marker": (3, 0, -90.0), "color": style.NEUTRAL, "markersize": 8, "linestyle": "none"}
-    handles.append(Line2D([], [], label="each second", **mark))
+    handles: list[Artist] = [floor.handle(name, **look) for name, look in zip(names, looks, strict=True)]
+    handles.append(floor.handle("each second", marker=(3, 0, -90.0), markersize=8))
     handles += shapes.start_and_goal_handles()
     if any(not np.isfinite(run.arrival_time) for run in runs):
-        end: style.Properties = {"marker": "s", "color": style.NEUTRAL, "markersize": 7, "linestyle": "none"}
-        handles.append(Line2D([], [], label="end, not arrived", **end))
+        handles.append(floor.handle("end, not arrived", marker="s", markersize=7))
     if any(np.isfinite(run.contact_time).any() for run in runs):
-        handles.append(Line2D([], [], label="first contact", **_CONTACT))
+        handles.append(floor.handle("first contact", **floor.CONTACT))
     obstacles = next((run.scenario.obstacles for run in runs if run.scenario.obstacles), ())
     seen = _in_view(runs, limits)
     met = [index for index in seen if shapes.is_mobile(obstacles[index]) and any(_encounters(runs, index))]
@@ -270,7 +224,6 @@ def _path_handles(
     regional = regions and any(not shapes.is_mobile(obstacles[index]) or (few and index in met) for index in seen)
     handles += shapes.obstacle_handles(obstacles, regions=regional, shown=seen)
     if met:
-        closest: style.Properties = {"color": style.NEUTRAL, "linewidth": 0.8, "marker": "o"}
-        closest |= {"markerfacecolor": "none", "markersize": 9}
-        handles.append(Line2D([], [], label="closest approach", **closest))
+        closest: style.Properties = {"linestyle": "-", "linewidth": 0.8, "marker": "o"}
+        handles.append(floor.handle("closest approach", markerfacecolor="none", markersize=9, **closest))
     return handles

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from hrsafety._arguments import count
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import inputs, notes, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -24,9 +23,7 @@ __all__ = ["time_sequence"]
 
 MARGIN = 0.6  # free space around the path of the robot, in m
 COLUMNS = 3
-LEAST_SPEED = 0.02  # m/s, below which no velocity arrow is drawn
 ROBOT_COLOR = style.RUN_COLORS[0]
-LEGEND_COLUMNS = 4
 
 
 @style.styled
@@ -83,27 +80,13 @@ def time_sequence(
     run = inputs.checked_trajectory("trajectory", trajectory)
     chosen = _checked_instants(run, instants)
     limits = _limits(run, chosen, whole=inputs.checked_view(view))
-    columns = min(COLUMNS, len(chosen))
-    rows = math.ceil(len(chosen) / columns)
     handles = _handles(run, regions=regions)
-    legend_rows = math.ceil(len(handles) / LEGEND_COLUMNS)
-    height = style.scene_height(limits, rows=rows, columns=columns, legend_rows=legend_rows, titled=title is not None)
-    figure = style.new_figure(height, title=title, compressed=True)
-    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for axes, instant in zip(panels.flat, chosen, strict=False):
-        row = inputs.row_at(run, instant)
-        style.frame_scene(axes, limits)
-        axes.label_outer()
-        axes.set_title(f"t = {run.time[row]:.2f} s")
+    rows = [inputs.row_at(run, instant) for instant in chosen]
+    titles = [f"t = {run.time[row]:.2f} s" for row in rows]
+    figure, panels = floor.panels(limits, titles=titles, columns=COLUMNS, entries=len(handles), title=title)
+    for axes, row in zip(panels, rows, strict=True):
         _draw_instant(axes, run, row, regions=regions)
-    for axes in panels.flat[len(chosen) :]:
-        axes.remove()
-    for axes in panels[-1, :] if rows == 1 else panels[-2, len(chosen) - (rows - 1) * columns :]:
-        axes.set_xlabel("x (m)")
-        axes.tick_params(labelbottom=True)
-    style.legend_below(figure, handles, columns=LEGEND_COLUMNS)
-    notes.add_warnings(figure, run)
-    return figure
+    return floor.finish(figure, handles, runs=[run])
 
 
 def _limits(run: Trajectory, instants: Sequence[float], *, whole: bool) -> style.Limits:
@@ -151,41 +134,11 @@ def _draw_instant(axes: Axes, run: Trajectory, row: int, *, regions: bool) -> No
         shown = regions and (not shapes.is_mobile(obstacle) or bool(run.distance[row, index] < active))
         shapes.add_obstacle(axes, obstacle, place, look.color, regions=shown)
         if shapes.is_mobile(obstacle):
-            _draw_velocity(axes, place, obstacle_velocity(run, row, index))
-    axes.plot(run.position[: row + 1, 0], run.position[: row + 1, 1], color=ROBOT_COLOR, linewidth=1.5, zorder=3.8)
+            floor.velocity(axes, place, floor.obstacle_velocity(run, row, index))
+    floor.line(axes, run.position[: row + 1], zorder=3.8, color=ROBOT_COLOR, linewidth=1.5)
     shapes.add_robot(axes, scenario, run.position[row], ROBOT_COLOR)
-    _draw_velocity(axes, run.position[row], run.velocity[row])
+    floor.velocity(axes, run.position[row], run.velocity[row])
     shapes.add_start_and_goal(axes, scenario)
-
-
-def obstacle_velocity(run: Trajectory, row: int, index: int) -> inputs.Array:
-    """Return the velocity of an obstacle in m/s by the difference to the next row, else to the row before.
-
-    NaN where neither neighbor holds a position.
-    """
-    place = run.obstacle_position[:, index]
-    for first, second in ((row, row + 1), (row - 1, row)):
-        if first >= 0 and second < len(run.time) and np.isfinite(place[first : second + 1]).all():
-            velocity: inputs.Array = (place[second] - place[first]) / (run.time[second] - run.time[first])
-            return velocity
-    return np.full(2, np.nan)
-
-
-def _draw_velocity(axes: Axes, place: inputs.Array, velocity: inputs.Array) -> None:
-    """Draw the way of one second as an arrow."""
-    from matplotlib.patches import FancyArrowPatch
-
-    if not np.hypot(*velocity) > LEAST_SPEED:
-        return
-    look: style.Properties = {
-        "arrowstyle": "-|>",
-        "mutation_scale": 11,
-        "color": "black",
-        "linewidth": 1.3,
-        "shrinkA": 0,
-        "shrinkB": 0,
-    }
-    axes.add_patch(FancyArrowPatch(tuple(place), tuple(place + velocity), zorder=7.0, **look))
 
 
 def _handles(run: Trajectory, *, regions: bool) -> list[Artist]:
