@@ -10,6 +10,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.plotting.comparisons.law_looks import LAW_COLORS
 
 __all__ = ["COMPARED", "FORCES", "LIKE_SOURCE", "PLANNERS", "Compared", "printed_walk", "varied_walk"]
 
@@ -23,36 +24,36 @@ class Compared(NamedTuple):
         Name as a reader knows it.
     law : Law
         The law with its default parameters.
-    color : str
-        Color of its lines.
     """
 
     label: str
     law: nav.Law
-    color: str
+
+    @property
+    def color(self) -> str:
+        """Color of its lines, as in every picture of laws."""
+        return LAW_COLORS[type(self.law)]
 
 
 FORCES: Mapping[str, Compared] = {
-    "new_vff": Compared("New VFF", nav.VirtualForceField(), "#0072B2"),
-    "masoud": Compared("Masoud", nav.Masoud(), "#009E73"),
-    "ge_cui": Compared("Ge & Cui", nav.GeCui(), "#CC79A7"),
-    "khatib": Compared("Khatib", nav.Khatib(), "#000000"),
-    "borenstein_koren": Compared("Borenstein & Koren", nav.BorensteinKoren(), "#56B4E9"),
+    "new_vff": Compared("New VFF", nav.VirtualForceField()),
+    "masoud": Compared("Masoud", nav.Masoud()),
+    "ge_cui": Compared("Ge & Cui", nav.GeCui()),
+    "khatib": Compared("Khatib", nav.Khatib()),
+    "borenstein_koren": Compared("Borenstein & Koren", nav.BorensteinKoren()),
 }
 """Laws of virtual forces: they know nothing but the present state."""
 PLANNERS: Mapping[str, Compared] = {
-    "velocity_obstacle": Compared("Velocity obstacle", nav.VelocityObstacle(), "#0072B2"),
-    "reciprocal": Compared("ORCA", nav.OptimalReciprocalCollisionAvoidance(), "#009E73"),
-    "random_tree": Compared("RRT", nav.RapidlyExploringRandomTree(), "#CC79A7"),
-    "field_d_star": Compared("Field D*", nav.FieldDStar(), "#000000"),
+    "velocity_obstacle": Compared("Velocity obstacle", nav.VelocityObstacle()),
+    "reciprocal": Compared("ORCA", nav.OptimalReciprocalCollisionAvoidance()),
+    "random_tree": Compared("RRT", nav.RapidlyExploringRandomTree()),
+    "field_d_star": Compared("Field D*", nav.FieldDStar()),
 }
 """Laws that plan: they take it that everything keeps its present velocity."""
 COMPARED: Mapping[str, Compared] = {**FORCES, **PLANNERS}
 """All nine, with default parameters."""
 LIKE_SOURCE: Mapping[str, Compared] = {
-    "time_and_risk": Compared(
-        "Velocity obstacle, time and risk", nav.VelocityObstacle(selection="time_and_risk"), "#56B4E9"
-    )
+    "time_and_risk": Compared("Velocity obstacle, time and risk", nav.VelocityObstacle(selection="time_and_risk"))
 }
 """Shown beside the nine: the selection rule that the source cites for velocity obstacles."""
 

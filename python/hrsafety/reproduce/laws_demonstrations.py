@@ -8,9 +8,10 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety.pages import Picture
+from hrsafety.plotting.floor import CONTACT
 from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.laws_compared import FORCES
-from hrsafety.reproduce.laws_figures import CONTACT, GOAL_COLOR, PERSON_COLOR, frame
+from hrsafety.reproduce.laws_figures import GOAL_COLOR, PERSON_COLOR, frame
 from hrsafety.reproduce.laws_study import LawsStudy
 
 if TYPE_CHECKING:

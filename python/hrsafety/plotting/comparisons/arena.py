@@ -80,7 +80,7 @@ def plot_arena_paths(
     looks = law_looks.looks_of(given)
     scenario = law_looks.longest(given).scenario
     limits = law_looks.limits_of(given, whole=inputs.checked_view(view))
-    marks = [law_looks.handle("each second", marker=(3, 0, -90.0), markersize=8), *law_looks.event_handles(given)]
+    marks = [floor.handle("each second", marker=(3, 0, -90.0), markersize=8), *law_looks.event_handles(given)]
     handles = [*law_looks.law_handles(looks), *marks, *law_looks.scene_handles(given, regions=regions)]
     figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
     named: list[Annotation] = []
@@ -154,7 +154,7 @@ def plot_arena_distances(
     handles = law_looks.law_handles(looks)
     latest = min(latest + 0.02 * latest, _latest_shown(given))
     if any(arrival <= latest for arrival in arrivals):
-        handles.append(law_looks.handle("arrival", marker="*", markersize=12))
+        handles.append(floor.handle("arrival", marker="*", markersize=12))
     if any(np.isfinite(run.contact_time[chosen]).any() for run in given.values()):
         handles.append(law_looks.cross_handle())
     axes.set_xlim(0.0, latest if latest > 0.0 else inputs.time_limit(list(given.values())))

@@ -18,6 +18,7 @@ from hrsafety.navigation.laws.planners import (
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting.floor import CONTACT, handle
 from hrsafety.plotting.runs.scenes import MARGIN
 
 if TYPE_CHECKING:
@@ -40,13 +41,7 @@ LAW_COLORS: dict[type[Law], str] = {
 PLANNERS = (VelocityObstacle, OptimalReciprocalCollisionAvoidance, RapidlyExploringRandomTree, FieldDStar)
 FORCE_STYLES = ("-", (0, (8, 1.5)), (0, (1.2, 1.2)))
 PLANNER_STYLES = ((0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (2.5, 1.2)))
-CROSS: style.Properties = {
-    "marker": "X",
-    "color": style.CONTACT_COLOR,
-    "markersize": 9,
-    "markeredgecolor": "white",
-    "linestyle": "none",
-}
+CROSS: style.Properties = CONTACT | {"markersize": 9}
 
 
 def checked_runs(runs: object) -> Runs:
@@ -93,14 +88,6 @@ def limits_of(runs: Runs, *, whole: bool, least_ratio: float = 0.4) -> style.Lim
             if whole or near < shapes.region_radii(obstacle)[0]:
                 points.append(shapes.body(obstacle, shapes.center(obstacle)).get_extents().get_points())
     return inputs.view_limits(points, margin=MARGIN, least_ratio=least_ratio)
-
-
-def handle(label: str, **look: object) -> Artist:
-    """Return a legend entry without a line."""
-    from matplotlib.lines import Line2D
-
-    properties: style.Properties = {"color": style.NEUTRAL, "linestyle": "none", **look}
-    return Line2D([], [], label=label, **properties)
 
 
 def cross_handle() -> Artist:
