@@ -188,7 +188,7 @@ def _add_simulate(commands: Any) -> None:
         example=_SIMULATE_EXAMPLE,
     )
     parser.add_argument("scenario", nargs="?", metavar="SCENARIO.toml", help="scenario file")
-    parser.add_argument("--out", metavar="DIR", help="folder for tables (CSV) and pictures")
+    parser.add_argument("--out", metavar="DIR", help="folder for a page, tables (CSV) and pictures")
     _add_strict(parser)
     parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
     parser.add_argument(

@@ -132,7 +132,7 @@ def _insensitive(runs: GainRuns) -> Iterator[Cell]:
         for quantity, key in (("arrival time", "T_arrive"), ("distance", "d_circle_min")):
             values, printed = column(runs, name, key, 0), printed_column(name, f"{key}_1")
             spread, limit = (float(np.ptp(entry) / entry.mean()) for entry in (values, printed))
-            words = {"gain": name, "quantity": quantity, "unit": _UNIT_OF[key]}
+            words: dict[str, object] = {"gain": name, "quantity": quantity, "unit": _UNIT_OF[key]}
             words |= {"least": printed.min(), "most": printed.max(), "limit": 100.0 * limit}
             words |= {"own_least": values.min(), "own_most": values.max(), "spread": 100.0 * spread}
             yield SHEET.claim("insensitive", holds=spread <= 2.0 * limit, **words)

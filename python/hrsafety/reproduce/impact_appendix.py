@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def _recovered(foam: int, seed: int) -> Iterator[Cell]:
     stiffness, ratio = KILO * printed_figure("A.1", f"stiffness_{foam}"), printed_figure("A.1", f"damping_ratio_{foam}")
     source = np.random.default_rng(seed)
     time = np.arange(0.0, 0.4, 0.001)
-    setting = {"mass": mass, "stiffness": stiffness, "damping_ratio": ratio, "friction": friction}
+    setting: dict[str, Any] = {"mass": mass, "stiffness": stiffness, "damping_ratio": ratio, "friction": friction}
     drops = [impact.identification.drop_trajectory(time, height=height, **setting) for height in (0.03, 0.045, 0.06)]
     compression = np.linspace(0.0, 0.008, 17)
     fit = impact.identify_foam(

@@ -24,7 +24,11 @@ _TEXTS = _DATA["texts"]
 
 
 def _listed(kind: str) -> tuple[Cause, ...]:
-    return tuple(Cause(*entry["where"], entry.get("text") or _TEXTS[entry["shared"]]) for entry in _DATA[kind])
+    found = []
+    for entry in _DATA[kind]:
+        tables, rows, columns = entry["where"]
+        found.append(Cause(tables, rows, columns, entry.get("text") or _TEXTS[entry["shared"]]))
+    return tuple(found)
 
 
 CAUSES, NOTES = _listed("cause"), _listed("note")

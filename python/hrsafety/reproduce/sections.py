@@ -50,7 +50,7 @@ def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[Cell]) -> d
         "pictures": beside_none(list(by_table(cells)), own.pictures),
         "study": own.study,
     }
-    return section | _MORE.get(part.name, lambda _: {})(own)
+    return section | (_MORE[part.name](own) if part.name in _MORE else {})
 
 
 # ---- impact -----------------------------------------------------------------------------------------

@@ -61,8 +61,8 @@ class Sheet:
         measured: float,
         /,
         *,
-        printed: float | None = None,
-        tolerance: Tolerance | None = None,
+        printed: Any = None,
+        tolerance: Any = None,
         **words: object,
     ) -> Cell:
         """Return a judged number; ``if_off`` of the file is its reason only where it is off."""
@@ -76,16 +76,14 @@ class Sheet:
         )
         return replace(cell, reason=filled.reason(cell.within))
 
-    def claim(self, key: str, /, *, holds: bool, printed: str | None = None, **words: object) -> Cell:
+    def claim(self, key: str, /, *, holds: bool, printed: Any = None, **words: object) -> Cell:
         """Return a judged claim in words; ``measured`` of the file says what was found."""
         filled = self._filled(key, words)
         place: dict[str, Any] = {**filled.place, "printed": printed or filled.printed}
         cell = Cell.listed(**place, unit=filled["unit"], reason=filled.reason(holds))
         return replace(cell, measured=filled["measured"], within=bool(holds))
 
-    def listed(
-        self, key: str, measured: float | str | None = None, /, *, printed: float | str | None = None, **words: object
-    ) -> Cell:
+    def listed(self, key: str, measured: float | str | None = None, /, *, printed: Any = None, **words: object) -> Cell:
         """Return a value beside another that is no judgment of the source, for example an experiment."""
         filled = self._filled(key, words)
         printed = filled.printed if printed is None else printed

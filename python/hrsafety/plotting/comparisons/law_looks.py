@@ -102,7 +102,7 @@ def law_handles(looks: Mapping[str, style.Properties], **mark: object) -> list[A
 
 def event_handles(runs: Runs, *, ends: bool = True, until: float = np.inf) -> list[Artist]:
     """Return legend entries for ends without arrival, and for contacts up to an instant in s, if there are any."""
-    handles = []
+    handles: list[Artist] = []
     if ends and any(not np.isfinite(run.arrival_time) for run in runs.values()):
         handles.append(handle("end, not arrived", marker="s", markersize=7))
     if any((run.contact_time <= until).any() for run in runs.values()):

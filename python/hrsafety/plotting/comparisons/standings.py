@@ -10,8 +10,8 @@ import numpy as np
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.arena import ArenaResult
 from hrsafety.plotting import style
-from hrsafety.plotting.comparisons.law_looks import handle
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
+from hrsafety.plotting.floor import handle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
