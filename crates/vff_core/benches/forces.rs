@@ -41,6 +41,8 @@ fn width<R: Real>(
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
             let situation = Situation {
+                time: 0.0,
+                heading: 0.0,
                 bodies: black_box(&bodies),
                 robot: black_box(robot),
                 interval: 0.06,

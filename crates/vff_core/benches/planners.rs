@@ -105,6 +105,8 @@ fn measure<P: Planner>(
             let (position, bodies) = &steps[step];
             step = (step + 1) % STEPS;
             planner.desired_velocity(black_box(&Situation {
+                time: 0.0,
+                heading: 0.0,
                 bodies,
                 robot: RobotState {
                     position: Vector2::splat(*position),

@@ -92,6 +92,8 @@ fn force(field: impl PairwiseField<f64>, velocity: [f64; 2], discs: &[Disc]) -> 
     };
     let interval = 0.06;
     let situation = Situation {
+        time: 0.0,
+        heading: 0.0,
         bodies: &bodies,
         robot,
         interval,

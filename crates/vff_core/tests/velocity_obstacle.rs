@@ -87,6 +87,8 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
     };
     let interval = scenario.control_period();
     let situation = Situation {
+        time: 0.0,
+        heading: 0.0,
         bodies: &bodies,
         robot,
         interval,

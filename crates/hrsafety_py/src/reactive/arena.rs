@@ -170,8 +170,10 @@ impl<R: Real> Law<R> for Impeded {
             let [x, y] = self.force(
                 lane,
                 &Situation {
+                    time: situation.time,
                     bodies: situation.bodies,
                     robot,
+                    heading: situation.heading,
                     interval: situation.interval,
                     stop: situation.stop,
                 },

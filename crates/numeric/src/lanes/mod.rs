@@ -15,7 +15,14 @@ pub use planar::Planar;
 
 /// Outcome of a comparison, lane by lane.
 pub trait Mask:
-    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + Not<Output = Self>
 {
     /// The same truth in every lane.
     fn splat(value: bool) -> Self;

@@ -53,10 +53,14 @@ impl std::fmt::Debug for Stop<'_> {
 /// What a law knows when it is asked for a force.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a, R> {
+    /// When, in s.
+    pub time: f64,
     /// Obstacles as measured.
     pub bodies: &'a [Body],
     /// Robots as measured, one a lane.
     pub robot: RobotState<R>,
+    /// Heading of the robots as measured, in rad.
+    pub heading: f64,
     /// How long the force will act, in s.
     pub interval: f64,
     /// Whether to stop.
@@ -74,6 +78,30 @@ pub struct Command<R> {
     pub lyapunov: R,
 }
 
+/// Force in N that reaches a desired velocity at the next sample, `m (v* - V)/interval`, as far as
+/// the limits of the robots allow.
+#[inline(always)]
+pub fn force_toward<R: Real>(
+    desired: Vector2<R>,
+    situation: &Situation<'_, R>,
+    mass: f64,
+) -> Vector2<R> {
+    let change = desired - situation.robot.velocity;
+    change * R::splat(mass / situation.interval)
+}
+
+impl<R: Real> Command<R> {
+    /// A force that is no sum of terms.
+    #[inline(always)]
+    pub fn plain(force: Vector2<R>) -> Self {
+        Self {
+            force,
+            stabilizing: Vector2::zeros(),
+            lyapunov: R::splat(f64::NAN),
+        }
+    }
+}
+
 /// A law for robots side by side; it may remember what it needs between two samples.
 pub trait Law<R: Real> {
     /// Whether a command takes so long that the caller is asked at each of them whether to stop.
@@ -86,7 +114,7 @@ pub trait Law<R: Real> {
 /// A law up to its gains: what a search over gains needs to know of it.
 pub trait LawFamily: Sync {
     /// The law for gain sets side by side. `RECORD`: the Lyapunov function is wanted too.
-    type Law<R: Real, const RECORD: bool>: Law<R>;
+    type Law<R: Real, const RECORD: bool>: Law<R> + Send + 'static;
     /// Words for the gains, in their order.
     fn gain_names(&self) -> &'static [&'static str];
     /// Its own gains, in that order.

@@ -62,12 +62,12 @@ impl AnyLaw {
 }
 
 /// A law of any kind at work on one robot.
-pub(crate) trait Steering {
+pub(crate) trait Steering: Send {
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
 }
 
-impl<L: Law<f64>> Steering for L {
+impl<L: Law<f64> + Send> Steering for L {
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         Law::command(self, situation)
     }
@@ -90,7 +90,7 @@ pub(crate) trait Driven: Send + Sync {
     /// Every force term with its own gains; `None` for laws that are no sum of terms.
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
-    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>>;
+    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>>;
     /// One run with its own gains and everything recorded.
     fn record(
         &self,
@@ -191,7 +191,7 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
         self.0.terms(scenario, situation)
     }
 
-    fn steering<'a>(&'a self, scenario: &Scenario) -> Result<Box<dyn Steering + 'a>> {
+    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
         let law = self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?;
         Ok(Box::new(law))
     }

@@ -2,6 +2,7 @@
 
 mod batch;
 pub mod built;
+mod episode;
 pub mod follower;
 pub(crate) mod group;
 pub mod metrics;
@@ -17,6 +18,7 @@ pub mod skirt;
 mod table;
 
 pub use batch::{BatchOptions, run_batch};
+pub use episode::{Episode, Request};
 pub use group::AnyLaw;
 pub use options::{Integrator, Options};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
@@ -32,7 +34,7 @@ pub(crate) use table::min_clearance;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::{FieldTerms, Situation, Stop};
-use crate::world::geometry::{Body, RobotState};
+use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// Asked now and then whether to stop.
@@ -64,18 +66,16 @@ fn at_state<T>(
     crate::error::finite_pair("position", position)?;
     crate::error::finite_pair("velocity", velocity)?;
     crate::error::not_negative("time", time)?;
-    let bodies: Vec<Body> = scenario
-        .obstacles
-        .iter()
-        .map(|placed| scene::body_at(placed, time, &mut 0))
-        .collect();
+    let bodies = scene::bodies_at(scenario, time);
     let robot = RobotState {
         position: Vector2::splat(position),
         velocity: Vector2::splat(velocity),
     };
     Ok(answer(&Situation {
+        time,
         bodies: &bodies,
         robot,
+        heading: scenario.rules.heading,
         interval: scenario.rules.control_period,
         stop: Stop::never(),
     }))

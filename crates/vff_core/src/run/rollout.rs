@@ -8,7 +8,7 @@ use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::Runs;
-use crate::run::scene::{Scene, body_at};
+use crate::run::scene::{Scene, bodies_at};
 use crate::sensing::sampled::{Measured, Sensor};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
@@ -41,7 +41,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     (team, mut led): (&mut [Member<L, C>], bool),
     plan: &Plan,
     interrupted: Interrupted<'_>,
-    mut keep: impl FnMut(usize, &Runs<'_, R>, usize, &C),
+    mut keep: impl FnMut(usize, &Runs<&Scenario, R>, usize, &C),
 ) -> Result<()> {
     let options = &plan.run;
     let clock = options.clock(scenario)?;
@@ -53,9 +53,9 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     );
     let mut sensor = Sensor::new(scenario);
     let mut seen = scene.frames[0].clone();
-    let mut groups: Vec<Runs<'_, R>> = team
+    let mut groups: Vec<Runs<&Scenario, R>> = team
         .iter()
-        .map(|_| Runs::new(scenario, clock, &seen).heeding(Stop(interrupted)))
+        .map(|_| Runs::new(scenario, clock, &seen))
         .collect();
     // Positions between two samples are wanted only for robots that are measured late.
     let late = groups.first().is_some_and(|runs| runs.past.is_some());
@@ -69,6 +69,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         scene.advance(&clock, first);
         let block = Block {
             scene: &scene,
+            stop: Stop(interrupted),
             first,
             steps,
         };
@@ -93,7 +94,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 if plan.shortcuts {
                     runs.end_hopeless(&scene.frames[0], time);
                 }
-                sample(runs, member, known, measured, &scene.frames[0], time)
+                sample(runs, member, known, measured, &block)
                     .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
             }
             if runs.running.any() {
@@ -123,14 +124,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             runs.position,
             runs.velocity,
             &runs.currents,
-            || {
-                let end = runs.first_end();
-                scenario
-                    .obstacles
-                    .iter()
-                    .map(|placed| body_at(placed, end, &mut 0))
-                    .collect()
-            },
+            || bodies_at(scenario, runs.first_end()),
         );
         for lane in 0..R::WIDTH {
             keep(index * R::WIDTH + lane, runs, lane, &member.recorder);
@@ -141,7 +135,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
 
 /// Brings all groups to where the first one is.
 #[cold]
-fn follow<R: Real>(groups: &mut [Runs<'_, R>]) {
+fn follow<R: Real>(groups: &mut [Runs<&Scenario, R>]) {
     if let Some((first, others)) = groups.split_first_mut() {
         for runs in others {
             runs.clone_from(first);
@@ -151,7 +145,9 @@ fn follow<R: Real>(groups: &mut [Runs<'_, R>]) {
 
 /// Steps that all groups take with the same obstacles.
 struct Block<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a Scene<&'a Scenario>,
+    /// Whether to stop, for a law that thinks long.
+    stop: Stop<'a>,
     /// Step at which it begins.
     first: usize,
     /// Number of its steps.
@@ -161,14 +157,14 @@ struct Block<'a> {
 /// A sample of the force for the runs of a group.
 #[inline(always)]
 fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
-    runs: &mut Runs<'_, R>,
+    runs: &mut Runs<&Scenario, R>,
     member: &mut Member<L, C>,
     known: &[Body],
     measured: Option<Measured>,
-    actual: &[Body],
-    time: f64,
+    block: &Block<'_>,
 ) -> Result<()> {
     let clock = runs.clock;
+    let time = clock.time(block.first);
     runs.check_finite(time)?;
     runs.rest(time);
     if !runs.running.any() {
@@ -176,17 +172,19 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     }
     let robot = observe(runs, measured);
     let command = member.law.command(&Situation {
+        time,
         bodies: known,
         robot,
+        heading: runs.scenario.rules.heading,
         interval: clock.interval,
-        stop: runs.stop,
+        stop: block.stop,
     });
     runs.check_force(command.force, time)?;
     runs.command = command;
     runs.acceleration = runs.scenario.robot.acceleration(command.force);
     runs.push = runs.acceleration * R::splat(clock.step);
     runs.count_sample();
-    runs.look_ahead(actual);
+    runs.look_ahead(&block.scene.frames[0]);
     member.recorder.sample(&command, runs.running);
     Ok(())
 }
@@ -194,7 +192,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
 /// Steps of a group under the held force.
 #[inline(always)]
 fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
-    runs: &mut Runs<'_, R>,
+    runs: &mut Runs<&Scenario, R>,
     member: &mut Member<L, C>,
     block: &Block<'_>,
     options: &Options,
@@ -207,7 +205,7 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
         match options.integrator {
             Integrator::SemiImplicitEuler => semi_implicit_euler(runs),
             Integrator::Rk4 if options.hold => rk4_held(runs),
-            Integrator::Rk4 => rk4(runs, &mut member.law, block.scene),
+            Integrator::Rk4 => rk4(runs, &mut member.law, block, time),
         }
         let later = clock.time(block.first + step + 1);
         runs.account(&block.scene.frames[step + 1], before, later, C::EVERY_STEP);
@@ -222,7 +220,7 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
 
 #[inline(always)]
 fn record<R: Real, L, C: Recorder<R>>(
-    runs: &Runs<'_, R>,
+    runs: &Runs<&Scenario, R>,
     member: &mut Member<L, C>,
     time: f64,
     bodies: &[Body],
@@ -239,7 +237,7 @@ fn record<R: Real, L, C: Recorder<R>>(
 
 /// State of the robots as the controller knows it.
 #[inline(always)]
-fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> RobotState<R> {
+fn observe<R: Real>(runs: &mut Runs<&Scenario, R>, measured: Option<Measured>) -> RobotState<R> {
     let (present, velocity) = (runs.position, runs.velocity);
     let past = runs.past.as_ref();
     let position = past.map_or(present, |past| past.delayed(present));
@@ -250,14 +248,14 @@ fn observe<R: Real>(runs: &mut Runs<'_, R>, measured: Option<Measured>) -> Robot
 }
 
 #[inline(always)]
-fn semi_implicit_euler<R: Real>(runs: &mut Runs<'_, R>) {
+fn semi_implicit_euler<R: Real>(runs: &mut Runs<&Scenario, R>) {
     let robot = &runs.scenario.robot;
     (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
     runs.position += runs.velocity * R::splat(runs.clock.step);
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
-fn rk4_held<R: Real>(runs: &mut Runs<'_, R>) {
+fn rk4_held<R: Real>(runs: &mut Runs<&Scenario, R>) {
     let robot = &runs.scenario.robot;
     let Clock { step, .. } = runs.clock;
     let at = |share: f64| runs.velocity + runs.acceleration * R::splat(share * step);
@@ -275,32 +273,41 @@ fn stage_force<R: Real, L: Law<R>>(law: &mut L, situation: &Situation<'_, R>) ->
 }
 
 /// Runge-Kutta of order 4 with the force evaluated in every stage.
-fn rk4<R: Real, L: Law<R>>(runs: &mut Runs<'_, R>, law: &mut L, scene: &Scene<'_>) {
+fn rk4<R: Real, L: Law<R>>(
+    runs: &mut Runs<&Scenario, R>,
+    law: &mut L,
+    block: &Block<'_>,
+    time: f64,
+) {
     let first = runs.acceleration;
     let robot = &runs.scenario.robot;
     let Clock { step, interval, .. } = runs.clock;
-    let stop = runs.stop;
+    let (scene, stop) = (block.scene, block.stop);
+    let heading = runs.scenario.rules.heading;
     let (start, velocity) = (runs.position, runs.velocity);
-    let mut push = |bodies: &[Body], position, velocity| {
+    let mut push = |time: f64, bodies: &[Body], position, velocity| {
         let state = RobotState { position, velocity };
         robot.acceleration(stage_force(
             law,
             &Situation {
+                time,
                 bodies,
                 robot: state,
+                heading,
                 interval,
                 stop,
             },
         ))
     };
+    let middle = time + 0.5 * step;
     let limited = |velocity| robot.limited_velocity(velocity).0;
     let (half, whole) = (R::splat(0.5 * step), R::splat(step));
     let v2 = limited(velocity + first * half);
-    let second = push(&scene.middle, start + velocity * half, v2);
+    let second = push(middle, &scene.middle, start + velocity * half, v2);
     let v3 = limited(velocity + second * half);
-    let third = push(&scene.middle, start + v2 * half, v3);
+    let third = push(middle, &scene.middle, start + v2 * half, v3);
     let v4 = limited(velocity + third * whole);
-    let fourth = push(&scene.frames[1], start + v3 * whole, v4);
+    let fourth = push(time + step, &scene.frames[1], start + v3 * whole, v4);
     let (sixth, two) = (R::splat(step / 6.0), R::splat(2.0));
     runs.position = start + (velocity + (v2 + v3) * two + v4) * sixth;
     let gain = (first + (second + third) * two + fourth) * sixth;

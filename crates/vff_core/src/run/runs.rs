@@ -1,8 +1,10 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
+use std::ops::Deref;
+
 use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Planar, Real, Vector2};
-use crate::laws::{Command, Stop};
+use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::run::options::Clock;
 use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
@@ -19,12 +21,13 @@ const REST_SPEED: f64 = 1e-3;
 const BOUND_MARGIN: f64 = 1e-6;
 
 /// State of the robots of one lane group.
+///
+/// `S` holds the scenario: a reference in the kernel, a shared owner in an episode that is stepped
+/// from outside.
 #[derive(Clone)]
-pub(crate) struct Runs<'a, R: Real> {
-    pub scenario: &'a Scenario,
+pub(crate) struct Runs<S, R: Real> {
+    pub scenario: S,
     pub clock: Clock,
-    /// Whether to stop, for a law that thinks long.
-    pub stop: Stop<'a>,
     pub position: Vector2<R>,
     pub velocity: Vector2<R>,
     pub speed: R,
@@ -64,16 +67,14 @@ pub(crate) struct Runs<'a, R: Real> {
     contact_speed: Vec<R>,
 }
 
-impl<'a, R: Real> Runs<'a, R> {
-    pub fn new(scenario: &'a Scenario, clock: Clock, bodies: &[Body]) -> Self {
+impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
+    pub fn new(scenario: S, clock: Clock, bodies: &[Body]) -> Self {
         let count = scenario.obstacles.len();
         let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
         let unset = R::splat(f64::NAN);
         let mut runs = Self {
-            scenario,
             clock,
-            stop: Stop::never(),
             position: Vector2::splat(scenario.start),
             velocity,
             speed: R::zero(),
@@ -87,7 +88,7 @@ impl<'a, R: Real> Runs<'a, R> {
             acceleration: Vector2::zeros(),
             push: Vector2::zeros(),
             last_measured: None,
-            past: Past::new(scenario, clock.step),
+            past: Past::new(&scenario, clock.step),
             goal: Vector2::splat(scenario.goal),
             wheels,
             wheel_speeds: wheels.speeds(velocity),
@@ -105,6 +106,7 @@ impl<'a, R: Real> Runs<'a, R> {
             min_distance_squared: vec![R::splat(f64::INFINITY); count],
             contact_time: vec![unset; count],
             contact_speed: vec![unset; count],
+            scenario,
         };
         for (index, body) in bodies.iter().enumerate() {
             runs.watch(index, body, 0.0, runs.running);
@@ -118,11 +120,6 @@ impl<'a, R: Real> Runs<'a, R> {
         if let Some(past) = &mut self.past {
             past.push(self.position);
         }
-    }
-
-    /// The same; a law that thinks long asks whether to stop.
-    pub fn heeding(self, stop: Stop<'a>) -> Self {
-        Self { stop, ..self }
     }
 
     /// Counts a sample of the force.
@@ -243,7 +240,8 @@ impl<'a, R: Real> Runs<'a, R> {
             // Only this lane is watched at its own instant.
             let others = (0..R::WIDTH).filter(|other| *other != lane);
             let only = others.fold(R::Mask::splat(true), Mask::without);
-            for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+            let scenario = self.scenario.clone();
+            for (index, placed) in scenario.obstacles.iter().enumerate() {
                 self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
             }
         }

@@ -1,12 +1,14 @@
 //! Obstacles over time, shared by all robots that are stepped side by side.
 
+use std::ops::Deref;
+
 use crate::run::options::Clock;
 use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Where the obstacles are at the steps of one block.
-pub(crate) struct Scene<'a> {
-    obstacles: &'a [PlacedObstacle],
+pub(crate) struct Scene<S> {
+    scenario: S,
     cursors: Vec<usize>,
     /// Bodies at the begin of the block and after each of its steps.
     pub frames: Vec<Vec<Body>>,
@@ -25,16 +27,20 @@ pub(crate) fn body_at(placed: &PlacedObstacle, time: f64, cursor: &mut usize) ->
     }
 }
 
-impl<'a> Scene<'a> {
-    pub fn new(scenario: &'a Scenario, steps: usize, staged: bool) -> Self {
-        let obstacles = &scenario.obstacles;
-        let bodies: Vec<Body> = obstacles
-            .iter()
-            .map(|placed| body_at(placed, 0.0, &mut 0))
-            .collect();
+/// The obstacles at an instant that is looked at only once.
+pub(crate) fn bodies_at(scenario: &Scenario, time: f64) -> Vec<Body> {
+    let obstacles = scenario.obstacles.iter();
+    obstacles
+        .map(|placed| body_at(placed, time, &mut 0))
+        .collect()
+}
+
+impl<S: Deref<Target = Scenario>> Scene<S> {
+    pub fn new(scenario: S, steps: usize, staged: bool) -> Self {
+        let bodies = bodies_at(&scenario, 0.0);
         Self {
-            obstacles,
-            cursors: vec![0; obstacles.len()],
+            scenario,
+            cursors: vec![0; bodies.len()],
             frames: vec![bodies.clone(); steps + 1],
             middle: bodies,
             staged,
@@ -43,7 +49,7 @@ impl<'a> Scene<'a> {
 
     /// Moves on to the block that begins at a step.
     pub fn advance(&mut self, clock: &Clock, first: usize) {
-        for (index, placed) in self.obstacles.iter().enumerate() {
+        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
             if placed.stationary {
                 continue;
             }

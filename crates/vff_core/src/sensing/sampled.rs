@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::lanes::{Planar, Real, Vector2};
 use crate::sensing::measurement::{Measurement, Noise};
 use crate::world::geometry::{Body, RobotState};
-use crate::world::motion::BodyState;
+use crate::world::motion::{BodyState, Motion};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Share of a motion step below which a latency counts as whole steps: typed numbers are rounded.
@@ -103,28 +103,32 @@ fn whole_of(steps: f64) -> usize {
 
 /// How one obstacle is measured.
 #[derive(Clone, Debug)]
-struct Watched<'a> {
+struct Watched {
     noise: Noise,
-    placed: &'a PlacedObstacle,
+    /// Its motion, where the past of it is looked at.
+    late: Option<Motion>,
     cursor: usize,
     last_position: Option<[f64; 2]>,
 }
 
 /// What the controller sees of the scene.
 #[derive(Clone, Debug)]
-pub struct Sensor<'a> {
+pub struct Sensor {
     period: f64,
     latency: f64,
     robot: Option<Noise>,
-    obstacles: Vec<Option<Watched<'a>>>,
+    obstacles: Vec<Option<Watched>>,
 }
 
-impl<'a> Sensor<'a> {
+impl Sensor {
     /// Sensor of a scenario, or `None` if everything is known exactly.
     #[must_use]
-    pub fn new(scenario: &'a Scenario) -> Option<Self> {
+    pub fn new(scenario: &Scenario) -> Option<Self> {
         let measurement = scenario.measurement?;
         let noise = |stream| Noise::new(measurement, scenario.seed, stream);
+        let late = |placed: &PlacedObstacle| {
+            (measurement.latency() > 0.0).then(|| placed.obstacle.motion.clone())
+        };
         let obstacles = (1..).zip(&scenario.obstacles);
         Some(Self {
             period: scenario.rules.control_period,
@@ -134,7 +138,7 @@ impl<'a> Sensor<'a> {
                 .map(|(stream, placed)| {
                     let watched = || Watched {
                         noise: noise(stream),
-                        placed,
+                        late: late(placed),
                         cursor: 0,
                         last_position: None,
                     };
@@ -151,12 +155,12 @@ impl<'a> Sensor<'a> {
         for ((measured, body), watched) in bodies.zip(&mut self.obstacles) {
             measured.state = match watched {
                 None => body.state,
-                Some(watched) if latency > 0.0 => {
-                    let motion = &watched.placed.obstacle.motion;
-                    let before = motion.at(time - latency, &mut watched.cursor);
-                    watched.measure(before, period)
+                Some(watched) => {
+                    let late = watched.late.as_ref();
+                    let cursor = &mut watched.cursor;
+                    let state = late.map_or(body.state, |motion| motion.at(time - latency, cursor));
+                    watched.measure(state, period)
                 }
-                Some(watched) => watched.measure(body.state, period),
             };
         }
         let robot_error = self.robot.as_mut().map(Noise::draw);
@@ -167,7 +171,7 @@ impl<'a> Sensor<'a> {
     }
 }
 
-impl Watched<'_> {
+impl Watched {
     /// Measured state of an obstacle; the first velocity is the true one, the acceleration is
     /// not measured and counts as zero.
     fn measure(&mut self, state: BodyState, period: f64) -> BodyState {

@@ -207,6 +207,24 @@ impl Scenario {
         self.rules.control_period
     }
 
+    /// The point mass that a law drives: the robot, or the one that a two-wheel robot follows.
+    #[must_use]
+    pub fn point_mass(&self) -> &HolonomicRobot {
+        &self.robot
+    }
+
+    /// Seed of noise and of laws that draw.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Start in m.
+    #[must_use]
+    pub fn start(&self) -> [f64; 2] {
+        self.start
+    }
+
     /// Goal in m.
     #[must_use]
     pub fn goal(&self) -> [f64; 2] {

@@ -37,6 +37,8 @@ pub fn body(shape: Shape, position: [f64; 2], velocity: [f64; 2]) -> Body {
 /// What a planner is told.
 pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Situation<'_, f64> {
     Situation {
+        time: 0.0,
+        heading: 0.0,
         bodies,
         robot: RobotState {
             position: Vector2::splat(position),

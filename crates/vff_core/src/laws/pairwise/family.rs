@@ -10,7 +10,7 @@ use crate::world::scenario::Scenario;
 /// A field with its gains, by which it is known to a search.
 pub trait PairwiseFamily: Copy + Sync {
     /// The field for gain sets side by side.
-    type Field<R: Real>: PairwiseField<R>;
+    type Field<R: Real>: PairwiseField<R> + Send + 'static;
     /// Words for the gains, in their order.
     const GAIN_NAMES: &'static [&'static str];
     /// Gains that act on a robot without obstacles, ascending.

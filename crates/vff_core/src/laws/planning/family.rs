@@ -8,7 +8,7 @@ use crate::laws::planning::Planner;
 use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
-use crate::laws::{Command, Law, LawFamily, Situation};
+use crate::laws::{Command, Law, LawFamily, Situation, force_toward};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
@@ -56,20 +56,17 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
                 velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
             };
             let [x, y] = planner.desired_velocity(&Situation {
+                time: situation.time,
                 bodies: situation.bodies,
                 robot,
+                heading: situation.heading,
                 interval: situation.interval,
                 stop: situation.stop,
             });
             wanted.x = wanted.x.replace(lane, x);
             wanted.y = wanted.y.replace(lane, y);
         }
-        let change = wanted - situation.robot.velocity;
-        Command {
-            force: change * R::splat(self.mass / situation.interval),
-            stabilizing: Vector2::zeros(),
-            lyapunov: R::splat(f64::NAN),
-        }
+        Command::plain(force_toward(wanted, situation, self.mass))
     }
 }
 

@@ -11,7 +11,7 @@ pub mod path;
 use crate::laws::Situation;
 
 /// A planner at work in one scenario; it owns its state between control steps.
-pub trait Planner {
+pub trait Planner: Send + 'static {
     /// Velocity in m/s that the robot should have at the next sample. A planner that finds no
     /// way asks for standstill, unless its own documentation says more.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2];

@@ -9,7 +9,7 @@ const WHOLE_PERIODS: f64 = 1e-9;
 
 /// Wheels of a robot.
 #[derive(Clone, Debug)]
-pub(super) struct DrivenWheels {
+pub(crate) struct DrivenWheels {
     loops: Vec<WheelLoop>,
     references: Vec<WheelReference>,
     slip: Slip,
@@ -32,7 +32,7 @@ pub(super) struct DrivenWheels {
 
 /// Radius in m and effective winding resistance in ohm.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WheelSize {
+pub(crate) struct WheelSize {
     pub radius: f64,
     pub resistance: f64,
 }

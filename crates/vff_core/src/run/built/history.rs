@@ -28,7 +28,7 @@ pub struct BuiltTrajectory {
 }
 
 /// Listens to a run of a robot as built.
-pub(super) trait Listener {
+pub trait Listener {
     /// A force was computed from a position in m as the law knows it.
     fn sample(&mut self, _command: &Command<f64>, _seen: [f64; 2]) {}
     /// State at the begin of a step, or at the end of the run.
@@ -36,7 +36,8 @@ pub(super) trait Listener {
 }
 
 /// Keeps everything.
-pub(super) struct Everything {
+#[derive(Clone)]
+pub struct Everything {
     motion: TrajectoryRecorder,
     command: Command<f64>,
     seen: [f64; 2],

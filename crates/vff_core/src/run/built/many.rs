@@ -1,12 +1,15 @@
 //! The same scenario with many seeds.
 
+use std::sync::Arc;
+
 use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::Listener;
 use crate::run::built::motion::Reading;
-use crate::run::built::run::{clock_of, robot_of, run};
+use crate::run::built::run::clock_of;
+use crate::run::episode::Episode;
 use crate::run::group::AnyLaw;
 use crate::run::outcome::RunSummary;
 use crate::world::geometry::Body;
@@ -90,22 +93,16 @@ pub fn repeat_built(
     }
     let every = clock_of(scenario, built)?.steps_per_sample;
     let one = |index: usize| {
-        let scenario = scenario.clone().reseeded(seeds[index]);
-        let mut robot = robot_of(&scenario, built)?;
-        let mut sampled = Sampled {
+        let scenario = Arc::new(scenario.clone().reseeded(seeds[index]));
+        let sampled = Sampled {
             kept: Histories::default(),
             every,
             next: 0,
             last: None,
         };
-        let summary = run(
-            &scenario,
-            law.driven(),
-            built,
-            (&mut *robot, &mut sampled),
-            interrupted,
-        )
-        .map_err(|error| error.of_run(|_| index))?;
+        let (summary, sampled) = Episode::heard(scenario, Some(law), built, |_, _| sampled)
+            .and_then(|episode| episode.run(interrupted))
+            .map_err(|error| error.of_run(|_| index))?;
         progress(1);
         Ok((summary, sampled.finish()))
     };

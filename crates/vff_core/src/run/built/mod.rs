@@ -6,16 +6,17 @@
 //! of [`super::simulate`], bit for bit.
 
 mod driven;
-mod history;
+pub(super) mod history;
 mod many;
-mod motion;
+pub(super) mod motion;
 mod omni;
 mod run;
-mod sight;
+pub(super) mod sight;
 mod two_wheels;
 
 pub use history::BuiltTrajectory;
 pub use many::{Histories, repeat_built};
+pub(super) use run::{clock_of, robot_of};
 pub use run::{evaluate_built, simulate_built};
 
 use crate::error::{Failure, Given, Result, positive};

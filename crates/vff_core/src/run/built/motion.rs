@@ -6,11 +6,11 @@ use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// Most wheels of a robot.
-pub(super) const WHEELS: usize = 3;
+pub(crate) const WHEELS: usize = 3;
 
 /// Where a robot is, and what its motors do, at the end of a motion step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reading {
+pub struct Reading {
     /// Position in m and velocity in m/s.
     pub robot: RobotState<f64>,
     /// Mean speed over the step in m/s.
@@ -48,7 +48,7 @@ impl Reading {
 
 /// A measured pose.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fix {
+pub(crate) struct Fix {
     /// Position in m.
     pub position: Vector2<f64>,
     /// Heading in rad, if it is measured.
@@ -57,7 +57,7 @@ pub(super) struct Fix {
 
 /// What a robot is told at a sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Order {
+pub(crate) struct Order {
     /// Commanded force in N.
     pub force: Vector2<f64>,
     /// The pose as measured now, `None` where it is known exactly.
@@ -66,14 +66,16 @@ pub(super) struct Order {
     pub clear: bool,
 }
 
-/// A robot that moves.
-pub(super) trait Moving {
+/// What turns the force that a law holds into motion, one motion step after the other.
+pub(crate) trait Drive: Send {
     /// Number of its wheels.
     fn wheels(&self) -> usize;
     /// Whether its energy is that of ideal wheels on a point mass.
     fn is_ideal(&self) -> bool {
         false
     }
+    /// Heading in rad as the robot itself knows it between measurements.
+    fn known_heading(&self) -> f64;
     /// Holds an order until the next sample.
     fn hold(&mut self, order: &Order);
     /// Goes on by one motion step.
@@ -82,7 +84,7 @@ pub(super) trait Moving {
 
 /// The point mass that a law drives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PointMass {
+pub(crate) struct PointMass {
     robot: HolonomicRobot,
     /// Position in m and velocity in m/s.
     pub state: RobotState<f64>,
@@ -129,7 +131,7 @@ impl PointMass {
 
 /// A robot whose motion is that of the point mass, with the currents that ideal wheels take.
 #[derive(Clone, Debug)]
-pub(super) struct IdealHolonomic {
+pub(crate) struct IdealHolonomic {
     point: PointMass,
     wheels: WheelModel,
     wheel_speeds: [f64; WHEELS],
@@ -149,13 +151,17 @@ impl IdealHolonomic {
     }
 }
 
-impl Moving for IdealHolonomic {
+impl Drive for IdealHolonomic {
     fn wheels(&self) -> usize {
         WHEELS
     }
 
     fn is_ideal(&self) -> bool {
         true
+    }
+
+    fn known_heading(&self) -> f64 {
+        self.heading
     }
 
     fn hold(&mut self, order: &Order) {

@@ -5,7 +5,7 @@ use crate::lanes::{Planar, Vector2};
 use crate::robots::wheels::{OmniKinematics, WheelDrive};
 use crate::run::built::Built;
 use crate::run::built::driven::{DrivenWheels, WheelSize};
-use crate::run::built::motion::{Moving, Order, PointMass, Reading, WHEELS};
+use crate::run::built::motion::{Drive, Order, PointMass, Reading, WHEELS};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
@@ -41,9 +41,13 @@ impl OmniRobot {
     }
 }
 
-impl Moving for OmniRobot {
+impl Drive for OmniRobot {
     fn wheels(&self) -> usize {
         WHEELS
+    }
+
+    fn known_heading(&self) -> f64 {
+        self.wanted_heading
     }
 
     fn hold(&mut self, order: &Order) {

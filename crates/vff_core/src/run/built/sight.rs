@@ -16,7 +16,7 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 const MARK_STREAM: u64 = 1 << 62;
 
 /// What the controller knows at a sample.
-pub(super) struct Seen<'a> {
+pub(crate) struct Seen<'a> {
     /// State of the robot.
     pub robot: RobotState<f64>,
     /// The obstacles.
@@ -37,8 +37,8 @@ impl Seen<'_> {
 }
 
 /// Positions with an error once a control period.
-struct Samples<'a> {
-    sensor: Sensor<'a>,
+struct Samples {
+    sensor: Sensor,
     mark: Option<Noise>,
     last_measured: Option<Vector2<f64>>,
     /// Past places of the center and of the second mark, of a robot that is measured late.
@@ -53,17 +53,17 @@ struct Cameras {
 }
 
 /// Who looks.
-enum Eye<'a> {
+enum Eye {
     /// Everything is known exactly.
     Exact,
     /// As the scenario measures.
-    Samples(Box<Samples<'a>>),
+    Samples(Box<Samples>),
     /// As the robot is built.
     Cameras(Box<Cameras>),
 }
 
-impl<'a> Eye<'a> {
-    fn new(scenario: &'a Scenario, built: &Built) -> Result<Self> {
+impl Eye {
+    fn new(scenario: &Scenario, built: &Built) -> Result<Self> {
         if built.robot_vision.is_some() || built.obstacle_vision.is_some() {
             return Ok(Self::Cameras(Box::new(Cameras::new(scenario, built)?)));
         }
@@ -125,15 +125,15 @@ impl Cameras {
 }
 
 /// What the controller sees of the scene.
-pub(super) struct Sight<'s> {
-    eye: Eye<'s>,
+pub(crate) struct Sight {
+    eye: Eye,
     mark_distance: f64,
     start: RobotState<f64>,
     seen: Vec<Body>,
 }
 
-impl<'s> Sight<'s> {
-    pub fn new(scenario: &'s Scenario, built: &Built, bodies: &[Body]) -> Result<Self> {
+impl Sight {
+    pub fn new(scenario: &Scenario, built: &Built, bodies: &[Body]) -> Result<Self> {
         Ok(Self {
             eye: Eye::new(scenario, built)?,
             mark_distance: built.fusion.mark,
@@ -168,6 +168,14 @@ impl<'s> Sight<'s> {
                 Some(sensor) => sensor.absent(time),
                 None => {}
             }
+        }
+    }
+
+    /// The obstacles as known since the last look.
+    pub fn bodies<'a>(&'a self, actual: &'a [Body]) -> &'a [Body] {
+        match self.eye {
+            Eye::Exact => actual,
+            Eye::Samples(_) | Eye::Cameras(_) => &self.seen,
         }
     }
 

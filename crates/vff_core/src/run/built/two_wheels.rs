@@ -9,7 +9,7 @@ use crate::robots::differential::{
 use crate::robots::wheels::DifferentialKinematics;
 use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
 use crate::run::built::driven::{DrivenWheels, WheelSize};
-use crate::run::built::motion::{Fix, Moving, Order, PointMass, Reading, WHEELS};
+use crate::run::built::motion::{Drive, Fix, Order, PointMass, Reading, WHEELS};
 use crate::run::built::{Built, PoseFusion, Steered};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
@@ -172,9 +172,17 @@ fn spread([right, left]: [f64; DRIVEN]) -> [f64; WHEELS] {
     [right, left, 0.0]
 }
 
-impl Moving for TwoWheels {
+impl Drive for TwoWheels {
     fn wheels(&self) -> usize {
         DRIVEN
+    }
+
+    fn known_heading(&self) -> f64 {
+        if self.exact {
+            self.pose.heading
+        } else {
+            self.known.heading
+        }
     }
 
     fn hold(&mut self, order: &Order) {
