@@ -348,10 +348,16 @@ class Scenario:
         measurement: Measurement | None,
         seed: int,
     ) -> Self: ...
+    def point_mass(self) -> tuple[float, float, float, float]:
+        """Return mass, radius, largest speed and acceleration of the point mass that a law drives."""
 
 @final
 class Law:
     """A law of any kind."""
+
+    @staticmethod
+    def python(begin: Callable[..., Callable[[dict[str, Any]], _Pair]], *, velocity: bool) -> Law:
+        """Return a law in Python."""
 
     @staticmethod
     def virtual_force_field(
@@ -1516,6 +1522,30 @@ class AsBuilt:
         heading_share: float,
         mark_distance: float,
     ) -> Self: ...
+
+@final
+class Run:
+    """A run under way."""
+
+    def __new__(
+        cls, scenario: Scenario, law: Law | None, built: AsBuilt, *, step: float, stop_on_contact: bool
+    ) -> Self: ...
+    @property
+    def time(self) -> float:
+        """Present time, or when the run ended."""
+
+    @property
+    def outcome(self) -> Literal["arrived", "collided", "timed_out", "stopped"] | None:
+        """How it ended, if it has."""
+
+    def situation(self) -> dict[str, Any]:
+        """Return the fields of what the controller sees."""
+
+    def step(self, *, force: _Pair | None, velocity: _Pair | None) -> None:
+        """Advance by one control period."""
+
+    def recorded(self, *, motors: bool) -> dict[str, Any]:
+        """Return the fields of the trajectory so far."""
 
 def built_simulate(
     scenario: Scenario,

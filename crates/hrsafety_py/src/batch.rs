@@ -11,7 +11,7 @@ use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{outcome_word, run_options, weights_of};
-use crate::watch::{Report, watched};
+use crate::watch::{Report, watched_law};
 
 /// Summary columns of every gain set in every scenario.
 #[pyfunction]
@@ -40,7 +40,7 @@ pub fn simulate_batch<'py>(
         run: run_options(integrator, step, hold, stop_on_contact)?,
         weights: weights_of(weights),
         descent,
-        threads,
+        threads: law.threads(threads),
         width,
         instructions: Instructions::Widest,
     };
@@ -50,12 +50,18 @@ pub fn simulate_batch<'py>(
         .iter()
         .map(|scenario| scenario.0.clone())
         .collect();
-    let law = &law.any;
     let report = Report::new(progress.as_ref(), count * scenarios.len());
-    let table = watched(py, report, |control| {
+    let table = watched_law(py, law, report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
-        run_batch(&scenarios, law, &points, &options, &interrupted, &count)
+        run_batch(
+            &scenarios,
+            &law.any,
+            &points,
+            &options,
+            &interrupted,
+            &count,
+        )
     })?;
     columns(py, (&points, dimension), table)
 }

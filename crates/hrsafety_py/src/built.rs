@@ -15,7 +15,7 @@ use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{outcome_word, trajectory_fields, weights_of};
 use crate::sensing::Vision;
-use crate::watch::{Report, watched};
+use crate::watch::{Report, watched_law};
 use crate::wheels::{OmniKinematics, Slip, WheelDrive};
 
 /// How a robot is built.
@@ -63,7 +63,7 @@ impl AsBuilt {
 
 impl AsBuilt {
     /// It with the options of a run.
-    fn run(&self, step: f64, stop_on_contact: bool) -> Built {
+    pub fn run(&self, step: f64, stop_on_contact: bool) -> Built {
         Built {
             step,
             stop_on_contact,
@@ -73,7 +73,7 @@ impl AsBuilt {
 }
 
 /// Fields of a run of a robot as built.
-fn built_fields<'py>(
+pub fn built_fields<'py>(
     py: Python<'py>,
     scenario: &scenario::Scenario,
     summary: RunSummary,
@@ -104,7 +104,7 @@ pub fn built_simulate<'py>(
     stop_on_contact: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let built = built.run(step, stop_on_contact);
-    let (summary, columns) = watched(py, Report::none(), |control| {
+    let (summary, columns) = watched_law(py, law, Report::none(), |control| {
         simulate_built(&scenario.0, &law.any, &built, &|| control.interrupted())
     })?;
     built_fields(py, &scenario.0, summary, columns)
@@ -123,7 +123,7 @@ pub fn built_evaluate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     let built = built.run(step, false);
     let weights = weights_of(weights);
-    let (score, run, nominal) = watched(py, Report::none(), |control| {
+    let (score, run, nominal) = watched_law(py, law, Report::none(), |control| {
         let interrupted = || control.interrupted();
         evaluate_built(&scenario.0, &law.any, &built, weights, &interrupted)
     })?;
@@ -157,7 +157,8 @@ pub fn built_repeat<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let built = built.run(step, stop_on_contact);
     let report = Report::new(progress.as_ref(), seeds.len());
-    let runs = watched(py, report, |control| {
+    let threads = law.threads(threads);
+    let runs = watched_law(py, law, report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
         repeat_built(

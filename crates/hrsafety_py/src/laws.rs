@@ -1,5 +1,7 @@
 //! Navigation laws.
 
+use std::sync::Arc;
+
 use numeric::error::{Failure, Given, Result};
 use pyo3::prelude::*;
 use vff_core::laws;
@@ -19,6 +21,7 @@ use vff_core::laws::impedance::attraction::Attraction;
 use vff_core::laws::impedance::law::{Form, Impedance};
 
 use crate::errors::{CoreError, CoreResult, InvalidParameterError};
+use crate::python_law::PythonLaw;
 use crate::reactive::arena::ImpedanceFamily;
 
 /// A law of any kind.
@@ -27,6 +30,8 @@ pub struct Law {
     /// The law.
     pub any: AnyLaw,
     field: Option<laws::VirtualForceField>,
+    /// Whether it runs under the interpreter.
+    python: bool,
 }
 
 impl Law {
@@ -35,7 +40,18 @@ impl Law {
         Ok(Self {
             any: law.into().checked()?,
             field: None,
+            python: false,
         })
+    }
+
+    /// Whether it runs under the interpreter, and so in the thread of its caller.
+    pub fn is_python(&self) -> bool {
+        self.python
+    }
+
+    /// Threads for runs of the law: one for a law in Python.
+    pub fn threads(&self, asked: Option<usize>) -> Option<usize> {
+        if self.python { Some(1) } else { asked }
     }
 
     /// The virtual force field, whose terms are known one by one.
@@ -49,6 +65,19 @@ impl Law {
 
 #[pymethods]
 impl Law {
+    /// A law in Python: `begin(robot, start, goal, seed)` returns what is called with the fields of
+    /// every situation.
+    #[staticmethod]
+    #[pyo3(signature = (begin, *, velocity))]
+    fn python(begin: Py<PyAny>, velocity: bool) -> Self {
+        let begin = Arc::new(begin);
+        Self {
+            any: AnyLaw::one_by_one(PythonLaw { begin, velocity }),
+            field: None,
+            python: true,
+        }
+    }
+
     #[staticmethod]
     #[pyo3(signature = (*, gains, stabilizing, stabilizing_force_cap, stabilizing_momentum_cap,
         pass_behind, side_hysteresis))]
@@ -76,6 +105,7 @@ impl Law {
         Ok(Self {
             any: field.into(),
             field: Some(field),
+            python: false,
         })
     }
 

@@ -5,15 +5,18 @@ mod arrays;
 mod batch;
 mod built;
 mod differential;
+mod episode;
 mod errors;
 mod gains;
 mod impact;
 mod laws;
 mod parameters;
+mod python_law;
 mod reactive;
 mod run;
 mod sensing;
 mod signals;
+mod situation;
 mod watch;
 mod wheels;
 
@@ -40,6 +43,8 @@ mod _hrsafety {
     use crate::built::{AsBuilt, built_evaluate, built_repeat, built_simulate};
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
+    #[pymodule_export]
+    use crate::episode::Run;
     #[pymodule_export]
     use crate::gains::problem::GainProblem;
     #[pymodule_export]

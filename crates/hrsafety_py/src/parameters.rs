@@ -317,6 +317,11 @@ impl Scenario {
         let measured = scenario.measured(measurement, seed);
         Ok(Self(measured.map_err(crate::errors::CoreError::from)?))
     }
+
+    /// Mass, radius, largest speed and acceleration of the point mass that a law drives.
+    fn point_mass(&self) -> (f64, f64, f64, f64) {
+        crate::python_law::point_mass(&self.0)
+    }
 }
 
 /// Critical and active radius of an obstacle for a robot.

@@ -1,7 +1,5 @@
 //! One run, and the field at given states.
 
-use std::sync::Mutex;
-
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,9 +11,11 @@ use vff_core::run::{
 };
 
 use crate::arrays::Fields;
-use crate::errors::{CoreError, CoreResult, InvalidParameterError};
+use crate::errors::{CoreError, InvalidParameterError};
 use crate::laws::Law;
 use crate::parameters::{Scenario, word};
+use crate::python_law::raised;
+use crate::watch::{Report, here};
 
 /// The word for an outcome.
 pub fn outcome_word(outcome: Outcome) -> &'static str {
@@ -55,24 +55,9 @@ fn run(
     law: &Law,
     options: &Options,
 ) -> PyResult<(RunSummary, Trajectory)> {
-    let pending: Mutex<Option<PyErr>> = Mutex::new(None);
-    // The bare method would be bound to one lifetime.
-    #[allow(clippy::redundant_closure_for_method_calls)]
-    let interrupted = || match Python::attach(|py| py.check_signals()) {
-        // A planner may have heard of the signal before the run asks.
-        Ok(()) => pending.lock().is_ok_and(|slot| slot.is_some()),
-        Err(error) => {
-            if let Ok(mut slot) = pending.lock() {
-                *slot = Some(error);
-            }
-            true
-        }
-    };
-    let result = py.detach(|| run_once(scenario, &law.any, options, &interrupted));
-    if let Some(error) = pending.into_inner().ok().flatten() {
-        return Err(error);
-    }
-    Ok(result.map_err(CoreError::from)?)
+    here(py, Report::none(), |control| {
+        run_once(scenario, &law.any, options, &|| control.interrupted())
+    })
 }
 
 /// Fields of a trajectory.
@@ -189,8 +174,12 @@ pub fn law_command(
     position: [f64; 2],
     velocity: [f64; 2],
     time: f64,
-) -> CoreResult<[f64; 2]> {
-    Ok(command_at(&scenario.0, &law.any, position, velocity, time)?)
+) -> PyResult<[f64; 2]> {
+    let force = command_at(&scenario.0, &law.any, position, velocity, time);
+    match raised() {
+        Some(error) => Err(error),
+        None => Ok(force.map_err(CoreError::from)?),
+    }
 }
 
 /// Every force term at one state.

@@ -1,25 +1,60 @@
 //! Long work of the cores: it hears that it is to stop, and tells how much is done.
 
 use std::num::NonZero;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use numeric::error::Failure;
 use pyo3::prelude::*;
 
 use crate::errors::CoreError;
+use crate::laws::Law;
+use crate::python_law;
 use crate::signals::attended;
+
+/// Time between two looks of work that looks at signals itself.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// What the work hears and tells while it runs.
 #[derive(Default)]
-pub struct Control {
+pub struct Control<'a> {
     cancelled: AtomicBool,
     done: AtomicUsize,
+    /// Looks from within the work, where no other thread does.
+    own: Option<Mutex<Looks<'a>>>,
 }
 
-impl Control {
+/// Looks at signals and progress from within the work.
+struct Looks<'a> {
+    report: Report<'a>,
+    next: Instant,
+    reported: Option<usize>,
+    raised: Option<PyErr>,
+}
+
+impl Control<'_> {
     /// Whether to stop.
     pub fn interrupted(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        if self.cancelled.load(Ordering::Relaxed) {
+            return true;
+        }
+        let looks = self.own.as_ref().map(Mutex::lock);
+        let Some(Ok(mut looks)) = looks else {
+            return false;
+        };
+        if Instant::now() < looks.next {
+            return false;
+        }
+        let (report, mut reported) = (looks.report, looks.reported);
+        let done = self.done.load(Ordering::Relaxed);
+        if let Err(error) = report.look(done, &mut reported) {
+            looks.raised = Some(error);
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
+        looks.reported = reported;
+        looks.next = Instant::now() + LOOK;
+        looks.raised.is_some()
     }
 
     /// So much more has been done.
@@ -61,12 +96,64 @@ impl<'a> Report<'a> {
     }
 }
 
+/// Works in this thread, which now and then looks at signals and reports progress itself: short
+/// work, and work that runs under the interpreter.
+pub fn here<T: Send, E: Send>(
+    py: Python<'_>,
+    report: Report<'_>,
+    work: impl FnOnce(&Control<'_>) -> Result<T, E> + Send,
+) -> PyResult<T>
+where
+    CoreError: From<E>,
+{
+    let control = Control {
+        own: Some(Mutex::new(Looks {
+            report,
+            next: Instant::now() + LOOK,
+            reported: None,
+            raised: None,
+        })),
+        ..Control::default()
+    };
+    let result = py.detach(|| work(&control));
+    if let Some(error) = python_law::raised() {
+        return Err(error);
+    }
+    let looks = control.own.and_then(|looks| looks.into_inner().ok());
+    let (raised, mut reported) = looks.map_or((None, None), |own| (own.raised, own.reported));
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    let found = result.map_err(CoreError::from)?;
+    if report.call.is_some() {
+        report.look(report.total, &mut reported)?;
+    }
+    Ok(found)
+}
+
+/// Works under a law: in this thread if the law runs under the interpreter, as `watched` otherwise.
+pub fn watched_law<T: Send, E: Send>(
+    py: Python<'_>,
+    law: &Law,
+    report: Report<'_>,
+    work: impl FnOnce(&Control<'_>) -> Result<T, E> + Send,
+) -> PyResult<T>
+where
+    CoreError: From<E>,
+{
+    if law.is_python() {
+        here(py, report, work)
+    } else {
+        watched(py, report, work)
+    }
+}
+
 /// Works in another thread while this one looks at signals and reports progress; the work is told
 /// to stop when one of them raises an exception, and what it returns then is dropped.
 pub fn watched<T: Send, E: Send>(
     py: Python<'_>,
     report: Report<'_>,
-    work: impl FnOnce(&Control) -> Result<T, E> + Send,
+    work: impl FnOnce(&Control<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T>
 where
     CoreError: From<E>,

@@ -1,0 +1,106 @@
+//! A run that Python steps.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use numeric::error::Failure;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::run::{Episode, Request};
+
+use crate::built::{AsBuilt, built_fields};
+use crate::errors::{CoreError, SimulationError};
+use crate::laws::Law;
+use crate::parameters::Scenario;
+use crate::run::{outcome_word, trajectory_fields};
+use crate::situation::situation_fields;
+use crate::watch::{Report, here};
+
+/// A run under way.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Run(Mutex<Episode>);
+
+impl Run {
+    /// The episode, unless another thread, or its own law, is at work on it.
+    fn idle(&self) -> PyResult<MutexGuard<'_, Episode>> {
+        self.0.try_lock().map_err(|_| busy())
+    }
+}
+
+fn busy() -> PyErr {
+    SimulationError::new_err("a step of this run is under way; step it from one place at a time")
+}
+
+#[pymethods]
+impl Run {
+    #[new]
+    #[pyo3(signature = (scenario, law, built, *, step, stop_on_contact))]
+    fn new(
+        scenario: &Scenario,
+        law: Option<&Law>,
+        built: &AsBuilt,
+        step: f64,
+        stop_on_contact: bool,
+    ) -> PyResult<Self> {
+        let built = built.run(step, stop_on_contact);
+        let scenario = Arc::new(scenario.0.clone());
+        let episode = Episode::new(scenario, law.map(|law| &law.any), &built);
+        Ok(Self(Mutex::new(episode.map_err(CoreError::from)?)))
+    }
+
+    /// Fields of what the controller sees.
+    fn situation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        situation_fields(py, &self.idle()?.situation())
+    }
+
+    /// One control period under the law, a force in N or a velocity in m/s.
+    #[pyo3(signature = (*, force, velocity))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        force: Option<[f64; 2]>,
+        velocity: Option<[f64; 2]>,
+    ) -> PyResult<()> {
+        let request = match (force, velocity) {
+            (Some(force), _) => Request::Force(force),
+            (None, Some(velocity)) => Request::Velocity(velocity),
+            (None, None) => Request::Law,
+        };
+        let moved = here(py, Report::none(), |control| {
+            let Ok(mut episode) = self.0.try_lock() else {
+                return Ok(false);
+            };
+            episode.period(request, &|| control.interrupted())?;
+            Ok::<_, Failure>(true)
+        })?;
+        if moved { Ok(()) } else { Err(busy()) }
+    }
+
+    /// Present time in s, or when the run ended.
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.idle()?.time())
+    }
+
+    /// The word for how it ended, if it has.
+    #[getter]
+    fn outcome(&self) -> PyResult<Option<&'static str>> {
+        Ok(self.idle()?.outcome().map(outcome_word))
+    }
+
+    /// Fields of the trajectory so far; `motors`: with what motors and controller know.
+    #[pyo3(signature = (*, motors))]
+    fn recorded<'py>(&self, py: Python<'py>, motors: bool) -> PyResult<Bound<'py, PyDict>> {
+        let episode = self.idle()?;
+        let (summary, columns) = episode.recorded();
+        let scenario = episode.scenario();
+        let fields = if motors {
+            built_fields(py, scenario, summary, columns)?
+        } else {
+            trajectory_fields(py, scenario, summary, columns.motion)?
+        };
+        if !episode.finished() {
+            fields.set_item("outcome", "running")?;
+        }
+        Ok(fields)
+    }
+}

@@ -1,0 +1,154 @@
+//! A law that is written in Python: it runs under the interpreter, in the thread of its caller.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use numeric::error::Result;
+use pyo3::prelude::*;
+use vff_core::lanes::{Planar, Real, Vector2};
+use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
+use vff_core::world::geometry::RobotState;
+use vff_core::world::scenario::Scenario;
+
+use crate::situation::situation_fields;
+
+thread_local! {
+    /// What a law raised; the core knows of it only that the force is not a number.
+    static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
+}
+
+/// Takes what a law raised in this thread.
+pub fn raised() -> Option<PyErr> {
+    RAISED.take()
+}
+
+/// The kernels take gain sets one after the other, so it has one number, which nobody reads.
+const NUMBERS: [&str; 1] = ["none"];
+
+/// The law: a callable that begins an episode and returns one that is asked in every period.
+pub struct PythonLaw {
+    /// Takes robot, start, goal and seed.
+    pub begin: Arc<Py<PyAny>>,
+    /// Whether it answers with a velocity in m/s, not with a force in N.
+    pub velocity: bool,
+}
+
+impl LawFamily for PythonLaw {
+    type Law<R: Real, const RECORD: bool> = AtWork;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        &NUMBERS
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        vec![0.0]
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        &[0]
+    }
+
+    fn check_gains(&self, _gains: &[f64]) -> Result<()> {
+        Ok(())
+    }
+
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        _gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<AtWork> {
+        Ok(AtWork {
+            begin: Arc::clone(&self.begin),
+            asked: (0..R::WIDTH).map(|_| None).collect(),
+            velocity: self.velocity,
+            robot: point_mass(scenario),
+            ends: (scenario.start(), scenario.goal()),
+            seed: scenario.seed(),
+        })
+    }
+}
+
+/// Mass, radius, largest speed and acceleration of the point mass that a law drives.
+pub fn point_mass(scenario: &Scenario) -> (f64, f64, f64, f64) {
+    let robot = scenario.point_mass();
+    (
+        robot.mass,
+        robot.radius,
+        robot.max_speed,
+        robot.max_acceleration,
+    )
+}
+
+/// The law at work in one scenario.
+pub struct AtWork {
+    begin: Arc<Py<PyAny>>,
+    /// What is asked in every lane, from its first command on.
+    asked: Vec<Option<Py<PyAny>>>,
+    velocity: bool,
+    robot: (f64, f64, f64, f64),
+    ends: ([f64; 2], [f64; 2]),
+    seed: u64,
+}
+
+impl AtWork {
+    fn answer(&mut self, lane: usize, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
+        Python::attach(|py| {
+            let fields = situation_fields(py, situation)?;
+            let slot = &mut self.asked[lane];
+            let asked = match slot {
+                Some(asked) => asked,
+                None => {
+                    let (start, goal) = self.ends;
+                    let arguments = (self.robot, start, goal, self.seed);
+                    slot.insert(self.begin.call1(py, arguments)?)
+                }
+            };
+            asked.call1(py, (fields,))?.extract(py)
+        })
+    }
+
+    fn force(&mut self, lane: usize, situation: &Situation<'_, f64>) -> [f64; 2] {
+        // After an error the run is over, and the interpreter is left alone.
+        if RAISED.with_borrow(Option::is_some) {
+            return [f64::NAN; 2];
+        }
+        match self.answer(lane, situation) {
+            Ok(answer) if self.velocity => {
+                let (mass, ..) = self.robot;
+                force_toward(Vector2::splat(answer), situation, mass).lane(0)
+            }
+            Ok(force) => force,
+            Err(error) => {
+                RAISED.set(Some(error));
+                [f64::NAN; 2]
+            }
+        }
+    }
+}
+
+impl<R: Real> Law<R> for AtWork {
+    const THINKS: bool = true;
+
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let mut force = Vector2::<R>::zeros();
+        for lane in 0..R::WIDTH {
+            let robot = RobotState {
+                position: Vector2::splat(situation.robot.position.lane(lane)),
+                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
+            };
+            let [x, y] = self.force(
+                lane,
+                &Situation {
+                    time: situation.time,
+                    bodies: situation.bodies,
+                    robot,
+                    heading: situation.heading,
+                    interval: situation.interval,
+                    stop: situation.stop,
+                },
+            );
+            force = Vector2::new(force.x.replace(lane, x), force.y.replace(lane, y));
+        }
+        Command::plain(force)
+    }
+}
