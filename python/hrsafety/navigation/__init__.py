@@ -19,10 +19,12 @@ from hrsafety.navigation.laws.planners import (
     RapidlyExploringRandomTree,
     VelocityObstacle,
 )
+from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.simulation import evaluate, simulate
@@ -52,7 +54,9 @@ __all__ = [
     "RapidlyExploringRandomTree",
     "Rectangle",
     "Regions",
+    "Run",
     "Scenario",
+    "Situation",
     "Trajectory",
     "VelocityObstacle",
     "VirtualForceField",

@@ -16,6 +16,7 @@ from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_inter
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.run_warnings import of_runs
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
@@ -228,7 +229,7 @@ class ArenaResult(Table):
 
 
 def arena(
-    laws: Mapping[str, Law],
+    laws: Mapping[str, AnyLaw],
     scenarios: Mapping[str, Scenario] | Sequence[Scenario],
     *,
     seeds: Sequence[int] | None = None,
@@ -244,7 +245,8 @@ def arena(
     Parameters
     ----------
     laws : mapping of str to law
-        The laws by the names under which they appear.
+        The laws by the names under which they appear, those of the package and laws of your own
+        (`PythonLaw`).
     scenarios : mapping of str to Scenario, or sequence of Scenario
         Where; without names they are numbered.
     seeds : sequence of int or None
@@ -279,13 +281,13 @@ def arena(
     """
     if not isinstance(laws, Mapping) or not laws:
         raise InvalidParameterError("laws", "be a mapping of names to laws that is not empty", laws)
-    for name, law in laws.items():
+    for name in laws:
         instance("laws", name, str)
-        instance(f"laws[{name!r}]", law, Law)
+    wrapped = {name: as_law(law, f"laws[{name!r}]") for name, law in laws.items()}
     callback("progress", progress)
     names, episodes, index = _episodes(scenarios, seeds)
     tables = []
-    for done, law in enumerate(laws.values(), start=1):
+    for done, law in enumerate(wrapped.values(), start=1):
         tables.append(
             simulate_batch(episodes, law, weights=weights, integrator=integrator, step=step, hold=hold, threads=threads)
         )
@@ -304,7 +306,7 @@ def arena(
         min_distance=np.stack([table.min_distance for table in tables]),
         moving_contacts=np.stack([table.contacts_moving for table in tables]),
         performance_total=np.stack([table.performance_total for table in tables]),
-        _ran=(tuple(episodes[k] for k in np.unique(index, return_index=True)[1]), tuple(laws.values())),
+        _ran=(tuple(episodes[k] for k in np.unique(index, return_index=True)[1]), tuple(wrapped.values())),
     )
 
 
@@ -331,7 +333,7 @@ def _episodes(
     return tuple(named), episodes, np.repeat(np.arange(len(named)), len(drawn))
 
 
-def step_cost(law: Law, scenario: Scenario, *, repeats: int = 5) -> float:
+def step_cost(law: AnyLaw, scenario: Scenario, *, repeats: int = 5) -> float:
     """Return the processor time of one control step of a law, in s: the least of some runs.
 
     Parameters

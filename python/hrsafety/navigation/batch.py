@@ -14,6 +14,7 @@ from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
@@ -135,7 +136,7 @@ class BatchSummary(Table):
 
 def simulate_batch(
     scenarios: Sequence[Scenario],
-    law: Law,
+    law: AnyLaw,
     gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
     *,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
@@ -154,8 +155,9 @@ def simulate_batch(
     ----------
     scenarios : sequence of Scenario
         Where.
-    law : Law
-        The law; its own gains are used when ``gains`` is ``None``.
+    law : Law, callable or object
+        The law; its own gains are used when ``gains`` is ``None``. A law of your own has none, and runs
+        on one thread; see `PythonLaw`.
     gains : array_like of shape (n, g), mapping, or None
         Gain sets in the order of ``GAIN_NAMES`` of the law, or arrays by these names
         that broadcast, the missing ones taken from the law.
@@ -201,7 +203,7 @@ def simulate_batch(
     (9, {'arrived'})
     """
     scenes = check_scenarios(scenarios)
-    instance("law", law, Law)
+    law = as_law(law)
     check_threads(threads)
     if lanes is not None:
         count("lanes", lanes, most=MOST_LANES)
@@ -219,6 +221,8 @@ def simulate_batch(
         lanes=lanes,
         progress=callback("progress", progress),
     )
+    if not law.GAIN_NAMES:
+        columns["gains"] = columns["gains"][:, :0]
     return BatchSummary(gain_names=law.GAIN_NAMES, _ran=(tuple(scenes), law), **columns)
 
 
@@ -242,6 +246,10 @@ def check_threads(threads: int | None) -> None:
 
 def _gain_sets(law: Law, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
     """Return the gain sets as a contiguous array, one a row."""
+    if not law.GAIN_NAMES:
+        if gains is not None:
+            raise InvalidParameterError("gains", "be None for a law without gains", gains)
+        return np.zeros((1, 1))  # the kernels take a gain set for every run
     if gains is None:
         return np.array([law.gains])
     if isinstance(gains, Mapping):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, flag, instance, number
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import Performance, check_weights
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
@@ -72,7 +73,7 @@ class BuiltTrajectory(Trajectory):
 
 def simulate_built(
     scenario: Scenario,
-    law: Law,
+    law: AnyLaw,
     built: AsBuilt | None = None,
     *,
     step: float = 0.01,
@@ -88,8 +89,8 @@ def simulate_built(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles, measurement.
-    law : Law
-        What drives the robot.
+    law : Law, callable or object
+        What drives the robot; see `PythonLaw` for laws of your own.
     built : AsBuilt or None
         How the robot is built; ``AsBuilt()`` when ``None``.
     step : float
@@ -119,7 +120,7 @@ def simulate_built(
     >>> run.outcome, run.wheel_speed.shape[1]
     ('arrived', 2)
     """
-    built = _checked(scenario, law, built)
+    law, built = _checked(scenario, law, built)
     fields = _hrsafety.built_simulate(
         scenario._native,
         law._native,
@@ -132,7 +133,7 @@ def simulate_built(
 
 def evaluate_built(
     scenario: Scenario,
-    law: Law,
+    law: AnyLaw,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     built: AsBuilt | None = None,
     *,
@@ -146,8 +147,8 @@ def evaluate_built(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles, measurement.
-    law : Law
-        What drives the robot.
+    law : Law, callable or object
+        What drives the robot; see `PythonLaw` for laws of your own.
     weights : sequence of float
         Weights of time, distance and energy; not negative, sum 1.
     built : AsBuilt or None
@@ -175,7 +176,7 @@ def evaluate_built(
     >>> 0.0 < nav.built.evaluate_built(scene, nav.VirtualForceField()).total < 1.0
     True
     """
-    built = _checked(scenario, law, built)
+    law, built = _checked(scenario, law, built)
     scores, run, nominal = _hrsafety.built_evaluate(
         scenario._native, law._native, built._native, check_weights(weights), step=number("step", step)
     )
@@ -187,7 +188,6 @@ def evaluate_built(
     )
 
 
-def _checked(scenario: Scenario, law: Law, built: AsBuilt | None) -> AsBuilt:
+def _checked(scenario: Scenario, law: AnyLaw, built: AsBuilt | None) -> tuple[Law, AsBuilt]:
     instance("scenario", scenario, Scenario)
-    instance("law", law, Law)
-    return AsBuilt() if built is None else instance("built", built, AsBuilt)
+    return as_law(law), AsBuilt() if built is None else instance("built", built, AsBuilt)

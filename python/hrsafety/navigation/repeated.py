@@ -19,6 +19,7 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.built import _checked
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.run_warnings import of_run
 from hrsafety.navigation.scenario import Scenario
@@ -250,7 +251,7 @@ def _band(abscissa: Array, rows: Array, share: float) -> Band:
 
 def repeat(
     scenario: Scenario,
-    law: Law,
+    law: AnyLaw,
     *,
     seeds: int | Iterable[int] = 100,
     built: AsBuilt | None = None,
@@ -268,8 +269,8 @@ def repeat(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles, measurement; its own seed is not used.
-    law : Law
-        What drives the robot.
+    law : Law, callable or object
+        What drives the robot; see `PythonLaw` for laws of your own, which run on one thread.
     seeds : int or iterable of int
         The seeds, or their number: then 0, 1, 2 and so on.
     built : AsBuilt or None
@@ -305,7 +306,7 @@ def repeat(
     >>> len(runs), runs.success.runs
     (20, 20)
     """
-    built = _checked(scenario, law, built)
+    law, built = _checked(scenario, law, built)
     given = _seeds(seeds)
     check_threads(threads)
     fields = _hrsafety.built_repeat(

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import flag, number
+from hrsafety._arguments import flag, instance, number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import built
-from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.laws.forces import check_law
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import Performance, check_weights
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
@@ -20,7 +19,7 @@ __all__ = ["evaluate", "simulate"]
 
 def simulate(
     scenario: Scenario,
-    law: Law,
+    law: AnyLaw,
     *,
     integrator: Integrator = "semi_implicit_euler",
     step: float = 0.01,
@@ -33,8 +32,8 @@ def simulate(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles.
-    law : Law
-        What drives the robot.
+    law : Law, callable or object
+        What drives the robot; see `PythonLaw` for laws of your own.
     integrator : {"semi_implicit_euler", "rk4"}
         Velocity first and position with the new velocity, or Runge-Kutta of order 4 with the
         speed limit in every stage.
@@ -68,7 +67,8 @@ def simulate(
     >>> run.outcome, round(run.arrival_time, 2), round(float(run.min_distance[0]), 3)
     ('arrived', 6.63, 0.536)
     """
-    check_law(scenario, law, Law)
+    instance("scenario", scenario, Scenario)
+    law = as_law(law)
     if isinstance(scenario.robot, DifferentialDriveRobot):
         _check_held(integrator, hold)
         return built.simulate_built(scenario, law, step=step, stop_on_contact=stop_on_contact)
@@ -85,7 +85,7 @@ def simulate(
 
 def evaluate(
     scenario: Scenario,
-    law: Law,
+    law: AnyLaw,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     *,
     integrator: Integrator = "semi_implicit_euler",
@@ -102,8 +102,8 @@ def evaluate(
     ----------
     scenario : Scenario
         Robot, start, goal, obstacles.
-    law : Law
-        What drives the robot.
+    law : Law, callable or object
+        What drives the robot; see `PythonLaw` for laws of your own.
     weights : sequence of float
         Weights of time, distance and energy; not negative, sum 1.
     integrator, step, hold
@@ -127,7 +127,8 @@ def evaluate(
     >>> round(nav.evaluate(scenarios.configuration("c1"), nav.VirtualForceField()).total, 2)
     0.65
     """
-    check_law(scenario, law, Law)
+    instance("scenario", scenario, Scenario)
+    law = as_law(law)
     if isinstance(scenario.robot, DifferentialDriveRobot):
         _check_held(integrator, hold)
         return built.evaluate_built(scenario, law, weights, step=step)

@@ -48,8 +48,9 @@ class Trajectory(Table):
     distance : ndarray, shape (n, m)
         Distance d from obstacle centre (rectangle: contour) to robot centre in m; NaN while
         absent.
-    outcome : {"arrived", "collided", "timed_out", "stopped"}
-        How it ended. A contact makes it ``"collided"`` whatever came after.
+    outcome : {"arrived", "collided", "timed_out", "stopped", "running"}
+        How it ended. A contact makes it ``"collided"`` whatever came after. ``"running"``: the run so
+        far of a `Run` that is under way.
     arrival_time : float
         First entry into the tolerance circle, in s; NaN without arrival.
     energy : float
@@ -78,7 +79,7 @@ class Trajectory(Table):
     wheel_current: Array
     obstacle_position: Array
     distance: Array
-    outcome: Outcome
+    outcome: Outcome | Literal["running"]
     arrival_time: float
     energy: float
     min_distance: Array

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, instance, vector
+from hrsafety._arguments import Array, vector
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns, Table
@@ -197,7 +198,7 @@ def gain_sensitivity(
     """
     scenes = check_scenarios(scenarios)
     law = VirtualForceField() if law is None else law
-    instance("law", law, Law)
+    law = law_with_gains(law)
     percent = _changes(changes)
     reference = np.array(law.gains)
     gains = np.tile(reference, (len(reference), len(percent), 1))

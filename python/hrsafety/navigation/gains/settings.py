@@ -16,7 +16,6 @@ from hrsafety._arguments import (
     checked_seed,
     count,
     flag,
-    instance,
     numbers,
     positive,
     sequence,
@@ -28,6 +27,7 @@ from hrsafety.navigation.batch import BatchSummary, check_scenarios
 from hrsafety.navigation.gains.metrics import METRICS, check_metric
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.planners import RapidlyExploringRandomTree
+from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
@@ -165,8 +165,7 @@ def check_law(law: Law | None) -> Law:
     """Return the law; without one the field of the published tables, without stabilizing force."""
     if law is None:
         return VirtualForceField(stabilizing="off")
-    instance("law", law, Law)
-    return law
+    return law_with_gains(law)
 
 
 def limited_scenarios(scenarios: Sequence[Scenario], time_limit: float | None) -> tuple[Scenario, ...]:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, instance, numbers, positive
+from hrsafety._arguments import Array, numbers, positive
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
 from hrsafety.navigation.gains.metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 
@@ -133,7 +134,7 @@ def gain_gradient(
     """
     scenes = check_scenarios(scenarios)
     law = VirtualForceField() if law is None else law
-    instance("law", law, Law)
+    law = law_with_gains(law)
     metric_name = check_metric("metric", metric)
     gains = np.array(law.gains)
     widths = _steps(law, relative_step, steps)

@@ -17,11 +17,14 @@ from hrsafety.navigation.laws.planners import (
     RapidlyExploringRandomTree,
     VelocityObstacle,
 )
+from hrsafety.navigation.laws.python_law import ForceLaw, PythonLaw, VelocityLaw
+from hrsafety.navigation.laws.situation import PointMass, Situation
 
 __all__ = [
     "BorensteinKoren",
     "FieldDStar",
     "ForceField",
+    "ForceLaw",
     "ForceTerms",
     "GeCui",
     "Khatib",
@@ -29,7 +32,11 @@ __all__ = [
     "Lyapunov",
     "Masoud",
     "OptimalReciprocalCollisionAvoidance",
+    "PointMass",
+    "PythonLaw",
     "RapidlyExploringRandomTree",
+    "Situation",
+    "VelocityLaw",
     "VelocityObstacle",
     "VirtualForceField",
     "VirtualImpedanceLaw",

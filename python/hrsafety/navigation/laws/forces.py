@@ -12,6 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, number, numbers, pair, points
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.scenario import Scenario
 
 __all__ = ["ForceField", "ForceTerms", "Lyapunov", "check_law", "command", "force_field", "force_terms", "lyapunov"]
@@ -97,7 +98,7 @@ def check_law(scenario: Scenario, law: Law, kind: type[Law] = VirtualForceField)
 
 
 def command(
-    law: Law,
+    law: AnyLaw,
     scenario: Scenario,
     *,
     position: Sequence[float] | Array,
@@ -136,7 +137,8 @@ def command(
     ... ).round(3).tolist()
     [-17.5, 0.0]
     """
-    check_law(scenario, law, Law)
+    instance("scenario", scenario, Scenario)
+    law = as_law(law)
     state = pair("position", position), pair("velocity", velocity)
     return np.array(_hrsafety.law_command(law._native, scenario._native, *state, number("time", time)))
 

@@ -1,0 +1,193 @@
+"""A law of your own, written in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from types import MappingProxyType
+from typing import Any, ClassVar, Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, numbers
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
+
+__all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "VelocityLaw", "as_law", "law_with_gains"]
+
+RULE = (
+    "be a Law, a function that takes a Situation and returns a force in N, or an object with the method `command` "
+    "(a force in N) or `velocity` (a velocity in m/s)"
+)
+
+
+@runtime_checkable
+class ForceLaw(Protocol):
+    """An object that drives a robot by forces."""
+
+    def command(self, situation: Situation, /) -> npt.ArrayLike:
+        """Return the force in N that acts until the next sample, shape (2,)."""
+
+
+@runtime_checkable
+class VelocityLaw(Protocol):
+    """An object that drives a robot by velocities."""
+
+    def velocity(self, situation: Situation, /) -> npt.ArrayLike:
+        """Return the velocity in m/s that the robot should have at the next sample, shape (2,)."""
+
+
+AnyLaw: TypeAlias = Law | ForceLaw | VelocityLaw | Callable[[Situation], npt.ArrayLike]
+"""What drives a robot: a law of the package, or one of your own."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PythonLaw(Law):
+    """A law of your own.
+
+    It runs under the interpreter, a few ten microseconds per control period, on one thread: slow beside the
+    laws of the package, which are compiled, and meant for ideas. Functions that take a law take
+    what is given here directly and wrap it themselves.
+
+    Parameters
+    ----------
+    function : callable or object
+        A function that takes a `Situation` and returns a force in N; or an object with the method
+        ``command(situation)``, which returns a force in N, or ``velocity(situation)``, which returns
+        the velocity in m/s to have at the next sample and becomes the force ``m (v* - V)/T_s``. If it
+        has the method ``start(situation, seed)``, that is called at the start of every run, with
+        what is seen then and the seed of the scenario.
+    name : str or None
+        Name for messages; that of the function or of the object's class when ``None``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the function cannot be called and has neither method, or both.
+
+    Notes
+    -----
+    A law that remembers something serves one run at a time, and forgets it in ``start``. Errors
+    raised in it arrive unchanged, with a note of the time and of the run.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> def straight(situation):
+    ...     return 4.0 * (situation.goal - situation.position) - 8.0 * situation.velocity
+    >>> nav.simulate(scenarios.configuration("c1"), straight).outcome
+    'collided'
+    """
+
+    GAIN_NAMES: ClassVar[tuple[str, ...]] = ()
+    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType({})
+    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType({})
+
+    function: object
+    name: str | None = None
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        ask, velocity = _method(self.function)
+        name = _name(self.function) if self.name is None else self.name
+        if not isinstance(name, str) or not name:
+            raise InvalidParameterError("name", "be a word or None", self.name)
+        self._set(name=name)
+        start = getattr(self.function, "start", None)
+        if start is not None and not callable(start):
+            raise InvalidParameterError("start", "be a method start(situation, seed) of the law", start)
+        begin = partial(_Episode, name, ask, start, "velocity" if velocity else "force")
+        self._set(_native=_hrsafety.Law.python(begin, velocity=velocity))
+
+
+def as_law(law: object, name: str = "law") -> Law:
+    """Return a law of the package as it is, and wrap one in Python."""
+    if isinstance(law, Law):
+        return law
+    try:
+        return PythonLaw(function=law)
+    except InvalidParameterError as error:
+        raise error.renamed(name) from None
+
+
+def law_with_gains(law: object, name: str = "law") -> Law:
+    """Return a law of the package that has gains, as a search needs it."""
+    if isinstance(law, Law) and law.GAIN_NAMES:
+        return law
+    if isinstance(law, Law) or callable(law):
+        raise InvalidParameterError(name, "be a Law with gains", law, "a law in Python has none to search")
+    raise InvalidParameterError(name, "be a Law", law)
+
+
+def _method(function: object) -> tuple[Callable[[Situation], object], bool]:
+    """Return what is asked for every period, and whether it returns a velocity."""
+    if isinstance(function, type):
+        raise InvalidParameterError("function", RULE, function, f"{function.__name__} is a class: make one of it first")
+    methods = [each for each in ("command", "velocity") if callable(getattr(function, each, None))]
+    if len(methods) > 1:
+        raise InvalidParameterError("function", "have one of the methods `command` and `velocity`, not both", function)
+    if methods:
+        return getattr(function, methods[0]), methods == ["velocity"]
+    if callable(function):
+        return function, False
+    raise InvalidParameterError("function", RULE, function)
+
+
+def _name(function: object) -> str:
+    own = getattr(function, "name", None)
+    if isinstance(own, str) and own:
+        return own
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+class _Episode:
+    """A law at work in one run: shows it every situation and checks what it returns."""
+
+    def __init__(
+        self,
+        name: str,
+        ask: Callable[[Situation], object],
+        start: Callable[[Situation, int], object] | None,
+        kind: str,
+        robot: tuple[float, float, float, float],
+        origin: Pair,
+        goal: Pair,
+        seed: int,
+    ) -> None:
+        mass, radius, max_speed, max_acceleration = robot
+        self.name, self.ask, self.start, self.kind = name, ask, start, kind
+        self.robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
+        self.origin, self.goal, self.seed = origin, fixed(goal), seed
+
+    def __call__(self, fields: Mapping[str, Any]) -> Pair:
+        situation = situation_of(fields, self.robot, self.goal)
+        try:
+            if self.start is not None:
+                start, self.start = self.start, None
+                start(situation, self.seed)
+            answer = self.ask(situation)
+        except Exception as error:
+            error.add_note(f"raised by law {self.name!r} at t = {situation.time:.6g} s, {self._run()}")
+            raise
+        return self._checked(answer, situation.time)
+
+    def _run(self) -> str:
+        (x, y), goal = self.origin, self.goal
+        return f"in the run from ({x:g}, {y:g}) to ({goal[0]:g}, {goal[1]:g}) with seed {self.seed}"
+
+    def _checked(self, answer: object, time: float) -> Pair:
+        """Return two finite numbers, or say which law returned something else, and when."""
+        unit = "m/s" if self.kind == "velocity" else "N"
+        what = f"{self.kind} of law {self.name!r} at t = {time:.6g} s"
+        array = numbers(what, answer, f"be two numbers (x, y) in {unit}")
+        if array.shape != (2,):
+            raise ShapeError(what, "(2,)", array.shape)
+        if not np.isfinite(array).all():
+            raise InvalidParameterError(what, f"be finite, in {unit}", array.tolist())
+        x, y = array.tolist()
+        return x, y
