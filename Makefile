@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test lint bench docs images check reproduce clean
+.PHONY: build develop hooks test test-fast lint bench docs images check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -28,7 +28,12 @@ hooks: build
 
 test: build
 	cargo test --workspace --locked
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
+
+# What fails first when a formula, a message or a name is wrong: units in Rust, and the quick files.
+test-fast: build
+	cargo test --workspace --locked --lib
+	$(BIN)/python -m pytest -n auto --dist loadfile --fast
 
 lint: build
 	cargo fmt --all --check
