@@ -3,6 +3,7 @@
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Planar, Real, Vector2};
 use crate::robots::wheels::omni_rows;
+use crate::world::geometry::RobotState;
 use crate::world::region::RobotLimits;
 
 /// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
@@ -103,6 +104,16 @@ impl HolonomicRobot {
     #[inline(always)]
     pub fn limited_velocity<R: Real>(&self, velocity: Vector2<R>) -> (Vector2<R>, R) {
         limited(velocity, self.max_speed)
+    }
+
+    /// One step of semi-implicit Euler: adds a change of velocity in m/s, then moves with the new
+    /// velocity; returns the speed in m/s.
+    #[inline(always)]
+    pub fn advance<R: Real>(&self, state: &mut RobotState<R>, push: Vector2<R>, step: f64) -> R {
+        let (velocity, speed) = self.limited_velocity(state.velocity + push);
+        state.velocity = velocity;
+        state.position += velocity * R::splat(step);
+        speed
     }
 }
 

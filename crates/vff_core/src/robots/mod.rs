@@ -1,6 +1,7 @@
 //! Robots: how a commanded force becomes motion, and what it costs.
 
 pub mod differential;
+pub mod drives;
 mod holonomic;
 pub mod wheels;
 

@@ -8,10 +8,10 @@ use std::sync::Arc;
 use crate::error::{Failure, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::{Command, Situation, Stop, force_toward};
+use crate::robots::drives::{Drive, Fix, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
-use crate::run::built::motion::{Drive, Fix, Order, Reading};
 use crate::run::built::sight::Sight;
 use crate::run::built::{clock_of, robot_of};
 use crate::run::group::{AnyLaw, Steering};
@@ -97,14 +97,15 @@ impl<L: Listener> Episode<L> {
         let clock = clock_of(&scenario, built)?;
         let scene = Scene::new(Arc::clone(&scenario), 1, false);
         let bodies = &scene.frames[0];
-        let reading = Reading::at_start(&scenario);
+        let reading = Reading::at(&built.start_in(&scenario));
+        let sight = Sight::new(&scenario, built, bodies)?;
         let steering = law.map(|law| law.driven().steering(&scenario));
         let mut episode = Self {
             law: steering.transpose()?,
             listener: listener(&scenario, robot.wheels()),
             clock,
             stop_on_contact: built.stop_on_contact,
-            sight: Sight::new(&scenario, built, bodies)?,
+            sight,
             known: Known {
                 robot: reading.robot,
                 fix: None,

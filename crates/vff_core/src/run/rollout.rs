@@ -250,8 +250,10 @@ fn observe<R: Real>(runs: &mut Runs<&Scenario, R>, measured: Option<Measured>) -
 #[inline(always)]
 fn semi_implicit_euler<R: Real>(runs: &mut Runs<&Scenario, R>) {
     let robot = &runs.scenario.robot;
-    (runs.velocity, runs.speed) = robot.limited_velocity(runs.velocity + runs.push);
-    runs.position += runs.velocity * R::splat(runs.clock.step);
+    let (position, velocity) = (runs.position, runs.velocity);
+    let mut state = RobotState { position, velocity };
+    runs.speed = robot.advance(&mut state, runs.push, runs.clock.step);
+    (runs.position, runs.velocity) = (state.position, state.velocity);
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.

@@ -1,7 +1,7 @@
 //! What is kept of a run of a robot as built.
 
 use crate::laws::Command;
-use crate::run::built::motion::Reading;
+use crate::robots::drives::Reading;
 use crate::run::record::{Recorder, Trajectory, TrajectoryRecorder};
 use crate::world::geometry::Body;
 use crate::world::scenario::Scenario;

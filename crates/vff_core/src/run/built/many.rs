@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
+use crate::robots::drives::Reading;
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::Listener;
-use crate::run::built::motion::Reading;
 use crate::run::built::run::clock_of;
 use crate::run::episode::Episode;
 use crate::run::group::AnyLaw;

@@ -5,22 +5,19 @@
 //! follows the point mass which the law drives. With ideal motion and exact sensing a run is that
 //! of [`super::simulate`], bit for bit.
 
-mod driven;
 pub(super) mod history;
 mod many;
-pub(super) mod motion;
-mod omni;
 mod run;
 pub(super) mod sight;
-mod two_wheels;
 
+pub use crate::robots::drives::{PoseFusion, Steered};
 pub use history::BuiltTrajectory;
 pub use many::{Histories, repeat_built};
 pub(super) use run::{clock_of, robot_of};
 pub use run::{evaluate_built, simulate_built};
 
 use crate::error::{Failure, Given, Result, positive};
-use crate::robots::differential::{Tracking, VirtualTorque};
+use crate::robots::drives::Start;
 use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
 use crate::sensing::Vision;
 use crate::world::scenario::Scenario;
@@ -92,50 +89,23 @@ impl Built {
         Ok(self)
     }
 
+    /// Where a run of the robot starts.
+    pub(super) fn start_in(&self, scenario: &Scenario) -> Start {
+        Start {
+            point: scenario.robot,
+            position: scenario.start,
+            heading: scenario.rules.heading,
+            goal: scenario.goal,
+            step: self.step,
+        }
+    }
+
     /// The same without errors of measurement.
     fn seeing_all(&self) -> Self {
         Self {
             robot_vision: None,
             obstacle_vision: None,
             ..self.clone()
-        }
-    }
-}
-
-/// How a two-wheel robot is steered.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Steered {
-    /// It follows the point mass that the law drives.
-    Following(Tracking),
-    /// It turns toward the force of the law.
-    Torque(VirtualTorque),
-}
-
-impl Default for Steered {
-    fn default() -> Self {
-        Self::Following(Tracking::default())
-    }
-}
-
-/// How a two-wheel robot joins the pose that its wheels tell with the measured one; a share of the
-/// difference is taken over at every measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoseFusion {
-    /// Share of the difference of positions.
-    pub position: f64,
-    /// Share of the difference of headings.
-    pub heading: f64,
-    /// Distance in m from the center of the robot to the second mark, which tells the heading.
-    pub mark: f64,
-}
-
-impl Default for PoseFusion {
-    /// The mark is that of Zeng (2011), section 7.3.1; the shares are not in the source.
-    fn default() -> Self {
-        Self {
-            position: 0.3,
-            heading: 0.1,
-            mark: 0.1,
         }
     }
 }

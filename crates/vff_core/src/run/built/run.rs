@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use crate::error::Result;
+use crate::robots::drives::{Drive, IdealHolonomic, OmniRobot, TwoWheels};
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::BuiltTrajectory;
-use crate::run::built::motion::{Drive, IdealHolonomic};
-use crate::run::built::omni::OmniRobot;
-use crate::run::built::two_wheels::TwoWheels;
 use crate::run::episode::Episode;
 use crate::run::group::AnyLaw;
 use crate::run::metrics::{Performance, Weights, performance};
@@ -59,10 +57,17 @@ pub fn evaluate_built(
 /// The robot of a scenario, at its start.
 pub(crate) fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn Drive>> {
     built.suiting(scenario)?;
-    Ok(match (&scenario.differential, &built.wheels) {
-        (Some(robot), _) => Box::new(TwoWheels::new(scenario, robot, built)?),
-        (None, Some(drives)) => Box::new(OmniRobot::new(scenario, drives, built)?),
-        (None, None) => Box::new(IdealHolonomic::new(scenario, built.step)),
+    let start = built.start_in(scenario);
+    let wheels = built.wheels.as_deref();
+    Ok(match (&scenario.differential, wheels) {
+        (Some(robot), _) => Box::new(TwoWheels::new(
+            &start,
+            robot,
+            (wheels, built.slip),
+            (&built.steered, built.fusion),
+        )?),
+        (None, Some(drives)) => Box::new(OmniRobot::new(&start, drives, (built.omni, built.slip))?),
+        (None, None) => Box::new(IdealHolonomic::new(&start)),
     })
 }
 

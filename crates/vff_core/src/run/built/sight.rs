@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
+use crate::robots::drives::{Fix, Reading};
 use crate::run::built::Built;
-use crate::run::built::motion::{Fix, Reading};
 use crate::sensing::VisionSensor;
 use crate::sensing::measurement::{Measurement, Noise};
 use crate::sensing::sampled::{Past, Sensor};

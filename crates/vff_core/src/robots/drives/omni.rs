@@ -2,16 +2,14 @@
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
-use crate::robots::wheels::{OmniKinematics, WheelDrive};
-use crate::run::built::Built;
-use crate::run::built::driven::{DrivenWheels, WheelSize};
-use crate::run::built::motion::{Drive, Order, PointMass, Reading, WHEELS};
+use crate::robots::drives::driven::{DrivenWheels, WheelSize};
+use crate::robots::drives::{Drive, Order, PointMass, Reading, Start, WHEELS};
+use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
 use crate::world::geometry::RobotState;
-use crate::world::scenario::Scenario;
 
 /// The robot. It takes its heading for that of the start: nothing measures it.
 #[derive(Clone, Debug)]
-pub(super) struct OmniRobot {
+pub(crate) struct OmniRobot {
     reference: PointMass,
     kinematics: OmniKinematics,
     wheels: DrivenWheels,
@@ -22,21 +20,25 @@ pub(super) struct OmniRobot {
 }
 
 impl OmniRobot {
-    pub fn new(scenario: &Scenario, drives: &[WheelDrive], built: &Built) -> Result<Self> {
-        let kinematics = built.omni.checked()?;
+    pub fn new(
+        start: &Start,
+        drives: &[WheelDrive],
+        (kinematics, slip): (OmniKinematics, Slip),
+    ) -> Result<Self> {
+        let kinematics = kinematics.checked()?;
         let size = WheelSize {
             radius: kinematics.wheel_radius,
-            resistance: scenario.robot.wheels.resistance,
+            resistance: start.point.wheels.resistance,
         };
-        let heading = scenario.rules.heading;
+        let heading = start.heading;
         Ok(Self {
-            reference: PointMass::new(scenario, built.step),
+            reference: PointMass::new(start),
             kinematics,
-            wheels: DrivenWheels::new(drives, built.slip, size, built.step)?,
+            wheels: DrivenWheels::new(drives, slip, size, start.step)?,
             wanted_heading: heading,
-            position: Vector2::splat(scenario.start),
+            position: Vector2::splat(start.position),
             heading,
-            step: built.step,
+            step: start.step,
         })
     }
 }

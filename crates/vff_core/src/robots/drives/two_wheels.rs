@@ -4,15 +4,51 @@
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::robots::differential::{
-    DifferentialLimits, Pose, Reference, TorqueSteering, Tracker, Twist,
+    DifferentialLimits, Pose, Reference, TorqueSteering, Tracker, Tracking, Twist, VirtualTorque,
 };
-use crate::robots::wheels::DifferentialKinematics;
+use crate::robots::drives::driven::{DrivenWheels, WheelSize};
+use crate::robots::drives::{Drive, Fix, Order, PointMass, Reading, Start, WHEELS};
+use crate::robots::wheels::{DifferentialKinematics, Slip, WheelDrive};
 use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
-use crate::run::built::driven::{DrivenWheels, WheelSize};
-use crate::run::built::motion::{Drive, Fix, Order, PointMass, Reading, WHEELS};
-use crate::run::built::{Built, PoseFusion, Steered};
 use crate::world::geometry::RobotState;
-use crate::world::scenario::Scenario;
+
+/// How a two-wheel robot is steered.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Steered {
+    /// It follows the point mass that the law drives.
+    Following(Tracking),
+    /// It turns toward the force of the law.
+    Torque(VirtualTorque),
+}
+
+impl Default for Steered {
+    fn default() -> Self {
+        Self::Following(Tracking::default())
+    }
+}
+
+/// How a two-wheel robot joins the pose that its wheels tell with the measured one; a share of the
+/// difference is taken over at every measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseFusion {
+    /// Share of the difference of positions.
+    pub position: f64,
+    /// Share of the difference of headings.
+    pub heading: f64,
+    /// Distance in m from the center of the robot to the second mark, which tells the heading.
+    pub mark: f64,
+}
+
+impl Default for PoseFusion {
+    /// The mark is that of Zeng (2011), section 7.3.1; the shares are not in the source.
+    fn default() -> Self {
+        Self {
+            position: 0.3,
+            heading: 0.1,
+            mark: 0.1,
+        }
+    }
+}
 
 /// Driven wheels.
 pub(super) const DRIVEN: usize = 2;
@@ -31,7 +67,7 @@ enum Steering {
 
 /// The robot.
 #[derive(Clone, Debug)]
-pub(super) struct TwoWheels {
+pub(crate) struct TwoWheels {
     ideal: DifferentialWheels,
     limits: DifferentialLimits,
     kinematics: DifferentialKinematics,
@@ -54,25 +90,30 @@ pub(super) struct TwoWheels {
 }
 
 impl TwoWheels {
-    pub fn new(scenario: &Scenario, robot: &DifferentialDriveRobot, built: &Built) -> Result<Self> {
+    pub fn new(
+        start: &Start,
+        robot: &DifferentialDriveRobot,
+        (wheels, slip): (Option<&[WheelDrive]>, Slip),
+        (steered, fusion): (&Steered, PoseFusion),
+    ) -> Result<Self> {
         let limits = DifferentialLimits::from(robot);
         let pose = Pose {
-            position: scenario.start,
-            heading: scenario.rules.heading,
+            position: start.position,
+            heading: start.heading,
         };
         let size = WheelSize {
             radius: robot.wheels.radius,
             resistance: robot.wheels.resistance,
         };
-        let driven = |drives: &Vec<_>| DrivenWheels::new(drives, built.slip, size, built.step);
-        let steering = match &built.steered {
+        let driven = |drives| DrivenWheels::new(drives, slip, size, start.step);
+        let steering = match steered {
             Steered::Following(tracking) => {
                 let tracking = tracking.checked()?;
-                Steering::Follow(Box::new(Tracker::new(&tracking, &limits, built.step)))
+                Steering::Follow(Box::new(Tracker::new(&tracking, &limits, start.step)))
             }
             Steered::Torque(law) => {
                 let law = law.checked()?;
-                Steering::Torque(TorqueSteering::new(&law, robot, &limits, built.step))
+                Steering::Torque(TorqueSteering::new(&law, robot, &limits, start.step))
             }
         };
         Ok(Self {
@@ -82,12 +123,12 @@ impl TwoWheels {
                 wheel_radius: robot.wheels.radius,
                 span: robot.wheels.span,
             },
-            wheels: built.wheels.as_ref().map(driven).transpose()?,
-            reference: PointMass::new(scenario, built.step),
+            wheels: wheels.map(driven).transpose()?,
+            reference: PointMass::new(start),
             steering,
-            fusion: built.fusion,
-            goal: scenario.goal,
-            step: built.step,
+            fusion,
+            goal: start.goal,
+            step: start.step,
             force: [0.0; 2],
             pose,
             known: pose,

@@ -1,8 +1,8 @@
 //! Wheels with their own controllers, several periods of them in a motion step.
 
 use crate::error::{Failure, Given, Result};
+use crate::robots::drives::WHEELS;
 use crate::robots::wheels::{Slip, WheelDrive, WheelLoop, WheelReference};
-use crate::run::built::motion::WHEELS;
 
 /// Largest deviation of a motion step from a whole number of wheel periods, relative.
 const WHOLE_PERIODS: f64 = 1e-9;

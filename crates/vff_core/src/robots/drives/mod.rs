@@ -1,0 +1,107 @@
+//! How a commanded force becomes motion, one motion step after the other.
+
+mod driven;
+mod omni;
+mod point_mass;
+mod two_wheels;
+
+pub(crate) use omni::OmniRobot;
+pub(crate) use point_mass::{IdealHolonomic, PointMass};
+pub(crate) use two_wheels::TwoWheels;
+pub use two_wheels::{PoseFusion, Steered};
+
+use crate::lanes::{Planar, Vector2};
+use crate::robots::HolonomicRobot;
+use crate::world::geometry::RobotState;
+
+/// Most wheels of a robot.
+pub(crate) const WHEELS: usize = 3;
+
+/// Where a run starts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    /// The point mass that the law drives.
+    pub point: HolonomicRobot,
+    /// Position in m.
+    pub position: [f64; 2],
+    /// Heading in rad.
+    pub heading: f64,
+    /// Goal in m.
+    pub goal: [f64; 2],
+    /// Motion step in s.
+    pub step: f64,
+}
+
+/// Where a robot is, and what its motors do, at the end of a motion step.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// Position in m and velocity in m/s.
+    pub robot: RobotState<f64>,
+    /// Mean speed over the step in m/s.
+    pub speed: f64,
+    /// Heading in rad.
+    pub heading: f64,
+    /// Wheel speeds in rad/s.
+    pub wheel_speeds: [f64; WHEELS],
+    /// Motor currents in A.
+    pub currents: [f64; WHEELS],
+    /// Electrical loss over the step in J.
+    pub loss: f64,
+    /// Position of the point mass that the law drives, in m.
+    pub reference: Vector2<f64>,
+}
+
+impl Reading {
+    /// A robot at rest.
+    pub(crate) fn at(start: &Start) -> Self {
+        let position = Vector2::splat(start.position);
+        Self {
+            robot: RobotState {
+                position,
+                velocity: Vector2::zeros(),
+            },
+            speed: 0.0,
+            heading: start.heading,
+            wheel_speeds: [0.0; WHEELS],
+            currents: [0.0; WHEELS],
+            loss: 0.0,
+            reference: position,
+        }
+    }
+}
+
+/// A measured pose.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fix {
+    /// Position in m.
+    pub position: Vector2<f64>,
+    /// Heading in rad, if it is measured.
+    pub heading: Option<f64>,
+}
+
+/// What a robot is told at a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Order {
+    /// Commanded force in N.
+    pub force: Vector2<f64>,
+    /// The pose as measured now, `None` where it is known exactly.
+    pub fix: Option<Fix>,
+    /// Whether it is outside every active region, as far as it knows.
+    pub clear: bool,
+}
+
+/// What turns the force that a law holds into motion, one motion step after the other.
+pub(crate) trait Drive: Send {
+    /// Number of its wheels.
+    fn wheels(&self) -> usize;
+    /// Whether its energy is that of ideal wheels on a point mass.
+    fn is_ideal(&self) -> bool {
+        false
+    }
+    /// Heading in rad as the robot itself knows it between measurements.
+    fn known_heading(&self) -> f64;
+    /// Holds an order until the next sample.
+    fn hold(&mut self, order: &Order);
+    /// Goes on by one motion step.
+    fn step(&mut self) -> Reading;
+}

@@ -1,0 +1,105 @@
+//! The point mass that a law drives, alone or with the currents that ideal wheels take.
+
+use crate::lanes::{Planar, Vector2};
+use crate::robots::drives::{Drive, Order, Reading, Start, WHEELS};
+use crate::robots::{HolonomicRobot, WheelModel};
+use crate::world::geometry::RobotState;
+
+/// The point mass that a law drives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointMass {
+    robot: HolonomicRobot,
+    /// Position in m and velocity in m/s.
+    pub state: RobotState<f64>,
+    /// Speed in m/s.
+    pub speed: f64,
+    /// Held acceleration in m/s^2.
+    pub acceleration: Vector2<f64>,
+    push: Vector2<f64>,
+    step: f64,
+}
+
+impl PointMass {
+    pub fn new(start: &Start) -> Self {
+        Self {
+            robot: start.point,
+            state: RobotState {
+                position: Vector2::splat(start.position),
+                velocity: Vector2::zeros(),
+            },
+            speed: 0.0,
+            acceleration: Vector2::zeros(),
+            push: Vector2::zeros(),
+            step: start.step,
+        }
+    }
+
+    /// Holds a commanded force in N.
+    pub fn hold(&mut self, force: Vector2<f64>) {
+        self.acceleration = self.robot.acceleration(force);
+        self.push = self.acceleration * self.step;
+    }
+
+    /// Velocity first, then position with the new velocity.
+    pub fn advance(&mut self) {
+        self.speed = self.robot.advance(&mut self.state, self.push, self.step);
+    }
+}
+
+/// A robot whose motion is that of the point mass, with the currents that ideal wheels take.
+#[derive(Clone, Debug)]
+pub(crate) struct IdealHolonomic {
+    point: PointMass,
+    wheels: WheelModel,
+    wheel_speeds: [f64; WHEELS],
+    heading: f64,
+}
+
+impl IdealHolonomic {
+    pub fn new(start: &Start) -> Self {
+        let heading = start.heading;
+        let wheels = WheelModel::new(&start.point, heading, start.step);
+        Self {
+            point: PointMass::new(start),
+            wheels,
+            wheel_speeds: wheels.speeds(Vector2::zeros()),
+            heading,
+        }
+    }
+}
+
+impl Drive for IdealHolonomic {
+    fn wheels(&self) -> usize {
+        WHEELS
+    }
+
+    fn is_ideal(&self) -> bool {
+        true
+    }
+
+    fn known_heading(&self) -> f64 {
+        self.heading
+    }
+
+    fn hold(&mut self, order: &Order) {
+        self.point.hold(order.force);
+    }
+
+    fn step(&mut self) -> Reading {
+        self.point.advance();
+        let speeds = self.wheels.speeds(self.point.state.velocity);
+        let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
+        self.wheel_speeds = speeds;
+        let [first, second, third] = currents;
+        let squared = first * first + second * second + third * third;
+        Reading {
+            robot: self.point.state,
+            speed: self.point.speed,
+            heading: self.heading,
+            wheel_speeds: speeds,
+            currents,
+            loss: squared * self.wheels.loss_per_square(),
+            reference: self.point.state.position,
+        }
+    }
+}
