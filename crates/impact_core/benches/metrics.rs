@@ -1,10 +1,10 @@
 //! Metrics of one impact.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use impact_core::batch::{
-    BatchOptions, Column, Columns, FieldSet, HeadColumns, Width, metrics_batch,
-};
-use impact_core::criteria::{MetricOptions, metrics};
+use impact_core::batch::{BatchOptions, FieldSet, Width, metrics_batch};
+use impact_core::columns::{Column, Columns, HeadColumns};
+use impact_core::criteria::metrics;
+use impact_core::metrics::MetricOptions;
 use impact_core::parameters::{FOAM_1, HEAD_APPARATUS, MANIPULATOR_1, System, Target};
 use std::hint::black_box;
 

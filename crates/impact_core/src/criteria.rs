@@ -1,163 +1,21 @@
 //! Metrics of an impact on its continuous linear response.
 
-use crate::batch;
-use crate::error::{Result, finite, positive};
+use crate::error::{Result, finite};
+use crate::fast;
+use crate::metrics::{
+    CONSTRAINED_HORIZON, FREE_HORIZON, HELD_WINDOW, INJURY_WINDOWS, Loads, MetricOptions, Metrics,
+    Status,
+};
 use crate::motion::{Motion, cell_length};
-use crate::parameters::{Foam, GRAVITY, System, Target};
+use crate::parameters::{System, Target};
 use crate::roots::{Peak, maximum};
 use crate::series::Plant;
 use crate::windows::{Window, first_fall, held, injury};
 
-/// Widths of the windows of the head injury criteria, in s.
-pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
-/// Width of the windows of the 3 ms criteria, in s.
-pub const HELD_WINDOW: f64 = 0.003;
-/// Default time without release after which an impact counts as lasting, in s.
-pub const FREE_HORIZON: f64 = 0.2;
-/// Default time over which a constrained impact is looked at, in s.
-pub const CONSTRAINED_HORIZON: f64 = 0.05;
 /// Pieces of a cell between nodes of a search: a quarter of a radian of the fastest root.
 pub(crate) const PIECES: usize = 8;
 /// Rounding errors of the acceleration over the terms that it is the sum of.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// What a row of metrics means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// The acceleration of the head came back to zero.
-    Released,
-    /// It did not within the horizon; maxima are over the horizon.
-    NoRelease,
-    /// Released, but the foam was compressed beyond its linear range.
-    BeyondLinearRange,
-    /// The head cannot move; maxima are over the horizon.
-    Constrained,
-    /// The bodies do not close in.
-    NoImpact,
-    /// A parameter is out of range.
-    InvalidParameter,
-    /// The fastest root is too fast for the horizon.
-    TooStiff,
-    /// Released, but the foam was compressed by more than it is thick.
-    Bottomed,
-}
-
-impl Status {
-    /// All of them; the place of one is its code in a batch.
-    pub const ALL: [Self; 8] = [
-        Self::Released,
-        Self::NoRelease,
-        Self::BeyondLinearRange,
-        Self::Constrained,
-        Self::NoImpact,
-        Self::InvalidParameter,
-        Self::TooStiff,
-        Self::Bottomed,
-    ];
-
-    /// What a released impact is worth, from its largest compression: NaN where there is none.
-    #[must_use]
-    pub fn released(compression: f64, foam: &Foam) -> Self {
-        if compression > foam.thickness {
-            Self::Bottomed
-        } else if compression > foam.linear_range {
-            Self::BeyondLinearRange
-        } else {
-            Self::Released
-        }
-    }
-
-    /// The word for it.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Released => "released",
-            Self::NoRelease => "no_release",
-            Self::BeyondLinearRange => "beyond_linear_range",
-            Self::Constrained => "constrained",
-            Self::NoImpact => "no_impact",
-            Self::InvalidParameter => "invalid_parameter",
-            Self::TooStiff => "too_stiff",
-            Self::Bottomed => "bottomed",
-        }
-    }
-}
-
-/// What metrics depend on beside system and closing speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MetricOptions {
-    /// Speed of the manipulator `v_r`, in m/s; the closing speed when `None`.
-    pub manipulator_speed: Option<f64>,
-    /// Time without release after which the search ends, in s; the default of the head when `None`.
-    pub horizon: Option<f64>,
-    /// Acceleration of gravity, in m/s^2.
-    pub gravity: f64,
-}
-
-impl Default for MetricOptions {
-    fn default() -> Self {
-        Self {
-            manipulator_speed: None,
-            horizon: None,
-            gravity: GRAVITY,
-        }
-    }
-}
-
-/// Metrics of one impact. Numbers that have no meaning are NaN: all of them without an impact,
-/// those of the head when it is constrained, those of 3 ms when the impact is shorter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metrics {
-    /// Largest acceleration of the head, in m/s^2.
-    pub peak_head_acceleration: f64,
-    /// The same in g.
-    pub peak_head_acceleration_g: f64,
-    /// Mean acceleration of the head over the impact, in g.
-    pub mean_head_acceleration_g: f64,
-    /// Largest contact force, in N.
-    pub peak_contact_force: f64,
-    /// Largest compression of the foam, in m.
-    pub max_compression: f64,
-    /// Time to the first zero of the head's acceleration, in s; infinite without one.
-    pub impact_duration: f64,
-    /// Head injury criterion, windows up to 15 ms.
-    pub hic15: f64,
-    /// Head injury criterion, windows up to 36 ms.
-    pub hic36: f64,
-    /// Largest mean over 3 ms, in g.
-    pub average_3ms_g: f64,
-    /// Largest level held for 3 ms, in g.
-    pub clip_3ms_g: f64,
-    /// Largest power from the manipulator into the foam `f_c x_r'`, in W.
-    pub peak_power_manipulator: f64,
-    /// Largest power of compression `f_c eps'`, in W.
-    pub peak_power_foam: f64,
-    /// What the row means.
-    pub status: Status,
-}
-
-impl Metrics {
-    /// A row without numbers.
-    #[must_use]
-    pub fn none(status: Status) -> Self {
-        let nan = f64::NAN;
-        Self {
-            peak_head_acceleration: nan,
-            peak_head_acceleration_g: nan,
-            mean_head_acceleration_g: nan,
-            peak_contact_force: nan,
-            max_compression: nan,
-            impact_duration: nan,
-            hic15: nan,
-            hic36: nan,
-            average_3ms_g: nan,
-            clip_3ms_g: nan,
-            peak_power_manipulator: nan,
-            peak_power_foam: nan,
-            status,
-        }
-    }
-}
 
 /// The four numbers that design needs, and where the compression is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -433,8 +291,8 @@ pub fn metrics(system: &System, closing_speed: f64, options: &MetricOptions) -> 
     if closing_speed <= 0.0 {
         return Ok(Metrics::none(Status::NoImpact));
     }
-    match batch::usual(system, closing_speed, options) {
-        // A batch knows linear ranges only.
+    match fast::usual(system, closing_speed, options) {
+        // The kernel knows linear ranges only.
         Some(metrics) if metrics.status == Status::BeyondLinearRange => Ok(Metrics {
             status: Status::released(metrics.max_compression, &system.foam),
             ..metrics
@@ -454,23 +312,6 @@ pub fn searched(system: &System, closing_speed: f64, options: &MetricOptions) ->
     Ok(impact.findings(speed).metrics(system, options.gravity))
 }
 
-impl MetricOptions {
-    /// Passes options that can be.
-    ///
-    /// # Errors
-    /// Names the number that is out of range.
-    pub fn check(&self) -> Result<()> {
-        positive("gravity", self.gravity)?;
-        if let Some(horizon) = self.horizon {
-            positive("horizon", horizon)?;
-        }
-        if let Some(speed) = self.manipulator_speed {
-            finite("manipulator_speed", speed)?;
-        }
-        Ok(())
-    }
-}
-
 impl Findings {
     /// The metrics in their units.
     #[must_use]
@@ -480,15 +321,19 @@ impl Findings {
         let (average, clip) = self.held.map_or((f64::NAN, f64::NAN), |(average, clip)| {
             (average.value, clip.value)
         });
+        let peaks = self.peaks.metrics(system, gravity);
         Metrics {
-            mean_head_acceleration_g: self.mean / gravity,
-            hic15: injury(self.injury[0]),
-            hic36: injury(self.injury[1]),
-            average_3ms_g: average / gravity,
-            clip_3ms_g: clip / gravity,
-            peak_power_manipulator: self.manipulator_power.value,
-            peak_power_foam: self.foam_power.value,
-            ..self.peaks.metrics(system, gravity)
+            loads: Loads {
+                mean_head_acceleration_g: self.mean / gravity,
+                hic15: injury(self.injury[0]),
+                hic36: injury(self.injury[1]),
+                average_3ms_g: average / gravity,
+                clip_3ms_g: clip / gravity,
+                peak_power_manipulator: self.manipulator_power.value,
+                peak_power_foam: self.foam_power.value,
+                ..peaks.loads
+            },
+            ..peaks
         }
     }
 }
@@ -497,7 +342,7 @@ impl Peaks {
     /// The metrics that peaks give; NaN elsewhere.
     #[must_use]
     pub fn metrics(&self, system: &System, gravity: f64) -> Metrics {
-        Metrics {
+        let loads = Loads {
             peak_head_acceleration: self.head_acceleration.value,
             peak_head_acceleration_g: self.head_acceleration.value / gravity,
             peak_contact_force: self.contact_force.value,
@@ -507,7 +352,11 @@ impl Peaks {
             } else {
                 self.impact_duration
             },
-            ..Metrics::none(self.status(system))
+            ..Loads::none()
+        };
+        Metrics {
+            loads,
+            status: self.status(system),
         }
     }
 

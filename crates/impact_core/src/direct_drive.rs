@@ -9,10 +9,10 @@ mod modes;
 #[cfg(test)]
 mod tests;
 
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::parameters::{Foam, Head, Manipulator};
 use modes::{Machine, Quantities};
+use numeric::threads::Interrupted;
 
 /// Most stored samples of one run.
 const MOST_SAMPLES: f64 = 1e7;

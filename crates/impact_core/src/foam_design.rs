@@ -5,8 +5,9 @@
 //! the head's acceleration touches zero, and with it a maximum at its end. Every crossing is
 //! therefore found on a grid, closed in by halving, and told apart by what the metric does there.
 
-use crate::criteria::{INJURY_WINDOWS, Impact};
+use crate::criteria::Impact;
 use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::metrics::INJURY_WINDOWS;
 use crate::parameters::{Foam, GRAVITY, Manipulator, System, Target};
 
 /// Stiffnesses that are looked at by default, in N/m.

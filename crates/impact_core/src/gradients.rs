@@ -4,9 +4,10 @@
 //! maximum inside the impact period the place does not matter to first order; a place that moves
 //! (the end of the period, the window of a held level) moves by the implicit function theorem.
 
-use crate::criteria::{Findings, HELD_WINDOW, Impact, MetricOptions, Metrics, Status};
+use crate::criteria::{Findings, Impact};
 use crate::dual::Dual;
 use crate::error::{Result, finite, positive};
+use crate::metrics::{HELD_WINDOW, Loads, MetricOptions, Metrics, Status};
 use crate::motion::Motion;
 use crate::parameters::{System, Target};
 use crate::roots::Peak;
@@ -16,9 +17,6 @@ use numeric::lanes::Zero;
 
 /// Number of parameters.
 pub const PARAMETERS: usize = 10;
-/// Number of metrics.
-pub const METRICS: usize = 12;
-
 /// Names of the parameters, in the order of derivatives.
 pub const PARAMETER_NAMES: [&str; PARAMETERS] = [
     "manipulator_mass",
@@ -33,22 +31,6 @@ pub const PARAMETER_NAMES: [&str; PARAMETERS] = [
     "manipulator_speed",
 ];
 
-/// Names of the metrics, in the order of rows.
-pub const METRIC_NAMES: [&str; METRICS] = [
-    "peak_head_acceleration",
-    "peak_head_acceleration_g",
-    "mean_head_acceleration_g",
-    "peak_contact_force",
-    "max_compression",
-    "impact_duration",
-    "hic15",
-    "hic36",
-    "average_3ms_g",
-    "clip_3ms_g",
-    "peak_power_manipulator",
-    "peak_power_foam",
-];
-
 /// Share of the interval within which a place counts as its end.
 const AT_END: f64 = 1e-12;
 
@@ -61,7 +43,7 @@ pub struct Gradients {
     pub metrics: Metrics,
     /// Derivative of each metric with respect to each parameter, SI units, accelerations of
     /// metrics in g in g; NaN where the metric is NaN or infinite.
-    pub values: [[f64; PARAMETERS]; METRICS],
+    pub values: Loads<[f64; PARAMETERS]>,
 }
 
 /// Derivatives of all metrics. The speed of the manipulator counts as a parameter of its own; if
@@ -80,7 +62,7 @@ pub fn gradients(
     if closing_speed <= 0.0 {
         return Ok(Gradients {
             metrics: Metrics::none(Status::NoImpact),
-            values: [[f64::NAN; PARAMETERS]; METRICS],
+            values: Loads::of(|_| [f64::NAN; PARAMETERS]),
         });
     }
     let impact = Impact::new(system, closing_speed, options.horizon)?;
@@ -140,7 +122,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    fn rows(&self, gravity: f64) -> [[f64; PARAMETERS]; METRICS] {
+    fn rows(&self, gravity: f64) -> Loads<[f64; PARAMETERS]> {
         let per_g = |row: [f64; PARAMETERS]| row.map(|value| value / gravity);
         let scale = gravity * gravity * gravity.sqrt();
         let peaks = &self.findings.peaks;
@@ -165,13 +147,18 @@ impl View<'_> {
         });
         let nothing = [f64::NAN; PARAMETERS];
         if self.constrained {
-            let mut rows = [nothing; METRICS];
-            for (row, values) in [(3, force), (4, compression), (10, manipulator), (11, foam)] {
-                rows[row] = values;
-                // The head has no parameters.
-                rows[row][5..8].fill(f64::NAN);
-            }
-            return rows;
+            // The head has no parameters.
+            let without_head = |mut row: [f64; PARAMETERS]| {
+                row[5..8].fill(f64::NAN);
+                row
+            };
+            return Loads {
+                peak_contact_force: without_head(force),
+                max_compression: without_head(compression),
+                peak_power_manipulator: without_head(manipulator),
+                peak_power_foam: without_head(foam),
+                ..Loads::of(|_| nothing)
+            };
         }
         let head = self.at_peak(peaks.head_acceleration, |time| {
             let [_, value, slope, _] = self.motion.head(time);
@@ -182,20 +169,20 @@ impl View<'_> {
             window.map_or(nothing, |window| per_g(row(self, window)))
         };
         let windows = self.findings.held.as_ref();
-        [
-            head,
-            per_g(head),
-            per_g(self.mean()),
-            force,
-            compression,
-            self.duration().unwrap_or(nothing),
-            injury(&self.findings.injury[0]),
-            injury(&self.findings.injury[1]),
-            held(Self::average, windows.map(|both| &both.0)),
-            held(Self::clip, windows.map(|both| &both.1)),
-            manipulator,
-            foam,
-        ]
+        Loads {
+            peak_head_acceleration: head,
+            peak_head_acceleration_g: per_g(head),
+            mean_head_acceleration_g: per_g(self.mean()),
+            peak_contact_force: force,
+            max_compression: compression,
+            impact_duration: self.duration().unwrap_or(nothing),
+            hic15: injury(&self.findings.injury[0]),
+            hic36: injury(&self.findings.injury[1]),
+            average_3ms_g: held(Self::average, windows.map(|both| &both.0)),
+            clip_3ms_g: held(Self::clip, windows.map(|both| &both.1)),
+            peak_power_manipulator: manipulator,
+            peak_power_foam: foam,
+        }
     }
 
     /// Derivative of the end of the impact, `-(da/dp) / a'`; `None` without an end.

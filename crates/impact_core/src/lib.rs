@@ -9,6 +9,7 @@
 pub use numeric::error;
 
 pub mod batch;
+pub mod columns;
 pub mod contact;
 pub mod criteria;
 pub mod direct_drive;
@@ -20,6 +21,7 @@ pub mod foam_design;
 pub mod gradients;
 pub mod identify;
 pub mod joint;
+pub mod metrics;
 pub mod motion;
 pub mod parameters;
 pub mod response;

@@ -4,13 +4,13 @@ mod peaks;
 mod printed;
 mod runge_kutta;
 
-use crate::batch::Interrupted;
 use crate::contact::{Bodies, Event, Phase, Stretch};
 use crate::drive::SetPoint;
 use crate::error::{Failure, Given, Result, finite, positive};
 use crate::motion::cell_length;
 use crate::parameters::{System, Target};
 use crate::series::{Drive, Plant, State};
+use numeric::threads::Interrupted;
 use peaks::Watch;
 use printed::Misprint;
 

@@ -20,8 +20,8 @@ pub use windows::{
     Level, contiguous_level, contiguous_level_until, moving_average, moving_average_until,
 };
 
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result};
+use numeric::threads::Interrupted;
 
 /// Share of the window by which rounding of the sample times may lengthen it: 150 intervals of
 /// 0.1 ms are a window of 15 ms, whatever the last bits of their difference say.

@@ -1,9 +1,9 @@
 //! The batch beside single impacts.
 
-use impact_core::batch::{
-    BatchOptions, Column, Columns, FieldSet, HeadColumns, MetricColumns, Width, metrics_batch,
-};
-use impact_core::criteria::{MetricOptions, Status, metrics, searched};
+use impact_core::batch::{BatchOptions, FieldSet, MetricColumns, Width, metrics_batch};
+use impact_core::columns::{Column, Columns, HeadColumns};
+use impact_core::criteria::{metrics, searched};
+use impact_core::metrics::{MetricOptions, Status};
 
 /// Agreement of the two searches, relative: rounding, and what a Newton step is stopped at.
 const AGREEMENT: f64 = 1e-11;

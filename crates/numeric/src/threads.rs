@@ -11,6 +11,9 @@ use rayon::prelude::*;
 
 use crate::error::{Failure, Given, Result};
 
+/// Whether the caller asks to stop.
+pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// Most threads of a pool.
 pub const MOST_THREADS: usize = 1024;
 

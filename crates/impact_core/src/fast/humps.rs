@@ -4,7 +4,7 @@ use super::apart::apart;
 use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
 use super::{Each, MAX_STEPS, MapWith, Solved};
-use crate::criteria::INJURY_WINDOWS;
+use crate::metrics::INJURY_WINDOWS;
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 

@@ -13,6 +13,7 @@ mod humps;
 mod maxima;
 mod modes;
 mod scan;
+mod side;
 mod space;
 mod windows;
 
@@ -22,6 +23,7 @@ use modes::{Basis, Motion, Wave};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 use scan::{Place, touching};
+pub(crate) use side::{Side, Walk, one_row, usual};
 pub use space::Workspace;
 use space::{NODES, Node, Step};
 

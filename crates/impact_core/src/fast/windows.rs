@@ -3,7 +3,7 @@
 use super::apart::apart;
 use super::modes::{Basis, Wave};
 use super::{Each, MAX_STEPS, MapWith, Solved, third_order};
-use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS};
+use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 

@@ -3,9 +3,9 @@
 //! Every stretch between two events (contact, release, turn, rest) has a closed form; only the
 //! events are searched for.
 
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::signal::check_time;
+use numeric::threads::Interrupted;
 
 /// Events after which a slide counts as resting; only bounces below rounding are that many.
 const MOST_STRETCHES: usize = 100_000;

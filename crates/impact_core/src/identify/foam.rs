@@ -8,11 +8,11 @@ mod tests;
 use super::drop_test::DropContact;
 use super::line::{CONFIDENCE, fit_static};
 use super::{check_confidence, check_samples};
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, positive};
 use crate::parameters::GRAVITY;
 use crate::signal::check_time;
 use measured::Tests;
+use numeric::threads::Interrupted;
 
 /// Deviation of the positions before it is known, in m.
 const FIRST_DEVIATION: f64 = 1e-4;

@@ -1,11 +1,11 @@
 //! Classical Runge-Kutta steps of fourth order, cut where an event happens.
 
 use super::{CHECK, Run};
-use crate::batch::Interrupted;
 use crate::contact::{Bodies, Event, Phase};
 use crate::error::{Failure, Result};
 use crate::roots::root;
 use crate::series::{Drive, State};
+use numeric::threads::Interrupted;
 
 impl Run<'_> {
     pub(super) fn runge_kutta(

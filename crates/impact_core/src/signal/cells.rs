@@ -3,8 +3,8 @@
 
 use super::search::{Best, Block, Leaf};
 use super::{Signal, collected};
-use crate::batch::Interrupted;
 use crate::error::Result;
+use numeric::threads::Interrupted;
 
 /// One piece of a piecewise linear signal.
 #[derive(Clone, Copy)]

@@ -7,8 +7,8 @@ use super::cells::Cells;
 use super::search::{Best, Block, Leaf, higher, lower, search_until};
 use super::{CHECK, collected, pause};
 use super::{Signal, WINDOW_SLACK};
-use crate::batch::Interrupted;
 use crate::error::{Result, positive};
+use numeric::threads::Interrupted;
 
 /// Samples in one undivided block.
 const BLOCK: usize = 8;

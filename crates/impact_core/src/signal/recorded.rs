@@ -1,10 +1,10 @@
 //! Loads of a recorded impact, from signals that are linear between their samples.
 
 use super::{Signal, check_finite, contiguous_level_until, hic_until, moving_average_until, pause};
-use crate::batch::Interrupted;
-use crate::criteria::{HELD_WINDOW, INJURY_WINDOWS, Metrics, Status};
 use crate::error::{Failure, Given, Result, finite, positive};
+use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS, Loads, Metrics, Status};
 use crate::parameters::Foam;
+use numeric::threads::Interrupted;
 
 /// A recorded impact; signals that were not recorded are `None`.
 #[derive(Clone, Copy, Debug)]
@@ -68,22 +68,22 @@ impl Recording<'_> {
         let (force, compression) = (cut(self.contact_force), cut(self.compression));
         let velocity = cut(self.manipulator_velocity);
         let own = part.cut(self.acceleration_g);
-        let mut row = acceleration(&time, &own, self.gravity, interrupted)?;
+        let mut loads = acceleration(&time, &own, self.gravity, interrupted)?;
         pause(interrupted)?;
-        row.peak_contact_force = force.as_deref().map_or(f64::NAN, largest);
-        row.max_compression = compression.as_deref().map_or(f64::NAN, largest);
+        loads.peak_contact_force = force.as_deref().map_or(f64::NAN, largest);
+        loads.max_compression = compression.as_deref().map_or(f64::NAN, largest);
         if let Some(force) = &force {
             let power = compression.map(|way| largest_mean_power(&time, force, &way));
-            row.peak_power_foam = power.unwrap_or(f64::NAN);
+            loads.peak_power_foam = power.unwrap_or(f64::NAN);
             let power = velocity.map(|velocity| largest_product(force, &velocity));
-            row.peak_power_manipulator = power.unwrap_or(f64::NAN);
+            loads.peak_power_manipulator = power.unwrap_or(f64::NAN);
         }
-        row.impact_duration = found.map_or(f64::INFINITY, |end| end - self.start);
-        row.status = match found {
+        loads.impact_duration = found.map_or(f64::INFINITY, |end| end - self.start);
+        let status = match found {
             None => Status::NoRelease,
-            Some(_) => Status::released(row.max_compression, &self.foam()),
+            Some(_) => Status::released(loads.max_compression, &self.foam()),
         };
-        Ok(row)
+        Ok(Metrics { loads, status })
     }
 
     /// The foam as far as its compression goes.
@@ -127,14 +127,14 @@ fn acceleration(
     value: &[f64],
     gravity: f64,
     interrupted: Interrupted<'_>,
-) -> Result<Metrics> {
+) -> Result<Loads<f64>> {
     let signal = Signal::new_until(time, value, interrupted)?;
     let integral = signal.integral_until(interrupted)?;
     let peak = largest(value);
     let [short, long] = INJURY_WINDOWS;
     let lasts = signal.span() >= HELD_WINDOW;
     let level = |level: Result<super::Level>| level.map(|level| level.value);
-    Ok(Metrics {
+    Ok(Loads {
         peak_head_acceleration: peak * gravity,
         peak_head_acceleration_g: peak,
         mean_head_acceleration_g: integral[integral.len() - 1] / signal.span(),
@@ -155,7 +155,7 @@ fn acceleration(
         } else {
             f64::NAN
         },
-        ..Metrics::none(Status::Released)
+        ..Loads::none()
     })
 }
 

@@ -7,8 +7,8 @@
 //! a shape (pulses, constants, ramps); noise opens more, and the worst case is every pair within one
 //! window, O(n m) with m samples per window.
 
-use crate::batch::Interrupted;
 use crate::error::{Failure, Result};
+use numeric::threads::Interrupted;
 
 /// Pairs of blocks between two looks whether to stop.
 const CHECK: usize = 1 << 14;

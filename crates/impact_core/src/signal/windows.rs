@@ -7,8 +7,8 @@
 use std::collections::VecDeque;
 
 use super::{CHECK, Signal, WINDOW_SLACK, pause};
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, positive};
+use numeric::threads::Interrupted;
 
 /// Value of a criterion and the window it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! The head injury criterion beside all pairs of nodes and beside the other search.
 
 use super::head_injury::criterion;
-use crate::criteria::{Impact, MetricOptions};
+use crate::criteria::Impact;
+use crate::metrics::MetricOptions;
 use crate::parameters::{Foam, Head, Manipulator, System, Target};
 
 /// Systems with numbers over many decades; many of them ring.
@@ -105,7 +106,7 @@ fn the_usual_shape_has_one_best_window() {
     let mut usual = 0;
     for _ in 0..4000 {
         let (system, speed) = draw(&mut seed);
-        let Some(fast) = crate::batch::usual(&system, speed, &options) else {
+        let Some(fast) = crate::fast::usual(&system, speed, &options) else {
             continue;
         };
         usual += 1;
