@@ -52,16 +52,13 @@ impl Camera {
             pixel_size,
             image_size,
         };
-        let pose = Pose {
-            rotation,
-            translation,
-        };
+        let pose = Pose::from_rows(rotation, translation);
         Ok(Self(sensing::Camera::new(lens, pose)?))
     }
 
     /// Where the camera is.
     fn position(&self) -> [f64; 3] {
-        self.0.pose().position()
+        self.0.pose().position().into()
     }
 
     /// Pixels of points; NaN for those without an image.
@@ -120,7 +117,7 @@ impl Camera {
     /// Rotation matrix after the turn among parameters.
     fn turned(&self, parameters: [f64; PARAMETERS]) -> CoreResult<[[f64; 3]; 3]> {
         let near = LinearizedCamera::new(&self.0, &parameters)?;
-        Ok(near.camera.pose().rotation)
+        Ok(near.camera.pose().rotation_rows())
     }
 }
 

@@ -1,5 +1,7 @@
 //! Effective mass, damping and stiffness at the impact point.
 
+use nalgebra::{Cholesky, Matrix2, Vector2};
+
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::parameters::Manipulator;
 
@@ -172,12 +174,12 @@ impl TwoJoints {
         for value in [m11, m12, m21, m22] {
             finite("mass_matrix", value)?;
         }
-        let determinant = m11 * m22 - m12 * m21;
-        if m12 != m21 || m11 <= 0.0 || determinant <= 0.0 {
+        let factor = Cholesky::new(Matrix2::from(self.mass_matrix)).filter(|_| m12 == m21);
+        let Some(factor) = factor else {
             let rule = "be symmetric and positive definite";
             let given = Given::Found(format!("{:?}", self.mass_matrix).into());
             return Err(Failure::invalid("mass_matrix", rule, given));
-        }
+        };
         for (damping, stiffness) in self.damping.into_iter().zip(self.stiffness) {
             not_negative("damping", damping)?;
             positive("stiffness", stiffness)?;
@@ -186,7 +188,8 @@ impl TwoJoints {
         positive("lever_arm", self.lever_arm)?;
         finite("elbow", self.elbow)?;
         let [j1, j2] = self.jacobian();
-        let mobility = (m22 * j1 * j1 - 2.0 * m12 * j1 * j2 + m11 * j2 * j2) / determinant;
+        let arms = Vector2::new(j1, j2);
+        let mobility = arms.dot(&factor.solve(&arms));
         let [c1, c2] = [j1 / self.stiffness[0], j2 / self.stiffness[1]];
         let stiffness = self.reach().in_series(self.stiffness);
         let damping = c1 * c1 * self.damping[0] + c2 * c2 * self.damping[1];

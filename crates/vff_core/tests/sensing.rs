@@ -19,10 +19,8 @@ fn overhead(radial_distortion: f64) -> Camera {
         pixel_size: [4.65e-6, 5e-6],
         image_size: [1024, 768],
     };
-    let pose = Pose {
-        rotation: [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]],
-        translation: [-1.0, 0.5, 3.0],
-    };
+    let rows = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+    let pose = Pose::from_rows(rows, [-1.0, 0.5, 3.0]);
     Camera::new(lens, pose).expect("a camera")
 }
 
@@ -332,8 +330,8 @@ fn out_of_range_values_are_refused() {
     }
     let camera = overhead(0.0);
     let mut pose = *camera.pose();
-    pose.rotation[0][0] = 1.0 + 1e-6;
+    pose.rotation[(0, 0)] = 1.0 + 1e-6;
     assert!(Camera::new(*camera.lens(), pose).is_err());
-    pose.rotation[0][0] = -1.0;
+    pose.rotation[(0, 0)] = -1.0;
     assert!(Camera::new(*camera.lens(), pose).is_err());
 }

@@ -3,9 +3,9 @@
 use super::check_samples;
 use super::least_squares::{Start, minimize};
 use super::line::{CONFIDENCE, fit_line, student_quantile};
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::signal::check_time;
+use numeric::threads::Interrupted;
 
 /// Response of the joint to a constant command, `theta'' = A - kappa theta'` from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ pub fn fit_open_loop_until(
     let squares: f64 = found.residuals.iter().map(|left| left * left).sum();
     let variance = squares / degrees as f64;
     let quantile = student_quantile(CONFIDENCE, degrees)?;
-    let covariance = [0, 1].map(|row| [0, 1].map(|column| variance * found.inverse[row][column]));
+    let covariance = [0, 1].map(|row| [0, 1].map(|column| variance * found.inverse[(row, column)]));
     let interval = [0, 1].map(|k| {
         let half = quantile * covariance[k][k].sqrt();
         [found.parameters[k] - half, found.parameters[k] + half]

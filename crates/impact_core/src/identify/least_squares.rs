@@ -1,4 +1,7 @@
-//! Nonlinear least squares for a few parameters (Levenberg-Marquardt).
+//! Nonlinear least squares for a few parameters (Levenberg-Marquardt). The crate of that name knows
+//! no bounds, and here friction must not become negative on the way.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Relative change of the parameters that ends the search.
 const SETTLED: f64 = 1e-10;
@@ -11,10 +14,10 @@ const STEPS: usize = 60;
 pub(super) struct Minimum {
     pub(super) parameters: Vec<f64>,
     /// Inverse of J^T J: the covariance for residuals of unit variance.
-    pub(super) inverse: Vec<Vec<f64>>,
+    pub(super) inverse: DMatrix<f64>,
     pub(super) residuals: Vec<f64>,
-    /// Derivatives of the residuals, one row per parameter.
-    pub(super) jacobian: Vec<Vec<f64>>,
+    /// Derivatives of the residuals, one column per parameter.
+    pub(super) jacobian: DMatrix<f64>,
     pub(super) steps: usize,
 }
 
@@ -39,13 +42,11 @@ pub(super) fn minimize(
     while steps < STEPS && !settled {
         steps += 1;
         let jacobian = differences(&parameters, &start.scale, &mut residuals);
-        let (normal, gradient) = normal_equations(&jacobian, &current);
+        let normal = jacobian.tr_mul(&jacobian);
+        let gradient = jacobian.tr_mul(&DVector::from_column_slice(&current));
         loop {
-            let mut damped = normal.clone();
-            for (k, row) in damped.iter_mut().enumerate() {
-                row[k] *= 1.0 + damping;
-            }
-            let step = solve(&damped, &gradient)?;
+            let damped = &normal + DMatrix::from_diagonal(&(normal.diagonal() * damping));
+            let step = factor(damped)?.solve(&gradient);
             let trial: Vec<f64> = parameters
                 .iter()
                 .zip(&step)
@@ -53,7 +54,7 @@ pub(super) fn minimize(
                 .zip(&start.lower)
                 .map(|(((value, step), scale), &lower)| (value - step * scale).max(lower))
                 .collect();
-            let largest = step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
+            let largest = step.amax();
             let next = residuals(&trial);
             let next_cost = squares(&next);
             settled = largest < SETTLED;
@@ -70,12 +71,11 @@ pub(super) fn minimize(
         }
     }
     let mut jacobian = differences(&parameters, &start.scale, &mut residuals);
-    let (normal, _) = normal_equations(&jacobian, &current);
-    let inverse = inverse(&normal, &start.scale)?;
-    for (row, scale) in jacobian.iter_mut().zip(&start.scale) {
-        for value in row {
-            *value /= scale;
-        }
+    // In the units of the parameters.
+    let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&start.scale));
+    let inverse = &scale * factor(jacobian.tr_mul(&jacobian))?.inverse() * &scale;
+    for (mut column, scale) in jacobian.column_iter_mut().zip(&start.scale) {
+        column /= *scale;
     }
     Some(Minimum {
         parameters,
@@ -90,94 +90,36 @@ fn squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// Derivatives of the residuals by scaled parameters, one row per parameter.
+/// Derivatives of the residuals by scaled parameters, one column per parameter.
 fn differences(
     parameters: &[f64],
     scale: &[f64],
     residuals: &mut impl FnMut(&[f64]) -> Vec<f64>,
-) -> Vec<Vec<f64>> {
+) -> DMatrix<f64> {
     let mut moved = parameters.to_vec();
-    (0..parameters.len())
+    let columns: Vec<DVector<f64>> = (0..parameters.len())
         .map(|k| {
             moved[k] = parameters[k] + DIFFERENCE * scale[k];
-            let above = residuals(&moved);
+            let above = DVector::from_vec(residuals(&moved));
             moved[k] = parameters[k] - DIFFERENCE * scale[k];
-            let below = residuals(&moved);
+            let below = DVector::from_vec(residuals(&moved));
             moved[k] = parameters[k];
-            above
-                .iter()
-                .zip(&below)
-                .map(|(above, below)| (above - below) / (2.0 * DIFFERENCE))
-                .collect()
+            (above - below) / (2.0 * DIFFERENCE)
         })
-        .collect()
-}
-
-fn normal_equations(jacobian: &[Vec<f64>], residuals: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let normal = jacobian
-        .iter()
-        .map(|row| jacobian.iter().map(|column| dot(row, column)).collect())
         .collect();
-    let gradient = jacobian.iter().map(|row| dot(row, residuals)).collect();
-    (normal, gradient)
+    DMatrix::from_columns(&columns)
 }
 
-/// Cholesky factor of a symmetric positive definite matrix.
-fn factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let size = matrix.len();
-    let mut lower = vec![vec![0.0; size]; size];
-    for row in 0..size {
-        for column in 0..=row {
-            let known: f64 = (0..column).map(|k| lower[row][k] * lower[column][k]).sum();
-            let rest = matrix[row][column] - known;
-            if row > column {
-                lower[row][column] = rest / lower[column][column];
-            } else if rest > matrix[row][row] * 1e-14 {
-                lower[row][row] = rest.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    Some(lower)
-}
-
-fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
-    let lower = factor(matrix)?;
-    let size = right.len();
-    let mut result = right.to_vec();
-    for row in 0..size {
-        for k in 0..row {
-            result[row] -= lower[row][k] * result[k];
-        }
-        result[row] /= lower[row][row];
-    }
-    for row in (0..size).rev() {
-        for k in row + 1..size {
-            result[row] -= lower[k][row] * result[k];
-        }
-        result[row] /= lower[row][row];
-    }
-    Some(result)
-}
-
-/// Inverse of the scaled normal matrix, in the units of the parameters.
-fn inverse(normal: &[Vec<f64>], scale: &[f64]) -> Option<Vec<Vec<f64>>> {
-    (0..scale.len())
-        .map(|k| {
-            let mut unit = vec![0.0; scale.len()];
-            unit[k] = 1.0;
-            let column = solve(normal, &unit)?;
-            Some(
-                column
-                    .iter()
-                    .zip(scale)
-                    .map(|(value, row_scale)| value * row_scale * scale[k])
-                    .collect(),
-            )
-        })
-        .collect()
+/// Cholesky factor of a symmetric matrix; `None` if it is not positive definite, to rounding.
+fn factor(matrix: DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let diagonal = matrix.diagonal();
+    let found = Cholesky::new(matrix)?;
+    let left = found.l_dirty().diagonal();
+    let definite = left
+        .iter()
+        .zip(&diagonal)
+        .all(|(left, whole)| left * left > whole * 1e-14);
+    definite.then_some(found)
 }
 
 #[cfg(test)]

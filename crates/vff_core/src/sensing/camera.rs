@@ -6,7 +6,8 @@
 //! With it on the printed side the goal (0, 0.6) m would lie outside the picture.
 
 use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
-use crate::sensing::rotation::{self, Matrix};
+use crate::sensing::rotation;
+use nalgebra::{Matrix3, Vector3};
 
 /// Largest departure of `R R^T` from the identity.
 const ORTHONORMAL: f64 = 1e-9;
@@ -72,19 +73,35 @@ impl Lens {
 /// Where the camera is: `x = R X + T` from the world to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Rotation R by rows.
-    pub rotation: Matrix,
+    /// Rotation R.
+    pub rotation: Matrix3<f64>,
     /// Translation T in m.
-    pub translation: [f64; 3],
+    pub translation: Vector3<f64>,
 }
 
 impl Pose {
+    /// A pose whose rotation is given by its rows.
+    #[must_use]
+    pub fn from_rows(rotation: [[f64; 3]; 3], translation: [f64; 3]) -> Self {
+        Self {
+            // Columns are what nalgebra takes.
+            rotation: Matrix3::from(rotation).transpose(),
+            translation: translation.into(),
+        }
+    }
+
+    /// The rows of the rotation.
+    #[must_use]
+    pub fn rotation_rows(&self) -> [[f64; 3]; 3] {
+        self.rotation.transpose().into()
+    }
+
     fn check(&self) -> Result<()> {
-        for entry in self.rotation.iter().flatten() {
+        for entry in &self.rotation {
             finite("rotation", *entry)?;
         }
-        for entry in self.translation {
-            finite("translation", entry)?;
+        for entry in &self.translation {
+            finite("translation", *entry)?;
         }
         let departure = rotation::departure(&self.rotation);
         if departure > ORTHONORMAL {
@@ -99,16 +116,14 @@ impl Pose {
 
     /// Coordinates of a point of the world in the camera, in m.
     #[must_use]
-    pub fn in_camera(&self, point: [f64; 3]) -> [f64; 3] {
-        let [x, y, z] = rotation::times(&self.rotation, point);
-        let [a, b, c] = self.translation;
-        [x + a, y + b, z + c]
+    pub fn in_camera(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * point + self.translation
     }
 
     /// Position of the camera `-R^T T` in the world, in m.
     #[must_use]
-    pub fn position(&self) -> [f64; 3] {
-        rotation::transposed_times(&self.rotation, self.translation).map(|entry| -entry)
+    pub fn position(&self) -> Vector3<f64> {
+        -self.rotation.tr_mul(&self.translation)
     }
 }
 
@@ -145,7 +160,7 @@ impl Camera {
     /// Pixel of a point of the world in m; none behind the camera or beyond what the lens maps.
     #[must_use]
     pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
-        let [x, y, depth] = self.pose.in_camera(point);
+        let [x, y, depth] = self.pose.in_camera(&point.into()).into();
         if depth <= 0.0 {
             return None;
         }
@@ -165,11 +180,10 @@ impl Camera {
     #[must_use]
     pub fn reconstruct(&self, pixel: [f64; 2], height: f64) -> Option<[f64; 3]> {
         let [u, v] = self.lens.undistorted(pixel)?;
-        let ray = [u, v, self.lens.focal_length];
-        let [x, y, z] = rotation::transposed_times(&self.pose.rotation, ray);
-        let [from_x, from_y, from_z] = self.pose.position();
-        let along = (height - from_z) / z;
-        let shown = [from_x + along * x, from_y + along * y, height];
+        let ray = Vector3::new(u, v, self.lens.focal_length);
+        let (ray, from) = (self.pose.rotation.tr_mul(&ray), self.pose.position());
+        let along = (height - from.z) / ray.z;
+        let shown = [from.x + along * ray.x, from.y + along * ray.y, height];
         (along.is_finite() && along > 0.0).then_some(shown)
     }
 }

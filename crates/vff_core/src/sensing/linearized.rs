@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::sensing::camera::{Camera, Lens, Pose, distorted_ratio};
-use crate::sensing::rotation::{self, Matrix};
+use crate::sensing::rotation;
+use nalgebra::{Matrix3, Vector3};
 
 /// Number of calibrated parameters: f, k, S, `C_x`, `C_y`, a turn (3), T (3).
 pub const PARAMETERS: usize = 11;
@@ -14,7 +15,7 @@ pub struct LinearizedCamera {
     /// The camera with these parameters.
     pub camera: Camera,
     /// Left Jacobian of the turn.
-    left_jacobian: Matrix,
+    left_jacobian: Matrix3<f64>,
 }
 
 impl LinearizedCamera {
@@ -31,14 +32,14 @@ impl LinearizedCamera {
             image_center: [cx, cy],
             ..*base.lens()
         };
-        let vector = [w1, w2, w3];
+        let vector = Vector3::new(w1, w2, w3);
         let pose = Pose {
-            rotation: rotation::product(&rotation::turn(vector), &base.pose().rotation),
-            translation: [t1, t2, t3],
+            rotation: rotation::turn(&vector) * base.pose().rotation,
+            translation: Vector3::new(t1, t2, t3),
         };
         Ok(Self {
             camera: Camera::new(lens, pose)?,
-            left_jacobian: rotation::left_jacobian(vector),
+            left_jacobian: rotation::left_jacobian(&vector),
         })
     }
 
@@ -48,8 +49,8 @@ impl LinearizedCamera {
     pub fn at(&self, point: [f64; 3]) -> Option<([f64; 2], [[f64; PARAMETERS]; 2])> {
         let pixel = self.camera.project(point)?;
         let (lens, pose) = (self.camera.lens(), self.camera.pose());
-        let turned = rotation::times(&pose.rotation, point);
-        let [x, y, depth] = pose.in_camera(point);
+        let turned = pose.rotation * Vector3::from(point);
+        let [x, y, depth] = pose.in_camera(&point.into()).into();
         let slopes = [x / depth, y / depth];
         let [u, v] = slopes.map(|slope| lens.focal_length * slope);
         let square = u * u + v * v;
@@ -74,16 +75,16 @@ impl LinearizedCamera {
             row[0] = by_plane[0] * slopes[0] + by_plane[1] * slopes[1];
             row[1] = own * ratio_slope * square;
             let per_depth = lens.focal_length / depth;
-            let by_point = [
+            let by_point = Vector3::new(
                 per_depth * by_plane[0],
                 per_depth * by_plane[1],
                 -per_depth * row[0],
-            ];
+            );
             // d x = w x (R X) to first order, so the gradient with respect to w is (R X) x g.
-            let by_turn = rotation::cross(turned, by_point);
-            let by_vector = rotation::transposed_times(&self.left_jacobian, by_turn);
-            row[5..8].copy_from_slice(&by_vector);
-            row[8..11].copy_from_slice(&by_point);
+            let by_turn = turned.cross(&by_point);
+            let by_vector = self.left_jacobian.tr_mul(&by_turn);
+            row[5..8].copy_from_slice(by_vector.as_slice());
+            row[8..11].copy_from_slice(by_point.as_slice());
             for entry in row.iter_mut() {
                 *entry *= scales[axis];
             }

@@ -4,8 +4,8 @@ use numeric::random::Stream;
 
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
-use crate::batch::Interrupted;
 use crate::error::{Failure, Result};
+use numeric::threads::Interrupted;
 
 /// Residuals that the bootstrap keeps together: rounding repeats itself while the slide is slow.
 const RUN: usize = 8;

@@ -4,8 +4,8 @@ use super::super::drop_test::{DropModel, trajectory_until};
 use super::super::least_squares::{Minimum, Start, minimize};
 use super::super::line::student_quantile;
 use super::FoamFitSettings;
-use crate::batch::Interrupted;
 use crate::error::{Failure, Given, Result};
+use numeric::threads::Interrupted;
 
 /// Damping ratios from which the search may start.
 const FIRST_RATIOS: [f64; 12] = [
@@ -175,22 +175,15 @@ impl Tests<'_> {
     /// gradient, with the products of neighboring readings (Newey and West, 1987).
     pub(super) fn covariance(&self, found: &Minimum) -> [[f64; 3]; 3] {
         // How far one residual moves each parameter.
-        let influence = [0, 1, 2].map(|parameter| {
-            let mut moved = vec![0.0; found.residuals.len()];
-            for (share, row) in found.inverse[parameter].iter().zip(&found.jacobian) {
-                for (moved, slope) in moved.iter_mut().zip(row) {
-                    *moved += share * slope;
-                }
-            }
-            moved
-        });
+        let influence = &found.jacobian * &found.inverse;
+        let influence = [0, 1, 2].map(|parameter| influence.column(parameter).into_owned());
         let (forces, mut first) = (self.force.len(), self.force.len());
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let mut covariance = [0, 1, 2].map(|row| {
-            [0, 1, 2].map(|column| dot(&influence[row][..forces], &influence[column][..forces]))
-        });
-        let moved = influence.map(|influence| {
-            let pairs = influence.iter().zip(&found.residuals);
+        let of_forces = |parameter: usize| &influence[parameter].as_slice()[..forces];
+        let mut covariance =
+            [0, 1, 2].map(|row| [0, 1, 2].map(|column| dot(of_forces(row), of_forces(column))));
+        let moved = [0, 1, 2].map(|parameter| {
+            let pairs = influence[parameter].iter().zip(&found.residuals);
             pairs.map(|(share, left)| share * left).collect::<Vec<_>>()
         });
         for position in &self.position {
