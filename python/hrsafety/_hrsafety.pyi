@@ -5,7 +5,7 @@ raises `hrsafety.errors.InvalidParameterError`. Words are plain strings here: th
 unknown one and quotes its rule.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Self, TypedDict, final
 
 import numpy as np
@@ -91,10 +91,11 @@ __all__ = [
     "holonomic_wheels",
     "identify_direct_drive",
     "identify_foam",
-    "impact_gradient_names",
+    "impact_criteria",
     "impact_gradients",
     "impact_metrics",
     "impact_metrics_batch",
+    "impact_parameter_names",
     "impact_point_speed",
     "impact_simulate",
     "impact_status_words",
@@ -222,105 +223,36 @@ class _BatchFields(TypedDict):
 class HolonomicRobot:
     """Holonomic robot."""
 
-    def __new__(
-        cls,
-        *,
-        mass: float,
-        radius: float,
-        max_speed: float,
-        max_acceleration: float,
-        wheel_radius: float,
-        winding_resistance: float,
-        wheel_inertia: _Triple,
-        wheel_viscous_friction: _Triple,
-        wheel_static_friction: _Triple,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
 
 @final
 class DifferentialDriveRobot:
     """Differential-drive robot."""
 
-    def __new__(
-        cls,
-        *,
-        mass: float,
-        radius: float,
-        max_speed: float,
-        max_acceleration: float,
-        max_angular_acceleration: float,
-        reference_speed_share: float,
-        wheel_radius: float,
-        wheel_span: float,
-        winding_resistance: float,
-        wheel_inertia: _Pair,
-        wheel_viscous_friction: _Pair,
-        wheel_static_friction: _Pair,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
 
 @final
 class Obstacle:
     """Obstacle."""
 
     @staticmethod
-    def disc(
-        *,
-        center: _Pair,
-        radius: float,
-        active_radius: float | None,
-        critical_radius: float | None,
-        max_speed: float | None,
-    ) -> Obstacle:
+    def disc(**given: object) -> Obstacle:
         """Return a disc at rest."""
 
     @staticmethod
-    def rectangle(
-        *,
-        center: _Pair,
-        length: float,
-        width: float,
-        heading: float,
-        active_radius: float | None,
-        critical_radius: float | None,
-        max_speed: float | None,
-    ) -> Obstacle:
+    def rectangle(**given: object) -> Obstacle:
         """Return a rectangle at rest."""
 
     @staticmethod
-    def moving(
-        *,
-        start: _Pair,
-        velocity: _Pair,
-        acceleration: _Pair,
-        stop: _Pair | None,
-        radius: float,
-        active_radius: float | None,
-        critical_radius: float | None,
-        max_speed: float | None,
-    ) -> Obstacle:
+    def moving(**given: object) -> Obstacle:
         """Return a disc with constant acceleration or a sudden stop."""
 
     @staticmethod
-    def piecewise(
-        *,
-        start: _Pair,
-        segments: Sequence[_Segment],
-        radius: float,
-        active_radius: float | None,
-        critical_radius: float | None,
-        max_speed: float | None,
-    ) -> Obstacle:
+    def piecewise(**given: object) -> Obstacle:
         """Return a disc with piecewise constant acceleration."""
 
     @staticmethod
-    def recorded(
-        *,
-        time: Sequence[float],
-        position: Sequence[_Pair],
-        radius: float,
-        active_radius: float | None,
-        critical_radius: float | None,
-        max_speed: float | None,
-    ) -> Obstacle:
+    def recorded(**given: object) -> Obstacle:
         """Return a disc that follows a recording."""
 
 @final
@@ -333,21 +265,7 @@ class Measurement:
 class Scenario:
     """Scenario."""
 
-    def __new__(
-        cls,
-        *,
-        robot: HolonomicRobot | DifferentialDriveRobot,
-        start: _Pair,
-        goal: _Pair,
-        obstacles: Sequence[Obstacle],
-        control_period: float,
-        time_limit: float,
-        arrival_tolerance: float,
-        heading: float,
-        rest_time: float,
-        measurement: Measurement | None,
-        seed: int,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
     def point_mass(self) -> tuple[float, float, float, float]:
         """Return mass, radius, largest speed and acceleration of the point mass that a law drives."""
 
@@ -371,65 +289,15 @@ class Law:
     ) -> Law:
         """Return the virtual force field."""
 
+    gain_names: list[str]
+    gains: list[float]
     @staticmethod
-    def masoud(*, attractive_gain: float, repulsive_gain: float, detour_gain: float) -> Law:
-        """Return the circulating repulsion."""
+    def named(name: str, **given: object) -> Law:
+        """Return a law of the core's registry."""
 
     @staticmethod
-    def ge_cui(*, attractive_gain: float, repulsive_gain: float, gain_ratio: float) -> Law:
-        """Return the dynamic potential field."""
-
-    @staticmethod
-    def khatib(*, attractive_gain: float, repulsive_gain: float, gain_ratio: float, printed: bool) -> Law:
-        """Return the artificial potential field."""
-
-    @staticmethod
-    def borenstein_koren(*, attractive_gain: float, repulsive_gain: float, attracted_inside: bool) -> Law:
-        """Return the virtual force of Borenstein and Koren."""
-
-    @staticmethod
-    def velocity_obstacle(*, margin: float, horizon: float, risk_weight: float, sector: float, selection: str) -> Law:
-        """Return velocity obstacles."""
-
-    @staticmethod
-    def reciprocal(*, horizon: float, margin: float, turn: float, reach: float, share: float) -> Law:
-        """Return optimal reciprocal collision avoidance."""
-
-    @staticmethod
-    def virtual_impedance(
-        *,
-        attraction_stiffness: float,
-        attraction_damping: float,
-        stiffness: float,
-        damping: float,
-        safe_distance: float,
-        speed_limit: float,
-        reach: float,
-        view: float,
-        active: bool,
-    ) -> Law:
+    def virtual_impedance(**given: object) -> Law:
         """Return virtual impedance with ideal sensing."""
-
-    @staticmethod
-    def field_d_star(*, resolution: float, margin: float, horizon: float, room: float, look_ahead: float) -> Law:
-        """Return the path of least cost over a grid."""
-
-    @staticmethod
-    def random_tree(
-        *,
-        step: float,
-        goal_probability: float,
-        waypoint_probability: float,
-        margin: float,
-        horizon: float,
-        room: float,
-        look_ahead: float,
-        waypoints: int,
-        draws: int,
-        keeps_path: bool,
-        safety_draws: int,
-    ) -> Law:
-        """Return the extended random tree."""
 
 def region_radii(
     robot: HolonomicRobot | DifferentialDriveRobot,
@@ -493,19 +361,7 @@ def lyapunov(
     """Return the Lyapunov function, its derivative and Omega at one state."""
 
 def simulate_batch(
-    scenarios: Sequence[Scenario],
-    law: Law,
-    gains: _Array,
-    weights: _Triple,
-    *,
-    integrator: str,
-    step: float,
-    hold: bool,
-    stop_on_contact: bool,
-    descent: bool,
-    threads: int | None,
-    lanes: int | None,
-    progress: Callable[[int, int], object] | None,
+    scenarios: Sequence[Scenario], law: Law, gains: _Array, weights: _Triple, **given: object
 ) -> _BatchFields:
     """Return summary columns of every gain set in every scenario."""
 
@@ -577,73 +433,21 @@ class _FrontFields(TypedDict):
 class GainProblem:
     """Function of the gains over scenarios: objectives to maximize and margins that must not be negative."""
 
-    def __new__(
-        cls,
-        *,
-        scenarios: Sequence[Scenario],
-        law: Law,
-        weights: _Triple,
-        integrator: str,
-        step: float,
-        hold: bool,
-        seeds: Sequence[int],
-        lower_bound_factor: float | None,
-        objectives: Sequence[str | None],
-        constraints: Sequence[_Bounded],
-        require_arrival: bool,
-        cap_ratios: bool,
-        scorer: Callable[[list[_BatchFields]], tuple[_Array, _Array]] | None,
-        scorer_constraints: int,
-        lanes: int | None,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
     def evaluate(self, points: _Array, *, threads: int | None) -> _EvaluationFields:
         """Values as maximized, violations and failures of gain sets."""
 
 def search_gains(
-    problem: GainProblem,
-    lower: Sequence[float],
-    upper: Sequence[float],
-    *,
-    shape: Sequence[int],
-    refinements: int,
-    survivors: int,
-    keep: int,
-    local_starts: int,
-    threads: int | None,
-    state: bytes | None,
-    save: _Save | None,
-    progress: _Progress | None,
+    problem: GainProblem, lower: Sequence[float], upper: Sequence[float], **given: object
 ) -> _SearchFields:
     """Coarse-to-fine grids, then local searches from their best points."""
 
 def search_gains_globally(
-    problem: GainProblem,
-    lower: Sequence[float],
-    upper: Sequence[float],
-    *,
-    method: str,
-    evaluations: int,
-    islands: int,
-    seed: int,
-    threads: int | None,
-    state: bytes | None,
-    save: _Save | None,
-    progress: _Progress | None,
+    problem: GainProblem, lower: Sequence[float], upper: Sequence[float], **given: object
 ) -> _GlobalFields:
     """Global search with a budget."""
 
-def gain_front(
-    problem: GainProblem,
-    lower: Sequence[float],
-    upper: Sequence[float],
-    *,
-    shape: Sequence[int],
-    refinements: int,
-    threads: int | None,
-    state: bytes | None,
-    save: _Save | None,
-    progress: _Progress | None,
-) -> _FrontFields:
+def gain_front(problem: GainProblem, lower: Sequence[float], upper: Sequence[float], **given: object) -> _FrontFields:
     """Gain sets that no other one beats in every objective."""
 
 def front_hypervolume(values: Sequence[float], objectives: int, reference: Sequence[float]) -> float:
@@ -756,15 +560,12 @@ class _DriveRunFields(TypedDict):
 class Joint:
     """Elastic joint under control."""
 
-    def __new__(
-        cls,
-        *,
-        inertia: float,
-        mechanical_stiffness: float,
-        mechanical_damping: float,
-        control_stiffness: float,
-        control_damping: float,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    inertia: float
+    mechanical_stiffness: float
+    mechanical_damping: float
+    control_stiffness: float
+    control_damping: float
     @property
     def stiffness(self) -> float:
         """Reduced stiffness."""
@@ -780,13 +581,19 @@ class Joint:
 class Manipulator:
     """Manipulator at the impact point."""
 
-    def __new__(cls, *, mass: float, damping: float, stiffness: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    mass: float
+    damping: float
+    stiffness: float
 
 @final
 class Head:
     """Head on a neck."""
 
-    def __new__(cls, *, mass: float, damping: float, stiffness: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    mass: float
+    damping: float
+    stiffness: float
 
 @final
 class ConstrainedHead:
@@ -798,7 +605,11 @@ class ConstrainedHead:
 class Foam:
     """Foam covering."""
 
-    def __new__(cls, *, stiffness: float, damping: float, thickness: float, linear_range: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    stiffness: float
+    damping: float
+    thickness: float
+    linear_range: float
 
 @final
 class SetPoint:
@@ -810,19 +621,16 @@ class SetPoint:
 class DirectDrive:
     """Direct-drive joint with its controller."""
 
-    def __new__(
-        cls,
-        *,
-        inertia: float,
-        lever_arm: float,
-        torque_constant: float,
-        amplifier_gain: float,
-        viscous_friction: float,
-        static_friction: float,
-        voltage_limit: float,
-        proportional: float,
-        derivative: float,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    inertia: float
+    lever_arm: float
+    torque_constant: float
+    amplifier_gain: float
+    viscous_friction: float
+    static_friction: float
+    voltage_limit: float
+    proportional: float
+    derivative: float
     def linear(self) -> _Triple:
         """Return mass, damping and stiffness without friction and limit."""
 
@@ -830,15 +638,12 @@ class DirectDrive:
 class CylinderController:
     """Controller of the pneumatic cylinder."""
 
-    def __new__(
-        cls,
-        *,
-        acceleration_gain: float,
-        velocity_gain: float,
-        proportional: float,
-        derivative: float,
-        sample_time: float,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    acceleration_gain: float
+    velocity_gain: float
+    proportional: float
+    derivative: float
+    sample_time: float
     def command(
         self,
         *,
@@ -850,18 +655,10 @@ class CylinderController:
     ) -> float:
         """Return the command of the valve."""
 
-def effective_one_joint(*, inertia: float, damping: float, stiffness: float, lever_arm: float) -> _Triple:
+def effective_one_joint(**given: object) -> _Triple:
     """Return effective mass, damping and stiffness of one joint."""
 
-def effective_two_joints(
-    *,
-    mass_matrix: Sequence[Sequence[float]],
-    damping: _Pair,
-    stiffness: _Pair,
-    second_link: float,
-    lever_arm: float,
-    elbow: float,
-) -> _Triple:
+def effective_two_joints(**given: object) -> _Triple:
     """Return effective mass, damping and stiffness of two joints."""
 
 def impact_point_speed(rates: _Pair, *, second_link: float, lever_arm: float, elbow: float) -> float:
@@ -883,8 +680,11 @@ def impact_metrics(
 ) -> _Row:
     """Return numbers, status and whether the foam leaves its linear range."""
 
-def impact_gradient_names() -> tuple[list[str], list[str]]:
-    """Return names of the rows and columns of the derivatives."""
+def impact_criteria() -> list[tuple[str, str, str, str, bool]]:
+    """Return name, label, unit and symbol of each criterion, and whether peaks alone give it."""
+
+def impact_parameter_names() -> list[str]:
+    """Return the names of the columns of the derivatives."""
 
 def impact_gradients(
     manipulator: Manipulator,
@@ -900,12 +700,8 @@ def impact_status_words() -> list[str]:
     """Return the words of the codes in a batch."""
 
 def impact_metrics_batch(
+    given: Mapping[str, float | _Array],
     *,
-    manipulator: _Triplet,
-    foam: _Triplet,
-    head: _Triplet | None,
-    closing_speed: float | _Array,
-    manipulator_speed: float | _Array | None,
     horizon: float | None,
     peaks_only: bool,
     threads: int | None,
@@ -918,18 +714,7 @@ def stopping_segments(*, manipulator_speed: float, detection: float, rest: float
     """Return the segments of a stop after detection."""
 
 def impact_simulate(
-    manipulator: Manipulator,
-    foam: Foam,
-    head: Head | ConstrainedHead,
-    *,
-    closing_speed: float,
-    manipulator_speed: float | None,
-    duration: float,
-    step: float,
-    runge_kutta: bool,
-    unilateral: bool,
-    as_printed: bool,
-    set_point: SetPoint,
+    manipulator: Manipulator, foam: Foam, head: Head | ConstrainedHead, **given: object
 ) -> tuple[_ResponseFields, _Row]:
     """Return columns of the response, and the row of its metrics."""
 
@@ -976,17 +761,7 @@ def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Tripl
 def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the level that a signal exceeds without a break."""
 
-def recorded_metrics(
-    time: _Array,
-    acceleration_g: _Array,
-    *,
-    contact_force: _Array | None,
-    compression: _Array | None,
-    manipulator_velocity: _Array | None,
-    start: float | None,
-    linear_range: float,
-    thickness: float,
-) -> _Row:
+def recorded_metrics(time: _Array, acceleration_g: _Array, **given: object) -> _Row:
     """Return numbers, status and whether the foam leaves its linear range, of a recorded impact."""
 
 def hic_half_sine(peak_g: float, duration: float, window: float) -> float:
@@ -999,33 +774,14 @@ def hic_triangle(peak_g: float, duration: float, window: float) -> float:
     """Return the head injury criterion of a triangle."""
 
 def identify_foam(
-    static_force: _Array,
-    static_compression: _Array,
-    drops: Sequence[tuple[_Array, _Array]],
-    *,
-    moving_mass: float,
-    gravity: float,
-    confidence: float,
-    attached: bool,
-    bootstrap: int,
-    seed: int,
+    static_force: _Array, static_compression: _Array, drops: Sequence[tuple[_Array, _Array]], **given: object
 ) -> _FoamFitFields:
     """Return stiffness, damping ratio and friction from static and drop tests."""
 
 def fit_static(static_force: _Array, static_compression: _Array, intercept: bool) -> _StaticFitFields:
     """Return the stiffness of a foam from a static test."""
 
-def drop_trajectory(
-    time: _Array,
-    *,
-    height: float,
-    mass: float,
-    stiffness: float,
-    damping_ratio: float,
-    friction: float,
-    gravity: float,
-    attached: bool,
-) -> _Array:
+def drop_trajectory(time: _Array, **given: object) -> _Array:
     """Return the height of a mass that is dropped on foam."""
 
 def fit_open_loop(time: _Array, angle: _Array) -> _OpenLoopFields:
@@ -1040,30 +796,13 @@ def identify_direct_drive(
 ) -> _DirectDriveFields:
     """Return constants of a direct-drive joint from open-loop tests."""
 
-def pd_gains(
-    *,
-    stiffness: float,
-    damping: float,
-    lever_arm: float,
-    torque_constant: float,
-    viscous_friction: float,
-    amplifier_gain: float,
-) -> _Pair:
+def pd_gains(**given: object) -> _Pair:
     """Return proportional and derivative gain for a wanted stiffness and damping."""
 
-def tube_inertia(*, density: float, length: float, width: float, height: float, wall: float) -> _Pair:
+def tube_inertia(**given: object) -> _Pair:
     """Return mass and inertia of a rectangular tube."""
 
-def simulate_direct_drive(
-    drive: DirectDrive,
-    foam: Foam,
-    head: Head,
-    *,
-    closing_speed: float,
-    manipulator_speed: float,
-    duration: float,
-    step: float,
-) -> _DriveRunFields:
+def simulate_direct_drive(drive: DirectDrive, foam: Foam, head: Head, **given: object) -> _DriveRunFields:
     """Return histories of a direct-drive joint in an impact."""
 
 @final
@@ -1272,9 +1011,7 @@ class MicrophoneArray:
 class Burst:
     """A sound of limited length; its waveform is made when it is heard first."""
 
-    def __new__(
-        cls, *, kind: str, low: float, high: float, duration: float, level: float, ramp: float, seed: int
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
 
 @final
 class Converter:
@@ -1327,14 +1064,7 @@ def likeness_curves(
     """Return likeness over lag from samples."""
 
 def jittered_sound_delays(
-    array: MicrophoneArray,
-    sources: Sequence[tuple[float, float]],
-    *,
-    arrival_deviation: float,
-    runs: int,
-    seed: int,
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
+    array: MicrophoneArray, sources: Sequence[tuple[float, float]], **given: object
 ) -> _SoundDelayFields:
     """Return delays with jitter of the arrivals, the runs of a source side by side."""
 
@@ -1344,11 +1074,7 @@ def burst_trial_delays(
     converter: Converter,
     places: Sequence[_SoundPlace],
     options: _DelayOptions,
-    *,
-    runs: int,
-    seed: int,
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
+    **given: object,
 ) -> _SoundDelayFields:
     """Return delays from full waveforms, the runs of a source side by side."""
 
@@ -1684,25 +1410,18 @@ def steady_gains(*, acceleration_deviation: float, position_deviation: float, pe
 @final
 class Tracking:
     @staticmethod
-    def full_speed(*, position_gain: float, heading_gain: float) -> Tracking: ...
+    def full_speed(**given: object) -> Tracking: ...
     @staticmethod
-    def nonlinear(*, damping_ratio: float, gain: float, error_frame: str, reference_turn: str) -> Tracking: ...
+    def nonlinear(**given: object) -> Tracking: ...
     @staticmethod
-    def exponential(
-        *,
-        position_gain: float,
-        heading_gain: float,
-        distance_gain: float,
-        bearing_gain: float,
-        orientation_gain: float,
-        goal_heading: float | None,
-        capture_radius: float,
-        rest_radius: float,
-    ) -> Tracking: ...
+    def exponential(**given: object) -> Tracking: ...
 
 @final
 class VirtualTorque:
-    def __new__(cls, *, torque_gain: float, damping_ratio: float, backward: bool) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    torque_gain: float
+    damping_ratio: float
+    backward: bool
     @staticmethod
     def gain_for(robot: DifferentialDriveRobot, frequency: float) -> float: ...
     def torque(self, heading: float, force: _Pair) -> float: ...
@@ -1745,15 +1464,7 @@ class _FollowedFields(TypedDict):
     goal_phase: npt.NDArray[np.bool_]
 
 def track(
-    reference: ReferencePath,
-    tracking: Tracking,
-    robot: DifferentialDriveRobot,
-    *,
-    start: tuple[float, float, float, float, float],
-    control_period: float,
-    step: float,
-    duration: float,
-    goal: _Pair | None,
+    reference: ReferencePath, tracking: Tracking, robot: DifferentialDriveRobot, **given: object
 ) -> _FollowedFields: ...
 
 class _FollowedColumns(TypedDict):
@@ -1764,18 +1475,7 @@ class _FollowedColumns(TypedDict):
     settling_time: _Array
 
 def track_batch(
-    references: Sequence[ReferencePath],
-    tracking: Tracking,
-    robot: DifferentialDriveRobot,
-    *,
-    starts: _Array,
-    levels: Sequence[float],
-    control_period: float,
-    step: float,
-    duration: float,
-    goal: _Pair | None,
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
+    references: Sequence[ReferencePath], tracking: Tracking, robot: DifferentialDriveRobot, **given: object
 ) -> _FollowedColumns: ...
 
 class _WheelPreset(TypedDict):
@@ -1810,26 +1510,7 @@ class _WheelFields(TypedDict):
 
 @final
 class WheelDrive:
-    def __new__(
-        cls,
-        *,
-        inertia: float,
-        viscous_friction: float,
-        static_friction: float,
-        model: _Triple,
-        proportional_gain: float,
-        derivative_gain: float,
-        feedback: str,
-        observer_poles: _Pair,
-        encoder_counts: float | None,
-        gear_ratio: float,
-        amplifier_gain: float,
-        winding_resistance: float,
-        back_emf: float,
-        current_limit: float,
-        supply_voltage: float,
-        period: float,
-    ) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
     def open_loop_angles(self, *, command: float, start_angle: float, periods: int) -> _Array: ...
     def follow(
         self,
@@ -1843,20 +1524,26 @@ class WheelDrive:
 
 @final
 class OmniKinematics:
-    def __new__(cls, *, wheel_radius: float, center_distance: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    wheel_radius: float
+    center_distance: float
     def wheel_speeds(self, velocity: _Array, heading: _Array) -> _Array: ...
     def body_velocity(self, speeds: _Array, heading: _Array) -> _Array: ...
 
 @final
 class DifferentialKinematics:
-    def __new__(cls, *, wheel_radius: float, span: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    wheel_radius: float
+    span: float
     def wheel_speeds(self, motion: _Array) -> _Array: ...
     def body_velocity(self, speeds: _Array) -> _Array: ...
     def world_velocity(self, speeds: _Array, heading: _Array) -> _Array: ...
 
 @final
 class Slip:
-    def __new__(cls, *, creep: float, grip: float) -> Self: ...
+    def __new__(cls, **given: object) -> Self: ...
+    creep: float
+    grip: float
     def ground_speeds(self, rim_speed: _Array, *, start: float, period: float) -> _Array: ...
 
 def holonomic_wheels() -> list[_WheelPreset]: ...

@@ -8,6 +8,7 @@ use vff_core::world::scenario;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
+use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{outcome_word, run_options, weights_of};
@@ -15,10 +16,7 @@ use crate::watch::{Report, watched_law};
 
 /// Summary columns of every gain set in every scenario.
 #[pyfunction]
-#[pyo3(signature = (scenarios, law, gains, weights, *, integrator, step, hold, stop_on_contact,
-    descent, threads, lanes, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
-#[allow(clippy::fn_params_excessive_bools)] // keyword-only in Python
+#[pyo3(signature = (scenarios, law, gains, weights, **given))]
 #[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn simulate_batch<'py>(
     py: Python<'py>,
@@ -26,24 +24,22 @@ pub fn simulate_batch<'py>(
     law: &Law,
     gains: PyReadonlyArray2<'py, f64>,
     weights: (f64, f64, f64),
-    integrator: &Bound<'py, PyAny>,
-    step: f64,
-    hold: bool,
-    stop_on_contact: bool,
-    descent: bool,
-    threads: Option<usize>,
-    lanes: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let width = lanes.map(Width::of).transpose().map_err(CoreError::from)?;
+    let given = given.unwrap_or_default();
+    let lanes: Option<usize> = given.take("lanes")?;
+    let integrator: Bound<'py, PyAny> = given.take("integrator")?;
+    let (step, hold) = (given.take("step")?, given.take("hold")?);
     let options = BatchOptions {
-        run: run_options(integrator, step, hold, stop_on_contact)?,
+        run: run_options(&integrator, step, hold, given.take("stop_on_contact")?)?,
         weights: weights_of(weights),
-        descent,
-        threads: law.threads(threads),
-        width,
+        descent: given.take("descent")?,
+        threads: law.threads(given.take("threads")?),
+        width: lanes.map(Width::of).transpose().map_err(CoreError::from)?,
         instructions: Instructions::Widest,
     };
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
+    given.done()?;
     let (count, dimension) = (gains.shape()[0], gains.shape()[1]);
     let points = gains.as_slice()?.to_vec();
     let scenarios: Vec<scenario::Scenario> = scenarios

@@ -12,6 +12,7 @@ use vff_core::world::motion::Motion;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, parameter_class, taken};
 use crate::parameters::DifferentialDriveRobot;
 use crate::watch::{Report, watched};
 
@@ -23,30 +24,33 @@ pub struct Tracking(pub differential::Tracking);
 impl Tracking {
     /// Up to the full speed.
     #[staticmethod]
-    #[pyo3(signature = (*, position_gain, heading_gain))]
-    fn full_speed(position_gain: f64, heading_gain: f64) -> CoreResult<Self> {
-        let law = FullSpeed {
-            position_gain,
-            heading_gain,
-        };
-        Ok(Self(differential::Tracking::FullSpeed(law).checked()?))
+    #[pyo3(signature = (**given))]
+    fn full_speed(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let law = taken!(
+            given,
+            FullSpeed {
+                position_gain,
+                heading_gain
+            }
+        );
+        given.done()?;
+        Self::checked(differential::Tracking::FullSpeed(law))
     }
 
     /// The law of the source.
     #[staticmethod]
-    #[pyo3(signature = (*, damping_ratio, gain, error_frame, reference_turn))]
-    fn nonlinear(
-        damping_ratio: f64,
-        gain: f64,
-        error_frame: &str,
-        reference_turn: &str,
-    ) -> CoreResult<Self> {
-        let frame = match error_frame {
+    #[pyo3(signature = (**given))]
+    fn nonlinear(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let error_frame: String = given.take("error_frame")?;
+        let reference_turn: String = given.take("reference_turn")?;
+        let frame = match error_frame.as_str() {
             "robot" => ErrorFrame::Robot,
             "world" => ErrorFrame::World,
             other => return unknown("error_frame", "be \"robot\" or \"world\"", other),
         };
-        let turn = match reference_turn {
+        let turn = match reference_turn.as_str() {
             "derivative" => ReferenceTurn::Derivative,
             "printed" => ReferenceTurn::HeadingErrorPerPeriod,
             other => {
@@ -55,67 +59,55 @@ impl Tracking {
             }
         };
         let law = Nonlinear {
-            damping_ratio,
-            gain,
+            damping_ratio: given.take("damping_ratio")?,
+            gain: given.take("gain")?,
             frame,
             turn,
         };
-        Ok(Self(differential::Tracking::Nonlinear(law).checked()?))
+        given.done()?;
+        Self::checked(differential::Tracking::Nonlinear(law))
     }
 
     /// Exponentially to the goal near it.
     #[staticmethod]
-    #[pyo3(signature = (*, position_gain, heading_gain, distance_gain, bearing_gain,
-        orientation_gain, goal_heading, capture_radius, rest_radius))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn exponential(
-        position_gain: f64,
-        heading_gain: f64,
-        distance_gain: f64,
-        bearing_gain: f64,
-        orientation_gain: f64,
-        goal_heading: Option<f64>,
-        capture_radius: f64,
-        rest_radius: f64,
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn exponential(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let law = ExponentialGoal {
-            approach: FullSpeed {
-                position_gain,
-                heading_gain,
-            },
-            distance_gain,
-            bearing_gain,
-            orientation_gain,
-            goal_heading,
-            capture_radius,
-            rest_radius,
+            approach: taken!(
+                given,
+                FullSpeed {
+                    position_gain,
+                    heading_gain
+                }
+            ),
+            distance_gain: given.take("distance_gain")?,
+            bearing_gain: given.take("bearing_gain")?,
+            orientation_gain: given.take("orientation_gain")?,
+            goal_heading: given.take("goal_heading")?,
+            capture_radius: given.take("capture_radius")?,
+            rest_radius: given.take("rest_radius")?,
         };
-        Ok(Self(
-            differential::Tracking::ExponentialGoal(law).checked()?,
-        ))
+        given.done()?;
+        Self::checked(differential::Tracking::ExponentialGoal(law))
     }
 }
 
-fn unknown<T>(name: &str, rule: &'static str, word: &str) -> CoreResult<T> {
-    Err(Failure::invalid(name, rule, Given::Word(word.into())).into())
+impl Tracking {
+    /// A law whose numbers are allowed.
+    fn checked(law: differential::Tracking) -> PyResult<Self> {
+        Ok(Self(law.checked().map_err(CoreError::from)?))
+    }
 }
 
-/// Torque that turns the robot toward the force.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct VirtualTorque(pub differential::VirtualTorque);
+fn unknown<T>(name: &str, rule: &'static str, word: &str) -> PyResult<T> {
+    let failure = Failure::invalid(name, rule, Given::Word(word.into()));
+    Err(CoreError::from(failure).into())
+}
 
-#[pymethods]
-impl VirtualTorque {
-    #[new]
-    #[pyo3(signature = (*, torque_gain, damping_ratio, backward))]
-    fn new(torque_gain: f64, damping_ratio: f64, backward: bool) -> CoreResult<Self> {
-        let law = differential::VirtualTorque {
-            torque_gain,
-            damping_ratio,
-            backward,
-        };
-        Ok(Self(law.checked()?))
-    }
+parameter_class! {
+    /// Torque that turns the robot toward the force.
+    VirtualTorque(differential::VirtualTorque) { torque_gain, damping_ratio, backward }
 
     /// Gain that gives a robot an angular frequency.
     #[staticmethod]
@@ -232,27 +224,29 @@ fn start_of(numbers: &[f64; 5]) -> TrackStart {
     }
 }
 
+fn options_of(given: &Keywords<'_>) -> PyResult<TrackOptions> {
+    Ok(TrackOptions {
+        period: given.take("control_period")?,
+        step: given.take("step")?,
+        duration: given.take("duration")?,
+        goal: given.take("goal")?,
+    })
+}
+
 /// History of one run.
 #[pyfunction]
-#[pyo3(signature = (reference, tracking, robot, *, start, control_period, step, duration, goal))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (reference, tracking, robot, **given))]
 pub fn track<'py>(
     py: Python<'py>,
     reference: &ReferencePath,
     tracking: &Tracking,
     robot: &DifferentialDriveRobot,
-    start: [f64; 5],
-    control_period: f64,
-    step: f64,
-    duration: f64,
-    goal: Option<[f64; 2]>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = TrackOptions {
-        period: control_period,
-        step,
-        duration,
-        goal,
-    };
+    let given = given.unwrap_or_default();
+    let start: [f64; 5] = given.take("start")?;
+    let options = options_of(&given)?;
+    given.done()?;
     let limits = DifferentialLimits::from(&robot.0);
     let (path, law, start) = (&reference.0, &tracking.0, start_of(&start));
     let run = watched(py, Report::none(), |control| {
@@ -280,30 +274,22 @@ fn history(py: Python<'_>, run: TrackRun) -> PyResult<Bound<'_, PyDict>> {
 
 /// Summary columns of many runs.
 #[pyfunction]
-#[pyo3(signature = (references, tracking, robot, *, starts, levels, control_period, step, duration,
-    goal, threads, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (references, tracking, robot, **given))]
 #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn track_batch<'py>(
     py: Python<'py>,
     references: Vec<PyRef<'py, ReferencePath>>,
     tracking: &Tracking,
     robot: &DifferentialDriveRobot,
-    starts: PyReadonlyArray2<'py, f64>,
-    levels: Vec<f64>,
-    control_period: f64,
-    step: f64,
-    duration: f64,
-    goal: Option<[f64; 2]>,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = TrackOptions {
-        period: control_period,
-        step,
-        duration,
-        goal,
-    };
+    let given = given.unwrap_or_default();
+    let starts: PyReadonlyArray2<'py, f64> = given.take("starts")?;
+    let levels: Vec<f64> = given.take("levels")?;
+    let options = options_of(&given)?;
+    let threads: Option<usize> = given.take("threads")?;
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
+    given.done()?;
     let limits = DifferentialLimits::from(&robot.0);
     let paths: Vec<_> = references.iter().map(|path| path.0.clone()).collect();
     let starts: Vec<_> = starts

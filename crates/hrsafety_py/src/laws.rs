@@ -8,19 +8,14 @@ use vff_core::laws;
 use vff_core::laws::field::gains::Gains;
 use vff_core::laws::field::side::SideRules;
 use vff_core::laws::field::stabilizing::Stabilizing;
-use vff_core::laws::field_d_star::FieldDStar;
-use vff_core::laws::pairwise::Pairwise;
-use vff_core::laws::planning::family::Planned;
-use vff_core::laws::reciprocal::ReciprocalAvoidance;
-use vff_core::laws::tree::RapidlyExploringRandomTree;
-use vff_core::laws::velocity_obstacle::{Selection, VelocityObstacle};
-use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
+use vff_core::laws::registry::{Arguments, law_named};
 use vff_core::run::AnyLaw;
 
 use vff_core::laws::impedance::attraction::Attraction;
 use vff_core::laws::impedance::law::{Form, Impedance};
 
 use crate::errors::{CoreError, CoreResult, InvalidParameterError};
+use crate::keywords::Keywords;
 use crate::python_law::PythonLaw;
 use crate::reactive::arena::ImpedanceFamily;
 
@@ -35,10 +30,11 @@ pub struct Law {
 }
 
 impl Law {
-    /// A law whose numbers are allowed.
-    fn checked(law: impl Into<AnyLaw>) -> CoreResult<Self> {
+    /// A law whose numbers are allowed, made of all that was given.
+    fn made(given: &Keywords<'_>, law: impl Into<AnyLaw>) -> PyResult<Self> {
+        given.done()?;
         Ok(Self {
-            any: law.into().checked()?,
+            any: law.into().checked().map_err(CoreError::from)?,
             field: None,
             python: false,
         })
@@ -109,196 +105,83 @@ impl Law {
         })
     }
 
+    /// Names of its gains, as the core calls them.
+    #[getter]
+    fn gain_names(&self) -> Vec<&'static str> {
+        self.any.gain_names().to_vec()
+    }
+
+    /// Its gains, in that order.
+    #[getter]
+    fn gains(&self) -> Vec<f64> {
+        self.any.gains()
+    }
+
+    /// A law of the core's registry.
     #[staticmethod]
-    #[pyo3(signature = (*, attractive_gain, repulsive_gain, detour_gain))]
-    fn masoud(attractive_gain: f64, repulsive_gain: f64, detour_gain: f64) -> CoreResult<Self> {
-        Self::checked(Pairwise(Masoud {
-            attractive: attractive_gain,
-            repulsive: repulsive_gain,
-            detour: detour_gain,
-        }))
+    #[pyo3(signature = (name, **given))]
+    fn named(name: &str, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let law = law_named(name, &given).map_err(CoreError::from)?;
+        Self::made(&given, law)
     }
 
     #[staticmethod]
-    #[pyo3(signature = (*, attractive_gain, repulsive_gain, gain_ratio))]
-    fn ge_cui(attractive_gain: f64, repulsive_gain: f64, gain_ratio: f64) -> CoreResult<Self> {
-        Self::checked(Pairwise(GeCui {
-            attractive: attractive_gain,
-            repulsive: repulsive_gain,
-            ratio: gain_ratio,
-            // Every scenario brings the one of its robot.
-            max_acceleration: f64::NAN,
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, attractive_gain, repulsive_gain, gain_ratio, printed))]
-    fn khatib(
-        attractive_gain: f64,
-        repulsive_gain: f64,
-        gain_ratio: f64,
-        printed: bool,
-    ) -> CoreResult<Self> {
-        Self::checked(Pairwise(Khatib {
-            attractive: attractive_gain,
-            repulsive: repulsive_gain,
-            ratio: gain_ratio,
-            form: if printed {
-                KhatibForm::Printed
+    #[pyo3(signature = (**given))]
+    fn virtual_impedance(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (stiffness, damping): (f64, f64) = (given.take("stiffness")?, given.take("damping")?);
+        let impedance = Impedance {
+            form: if given.take("active")? {
+                Form::Active
             } else {
-                KhatibForm::Gradient
+                Form::Conventional
             },
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, attractive_gain, repulsive_gain, attracted_inside))]
-    fn borenstein_koren(
-        attractive_gain: f64,
-        repulsive_gain: f64,
-        attracted_inside: bool,
-    ) -> CoreResult<Self> {
-        Self::checked(Pairwise(BorensteinKoren {
-            attractive: attractive_gain,
-            repulsive: repulsive_gain,
-            attracted_inside,
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, margin, horizon, risk_weight, sector, selection))]
-    fn velocity_obstacle(
-        margin: f64,
-        horizon: f64,
-        risk_weight: f64,
-        sector: f64,
-        selection: &str,
-    ) -> CoreResult<Self> {
-        let risk = risk_weight;
-        let selection = match selection {
-            "fastest" => Selection::Fastest { sector },
-            "time_and_risk" => Selection::TimeAndRisk { risk },
-            "to_goal" => Selection::ToGoal,
-            other => {
-                let rule = "be one of \"fastest\", \"time_and_risk\", \"to_goal\"";
-                return Err(Failure::invalid("selection", rule, Given::Word(other.into())).into());
-            }
+            stiffness,
+            damping,
+            safe_distance: given.take("safe_distance")?,
+            speed_limit: given.take("speed_limit")?,
+            reference_stiffness: std::f64::consts::E * stiffness,
+            reference_damping: damping / std::f64::consts::E,
+            clamp: true,
         };
-        Self::checked(Planned(VelocityObstacle {
-            margin,
-            horizon,
-            selection,
-            ..VelocityObstacle::default()
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, horizon, margin, turn, reach, share))]
-    fn reciprocal(
-        horizon: f64,
-        margin: f64,
-        turn: f64,
-        reach: f64,
-        share: f64,
-    ) -> CoreResult<Self> {
-        Self::checked(Planned(ReciprocalAvoidance {
-            horizon,
-            share,
-            reach,
-            margin,
-            turn,
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, resolution, margin, horizon, room, look_ahead))]
-    fn field_d_star(
-        resolution: f64,
-        margin: f64,
-        horizon: f64,
-        room: f64,
-        look_ahead: f64,
-    ) -> CoreResult<Self> {
-        Self::checked(Planned(FieldDStar {
-            resolution,
-            margin,
-            horizon,
-            room,
-            look_ahead,
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, step, goal_probability, waypoint_probability, margin, horizon, room,
-        look_ahead, waypoints, draws, keeps_path, safety_draws))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn random_tree(
-        step: f64,
-        goal_probability: f64,
-        waypoint_probability: f64,
-        margin: f64,
-        horizon: f64,
-        room: f64,
-        look_ahead: f64,
-        waypoints: usize,
-        draws: usize,
-        keeps_path: bool,
-        safety_draws: usize,
-    ) -> CoreResult<Self> {
-        Self::checked(Planned(RapidlyExploringRandomTree {
-            step,
-            goal_probability,
-            waypoint_probability,
-            waypoints,
-            draws,
-            keeps_path,
-            margin,
-            horizon,
-            room,
-            look_ahead,
-            safety_draws,
-        }))
-    }
-
-    #[staticmethod]
-    #[pyo3(signature = (*, attraction_stiffness, attraction_damping, stiffness, damping,
-        safe_distance, speed_limit, reach, view, active))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn virtual_impedance(
-        attraction_stiffness: f64,
-        attraction_damping: f64,
-        stiffness: f64,
-        damping: f64,
-        safe_distance: f64,
-        speed_limit: f64,
-        reach: f64,
-        view: f64,
-        active: bool,
-    ) -> CoreResult<Self> {
-        let form = if active {
-            Form::Active
-        } else {
-            Form::Conventional
+        let attraction = Attraction {
+            stiffness: given.take("attraction_stiffness")?,
+            damping: given.take("attraction_damping")?,
+            standoff: 0.0,
         };
         let family = ImpedanceFamily {
-            impedance: Impedance {
-                form,
-                stiffness,
-                damping,
-                safe_distance,
-                speed_limit,
-                reference_stiffness: std::f64::consts::E * stiffness,
-                reference_damping: damping / std::f64::consts::E,
-                clamp: true,
-            },
-            attraction: Attraction {
-                stiffness: attraction_stiffness,
-                damping: attraction_damping,
-                standoff: 0.0,
-            },
-            reach,
-            view,
+            impedance,
+            attraction,
+            reach: given.take("reach")?,
+            view: given.take("view")?,
         };
-        Self::checked(AnyLaw::one_by_one(family))
+        Self::made(&given, AnyLaw::one_by_one(family))
     }
+}
+
+impl Arguments for Keywords<'_> {
+    fn number(&self, name: &str) -> Result<f64> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a number", &error))
+    }
+
+    fn flag(&self, name: &str) -> Result<bool> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a truth value", &error))
+    }
+
+    fn count(&self, name: &str) -> Result<usize> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a count", &error))
+    }
+
+    fn word(&self, name: &str) -> Result<String> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a word", &error))
+    }
+}
+
+fn refused(name: &str, rule: &'static str, error: &PyErr) -> Failure {
+    Failure::invalid(name, rule, Given::Found(error.to_string().into()))
 }

@@ -9,6 +9,7 @@ mod episode;
 mod errors;
 mod gains;
 mod impact;
+mod keywords;
 mod laws;
 mod parameters;
 mod python_law;
@@ -79,7 +80,9 @@ mod _hrsafety {
         recorded_metrics, signal_push,
     };
     #[pymodule_export]
-    use crate::impact::single::{impact_gradient_names, impact_gradients, impact_metrics};
+    use crate::impact::single::{
+        impact_criteria, impact_gradients, impact_metrics, impact_parameter_names,
+    };
     #[pymodule_export]
     use crate::laws::Law;
     #[pymodule_export]

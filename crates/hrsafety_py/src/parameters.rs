@@ -10,7 +10,8 @@ use vff_core::world::obstacle::{self, Limits};
 use vff_core::world::region::{self, Sensing};
 use vff_core::world::scenario::{self, Rules};
 
-use crate::errors::CoreResult;
+use crate::errors::CoreError;
+use crate::keywords::{Keywords, taken};
 
 /// Holonomic robot.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -19,35 +20,25 @@ pub struct HolonomicRobot(pub robots::HolonomicRobot);
 #[pymethods]
 impl HolonomicRobot {
     #[new]
-    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, wheel_radius, winding_resistance,
-        wheel_inertia, wheel_viscous_friction, wheel_static_friction))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        mass: f64,
-        radius: f64,
-        max_speed: f64,
-        max_acceleration: f64,
-        wheel_radius: f64,
-        winding_resistance: f64,
-        wheel_inertia: [f64; 3],
-        wheel_viscous_friction: [f64; 3],
-        wheel_static_friction: [f64; 3],
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let wheels = Wheels {
-            radius: wheel_radius,
-            resistance: winding_resistance,
-            inertia: wheel_inertia,
-            viscous_friction: wheel_viscous_friction,
-            static_friction: wheel_static_friction,
+            radius: given.take("wheel_radius")?,
+            resistance: given.take("winding_resistance")?,
+            inertia: given.take("wheel_inertia")?,
+            viscous_friction: given.take("wheel_viscous_friction")?,
+            static_friction: given.take("wheel_static_friction")?,
         };
         let robot = robots::HolonomicRobot {
-            mass,
-            radius,
-            max_speed,
-            max_acceleration,
+            mass: given.take("mass")?,
+            radius: given.take("radius")?,
+            max_speed: given.take("max_speed")?,
+            max_acceleration: given.take("max_acceleration")?,
             wheels,
         };
-        Ok(Self(robot.checked()?))
+        given.done()?;
+        Ok(Self(robot.checked().map_err(CoreError::from)?))
     }
 }
 
@@ -58,42 +49,28 @@ pub struct DifferentialDriveRobot(pub robots::DifferentialDriveRobot);
 #[pymethods]
 impl DifferentialDriveRobot {
     #[new]
-    #[pyo3(signature = (*, mass, radius, max_speed, max_acceleration, max_angular_acceleration,
-        reference_speed_share, wheel_radius, wheel_span, winding_resistance, wheel_inertia,
-        wheel_viscous_friction, wheel_static_friction))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        mass: f64,
-        radius: f64,
-        max_speed: f64,
-        max_acceleration: f64,
-        max_angular_acceleration: f64,
-        reference_speed_share: f64,
-        wheel_radius: f64,
-        wheel_span: f64,
-        winding_resistance: f64,
-        wheel_inertia: [f64; 2],
-        wheel_viscous_friction: [f64; 2],
-        wheel_static_friction: [f64; 2],
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let wheels = DifferentialWheels {
-            radius: wheel_radius,
-            span: wheel_span,
-            resistance: winding_resistance,
-            inertia: wheel_inertia,
-            viscous_friction: wheel_viscous_friction,
-            static_friction: wheel_static_friction,
+            radius: given.take("wheel_radius")?,
+            span: given.take("wheel_span")?,
+            resistance: given.take("winding_resistance")?,
+            inertia: given.take("wheel_inertia")?,
+            viscous_friction: given.take("wheel_viscous_friction")?,
+            static_friction: given.take("wheel_static_friction")?,
         };
         let robot = robots::DifferentialDriveRobot {
-            mass,
-            radius,
-            max_speed,
-            max_acceleration,
-            max_angular_acceleration,
-            reference_speed_share,
+            mass: given.take("mass")?,
+            radius: given.take("radius")?,
+            max_speed: given.take("max_speed")?,
+            max_acceleration: given.take("max_acceleration")?,
+            max_angular_acceleration: given.take("max_angular_acceleration")?,
+            reference_speed_share: given.take("reference_speed_share")?,
             wheels,
         };
-        Ok(Self(robot.checked()?))
+        given.done()?;
+        Ok(Self(robot.checked().map_err(CoreError::from)?))
     }
 }
 
@@ -101,87 +78,77 @@ impl DifferentialDriveRobot {
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Obstacle(obstacle::Obstacle);
 
+/// Radii and speed that every obstacle may have.
+fn limits_of(given: &Keywords<'_>) -> PyResult<Limits> {
+    Ok(taken!(
+        given,
+        Limits {
+            active_radius,
+            critical_radius,
+            max_speed
+        }
+    ))
+}
+
+impl Obstacle {
+    /// Disc that moves.
+    fn moved(
+        given: &Keywords<'_>,
+        motion: impl FnOnce() -> Result<Motion, Failure>,
+    ) -> PyResult<Self> {
+        let (radius, limits) = (given.take("radius")?, limits_of(given)?);
+        given.done()?;
+        let disc = motion().and_then(|motion| obstacle::Obstacle::disc(radius, motion, limits));
+        Ok(Self(disc.map_err(CoreError::from)?))
+    }
+}
+
 #[pymethods]
 impl Obstacle {
     /// Disc at rest.
     #[staticmethod]
-    #[pyo3(signature = (*, center, radius, active_radius, critical_radius, max_speed))]
-    fn disc(
-        center: [f64; 2],
-        radius: f64,
-        active_radius: Option<f64>,
-        critical_radius: Option<f64>,
-        max_speed: Option<f64>,
-    ) -> CoreResult<Self> {
-        let limits = Limits {
-            active_radius,
-            critical_radius,
-            max_speed,
-        };
-        Ok(Self(obstacle::Obstacle::disc_at_rest(
-            center, radius, limits,
-        )?))
+    #[pyo3(signature = (**given))]
+    fn disc(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (center, radius) = (given.take("center")?, given.take("radius")?);
+        let limits = limits_of(&given)?;
+        given.done()?;
+        let disc = obstacle::Obstacle::disc_at_rest(center, radius, limits);
+        Ok(Self(disc.map_err(CoreError::from)?))
     }
 
     /// Rectangle at rest.
     #[staticmethod]
-    #[pyo3(signature = (*, center, length, width, heading, active_radius, critical_radius, max_speed))]
-    fn rectangle(
-        center: [f64; 2],
-        length: f64,
-        width: f64,
-        heading: f64,
-        active_radius: Option<f64>,
-        critical_radius: Option<f64>,
-        max_speed: Option<f64>,
-    ) -> CoreResult<Self> {
-        let limits = Limits {
-            active_radius,
-            critical_radius,
-            max_speed,
-        };
-        Ok(Self(obstacle::Obstacle::rectangle(
-            center,
-            [length, width],
-            heading,
-            limits,
-        )?))
+    #[pyo3(signature = (**given))]
+    fn rectangle(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let size = [given.take("length")?, given.take("width")?];
+        let (center, heading) = (given.take("center")?, given.take("heading")?);
+        let limits = limits_of(&given)?;
+        given.done()?;
+        let rectangle = obstacle::Obstacle::rectangle(center, size, heading, limits);
+        Ok(Self(rectangle.map_err(CoreError::from)?))
     }
 
     /// Disc with constant acceleration or a sudden stop.
     #[staticmethod]
-    #[pyo3(signature = (*, start, velocity, acceleration, stop, radius, active_radius, critical_radius, max_speed))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn moving(
-        start: [f64; 2],
-        velocity: [f64; 2],
-        acceleration: [f64; 2],
-        stop: Option<[f64; 2]>,
-        radius: f64,
-        active_radius: Option<f64>,
-        critical_radius: Option<f64>,
-        max_speed: Option<f64>,
-    ) -> CoreResult<Self> {
-        let motion = Motion::moving(start, velocity, acceleration, stop)?;
-        let limits = Limits {
-            active_radius,
-            critical_radius,
-            max_speed,
-        };
-        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+    #[pyo3(signature = (**given))]
+    fn moving(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (start, velocity) = (given.take("start")?, given.take("velocity")?);
+        let (acceleration, stop) = (given.take("acceleration")?, given.take("stop")?);
+        Self::moved(&given, || {
+            Motion::moving(start, velocity, acceleration, stop)
+        })
     }
 
     /// Disc with piecewise constant acceleration.
     #[staticmethod]
-    #[pyo3(signature = (*, start, segments, radius, active_radius, critical_radius, max_speed))]
-    fn piecewise(
-        start: [f64; 2],
-        segments: Vec<(f64, [f64; 2], [f64; 2])>,
-        radius: f64,
-        active_radius: Option<f64>,
-        critical_radius: Option<f64>,
-        max_speed: Option<f64>,
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn piecewise(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let start = given.take("start")?;
+        let segments: Vec<(f64, [f64; 2], [f64; 2])> = given.take("segments")?;
         let segments: Vec<Segment> = segments
             .into_iter()
             .map(|(duration, velocity, acceleration)| Segment {
@@ -190,34 +157,17 @@ impl Obstacle {
                 acceleration,
             })
             .collect();
-        let limits = Limits {
-            active_radius,
-            critical_radius,
-            max_speed,
-        };
-        let motion = Motion::piecewise(start, &segments)?;
-        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+        Self::moved(&given, || Motion::piecewise(start, &segments))
     }
 
     /// Disc that follows a recording.
     #[staticmethod]
-    #[pyo3(signature = (*, time, position, radius, active_radius, critical_radius, max_speed))]
-    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
-    fn recorded(
-        time: Vec<f64>,
-        position: Vec<[f64; 2]>,
-        radius: f64,
-        active_radius: Option<f64>,
-        critical_radius: Option<f64>,
-        max_speed: Option<f64>,
-    ) -> CoreResult<Self> {
-        let limits = Limits {
-            active_radius,
-            critical_radius,
-            max_speed,
-        };
-        let motion = Motion::recorded(&time, &position)?;
-        Ok(Self(obstacle::Obstacle::disc(radius, motion, limits)?))
+    #[pyo3(signature = (**given))]
+    fn recorded(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let time: Vec<f64> = given.take("time")?;
+        let position: Vec<[f64; 2]> = given.take("position")?;
+        Self::moved(&given, || Motion::recorded(&time, &position))
     }
 }
 
@@ -249,7 +199,7 @@ impl Measurement {
         let noisy = word("of", of, "be \"obstacles\", \"robot\" or \"both\"", &bodies)?;
         let built = measurement::Measurement::new(scale, distribution, noisy)
             .and_then(|measurement| measurement.late(latency));
-        Ok(Self(built.map_err(crate::errors::CoreError::from)?))
+        Ok(Self(built.map_err(CoreError::from)?))
     }
 }
 
@@ -268,7 +218,7 @@ pub fn word<T: Copy>(
         Err(_) => Given::Found(given.repr()?.to_string().into()),
     };
     let error = Failure::invalid(name, requirement, shown);
-    Err(crate::errors::CoreError::from(error).into())
+    Err(CoreError::from(error).into())
 }
 
 /// Scenario.
@@ -278,44 +228,39 @@ pub struct Scenario(pub scenario::Scenario);
 #[pymethods]
 impl Scenario {
     #[new]
-    #[pyo3(signature = (*, robot, start, goal, obstacles, control_period, time_limit,
-        arrival_tolerance, heading, rest_time, measurement, seed))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    #[allow(clippy::needless_pass_by_value)] // references to Python objects
-    fn new(
-        robot: &Bound<'_, PyAny>,
-        start: [f64; 2],
-        goal: [f64; 2],
-        obstacles: Vec<PyRef<'_, Obstacle>>,
-        control_period: f64,
-        time_limit: f64,
-        arrival_tolerance: f64,
-        heading: f64,
-        rest_time: f64,
-        measurement: Option<PyRef<'_, Measurement>>,
-        seed: u64,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let robot: Bound<'_, PyAny> = given.take("robot")?;
+        let (start, goal) = (given.take("start")?, given.take("goal")?);
+        let obstacles: Vec<PyRef<'_, Obstacle>> = given.take("obstacles")?;
         let obstacles = obstacles
             .iter()
             .map(|obstacle| obstacle.0.clone())
             .collect();
-        let rules = Rules {
-            control_period,
-            time_limit,
-            arrival_tolerance,
-            rest_time,
-            heading,
-        };
+        let rules = taken!(
+            given,
+            Rules {
+                control_period,
+                time_limit,
+                arrival_tolerance,
+                rest_time,
+                heading,
+            }
+        );
+        let measurement: Option<PyRef<'_, Measurement>> = given.take("measurement")?;
+        let seed = given.take("seed")?;
+        given.done()?;
         let scenario = if let Ok(robot) = robot.cast::<HolonomicRobot>() {
             scenario::Scenario::new(robot.get().0, start, goal, obstacles, rules)
         } else {
             let robot = robot.cast::<DifferentialDriveRobot>()?.get().0;
             scenario::Scenario::for_differential(robot, start, goal, obstacles, rules)
         };
-        let scenario = scenario.map_err(crate::errors::CoreError::from)?;
+        let scenario = scenario.map_err(CoreError::from)?;
         let measurement = measurement.map(|measurement| measurement.0);
         let measured = scenario.measured(measurement, seed);
-        Ok(Self(measured.map_err(crate::errors::CoreError::from)?))
+        Ok(Self(measured.map_err(CoreError::from)?))
     }
 
     /// Mass, radius, largest speed and acceleration of the point mass that a law drives.
@@ -347,6 +292,6 @@ pub fn region_radii(
         position_error,
     };
     let regions = region::radii(&limits, &obstacle.0, control_period, faced_side, &sensing)
-        .map_err(crate::errors::CoreError::from)?;
+        .map_err(CoreError::from)?;
     Ok((regions.critical_radius, regions.active_radius))
 }

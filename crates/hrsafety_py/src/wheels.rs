@@ -11,6 +11,7 @@ use vff_core::robots::wheels::{
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, parameter_class, taken};
 use crate::watch::{Report, watched};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
@@ -51,52 +52,47 @@ fn feedback_word(feedback: Feedback) -> (&'static str, [f64; 2]) {
 #[pymethods]
 impl WheelDrive {
     #[new]
-    #[pyo3(signature = (*, inertia, viscous_friction, static_friction, model, proportional_gain,
-        derivative_gain, feedback, observer_poles, encoder_counts, gear_ratio, amplifier_gain,
-        winding_resistance, back_emf, current_limit, supply_voltage, period))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        inertia: f64,
-        viscous_friction: f64,
-        static_friction: f64,
-        model: [f64; 3],
-        proportional_gain: f64,
-        derivative_gain: f64,
-        feedback: &str,
-        observer_poles: [f64; 2],
-        encoder_counts: Option<f64>,
-        gear_ratio: f64,
-        amplifier_gain: f64,
-        winding_resistance: f64,
-        back_emf: f64,
-        current_limit: f64,
-        supply_voltage: f64,
-        period: f64,
-    ) -> CoreResult<Self> {
-        let dynamics = |[inertia, viscous_friction, static_friction]: [f64; 3]| WheelDynamics {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let [inertia, viscous_friction, static_friction] = given.take("model")?;
+        let model = WheelDynamics {
             inertia,
             viscous_friction,
             static_friction,
         };
-        let drive = wheels::WheelDrive {
-            dynamics: dynamics([inertia, viscous_friction, static_friction]),
-            motor: Motor {
-                amplifier_gain,
-                resistance: winding_resistance,
-                back_emf,
-                current_limit,
-                supply_voltage,
-            },
-            encoder: encoder_counts.map(|counts| Encoder { counts, gear_ratio }),
-            controller: WheelController {
-                proportional: proportional_gain,
-                derivative: derivative_gain,
-                model: dynamics(model),
-                feedback: feedback_of(feedback, observer_poles)?,
-            },
-            period,
+        let encoder = |counts: Option<f64>| {
+            let gear_ratio = given.take("gear_ratio")?;
+            PyResult::Ok(counts.map(|counts| Encoder { counts, gear_ratio }))
         };
-        Ok(Self(drive.checked()?))
+        let feedback: String = given.take("feedback")?;
+        let drive = wheels::WheelDrive {
+            dynamics: taken!(
+                given,
+                WheelDynamics {
+                    inertia,
+                    viscous_friction,
+                    static_friction
+                }
+            ),
+            motor: Motor {
+                amplifier_gain: given.take("amplifier_gain")?,
+                resistance: given.take("winding_resistance")?,
+                back_emf: given.take("back_emf")?,
+                current_limit: given.take("current_limit")?,
+                supply_voltage: given.take("supply_voltage")?,
+            },
+            encoder: encoder(given.take("encoder_counts")?)?,
+            controller: WheelController {
+                proportional: given.take("proportional_gain")?,
+                derivative: given.take("derivative_gain")?,
+                model,
+                feedback: feedback_of(&feedback, given.take("observer_poles")?)?,
+            },
+            period: given.take("period")?,
+        };
+        given.done()?;
+        Ok(Self(drive.checked().map_err(CoreError::from)?))
     }
 
     /// What the encoder reads of an open-loop test.
@@ -226,21 +222,9 @@ fn each_row<'py, const N: usize, const M: usize>(
         .reshape([count, M])
 }
 
-/// Three omni-wheels.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct OmniKinematics(pub wheels::OmniKinematics);
-
-#[pymethods]
-impl OmniKinematics {
-    #[new]
-    #[pyo3(signature = (*, wheel_radius, center_distance))]
-    fn new(wheel_radius: f64, center_distance: f64) -> CoreResult<Self> {
-        let robot = wheels::OmniKinematics {
-            wheel_radius,
-            center_distance,
-        };
-        Ok(Self(robot.checked()?))
-    }
+parameter_class! {
+    /// Three omni-wheels.
+    OmniKinematics(wheels::OmniKinematics) { wheel_radius, center_distance }
 
     /// Wheel speeds from velocities and turn rates in the world.
     #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
@@ -269,18 +253,9 @@ impl OmniKinematics {
     }
 }
 
-/// Two driven wheels on one axis.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct DifferentialKinematics(pub wheels::DifferentialKinematics);
-
-#[pymethods]
-impl DifferentialKinematics {
-    #[new]
-    #[pyo3(signature = (*, wheel_radius, span))]
-    fn new(wheel_radius: f64, span: f64) -> CoreResult<Self> {
-        let robot = wheels::DifferentialKinematics { wheel_radius, span };
-        Ok(Self(robot.checked()?))
-    }
+parameter_class! {
+    /// Two driven wheels on one axis.
+    DifferentialKinematics(wheels::DifferentialKinematics) { wheel_radius, span }
 
     /// Wheel speeds from speeds and turn rates.
     #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
@@ -318,17 +293,9 @@ impl DifferentialKinematics {
     }
 }
 
-/// Slip of a wheel.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Slip(pub wheels::Slip);
-
-#[pymethods]
-impl Slip {
-    #[new]
-    #[pyo3(signature = (*, creep, grip))]
-    fn new(creep: f64, grip: f64) -> CoreResult<Self> {
-        Ok(Self(wheels::Slip { creep, grip }.checked()?))
-    }
+parameter_class! {
+    /// Slip of a wheel.
+    Slip(wheels::Slip) { creep, grip }
 
     /// Ground speed after every period.
     #[pyo3(signature = (rim_speed, *, start, period))]

@@ -19,6 +19,7 @@ use vff_core::world::scenario;
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::gains::scorer::Scorer;
+use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{run_options, weights_of};
@@ -47,29 +48,26 @@ pub struct GainProblem {
 #[pymethods]
 impl GainProblem {
     #[new]
-    #[pyo3(signature = (*, scenarios, law, weights, integrator, step, hold, seeds, lower_bound_factor,
-        objectives, constraints, require_arrival, cap_ratios, scorer, scorer_constraints, lanes))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
-    fn new(
-        scenarios: Vec<PyRef<'_, Scenario>>,
-        law: &Law,
-        weights: (f64, f64, f64),
-        integrator: &Bound<'_, PyAny>,
-        step: f64,
-        hold: bool,
-        seeds: Vec<u64>,
-        lower_bound_factor: Option<f64>,
-        objectives: Vec<Option<String>>,
-        constraints: Vec<Bounded>,
-        require_arrival: bool,
-        cap_ratios: bool,
-        scorer: Option<Py<PyAny>>,
-        scorer_constraints: usize,
-        lanes: Option<usize>,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let scenarios: Vec<PyRef<'_, Scenario>> = given.take("scenarios")?;
+        let law: PyRef<'_, Law> = given.take("law")?;
+        let weights = weights_of(given.take("weights")?);
+        let integrator: Bound<'_, PyAny> = given.take("integrator")?;
+        let (step, hold) = (given.take("step")?, given.take("hold")?);
         // A contact decides the value of a run, so nothing after it matters.
-        let run = run_options(integrator, step, hold, true)?;
+        let run = run_options(&integrator, step, hold, true)?;
+        let seeds: Vec<u64> = given.take("seeds")?;
+        let factor: Option<f64> = given.take("lower_bound_factor")?;
+        let objectives: Vec<Option<String>> = given.take("objectives")?;
+        let constraints: Vec<Bounded> = given.take("constraints")?;
+        let (require_arrival, cap_ratios) =
+            (given.take("require_arrival")?, given.take("cap_ratios")?);
+        let scorer: Option<Py<PyAny>> = given.take("scorer")?;
+        let scorer_constraints = given.take("scorer_constraints")?;
+        let lanes: Option<usize> = given.take("lanes")?;
+        given.done()?;
         let scenarios: Vec<scenario::Scenario> =
             scenarios.iter().map(|scene| scene.0.clone()).collect();
         let width = lanes.map(Width::of).transpose().map_err(CoreError::from)?;
@@ -79,7 +77,7 @@ impl GainProblem {
             call,
             scenarios: seeded(&scenarios, &seeds),
             law: law.any.clone(),
-            options: batch_options(run, weights_of(weights), width),
+            options: batch_options(run, weights, width),
             requires_arrival: require_arrival && alone,
             raised: Mutex::new(None),
         });
@@ -93,14 +91,14 @@ impl GainProblem {
             }
             let options = GainOptions {
                 run,
-                weights: weights_of(weights),
+                weights,
                 objectives: objectives_of(&metrics)?,
                 constraints: constraints_of(&constraints)?,
                 require_arrival,
                 cap_ratios,
                 time_limit: None,
                 seeds,
-                robustness: lower_bound_factor
+                robustness: factor
                     .map_or(Robustness::Mean, |factor| Robustness::LowerBound { factor }),
                 width,
                 instructions: Instructions::Widest,

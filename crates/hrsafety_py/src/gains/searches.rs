@@ -1,8 +1,7 @@
 //! Searches over a gain problem.
 
-use numeric::error::Result;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use vff_core::search::{
     Bounds, FrontOptions, GlobalMethod, GlobalOptions, GridOptions, LocalOptions, Problem,
     SearchOptions, SearchState, front_search, global_search, hypervolume, search,
@@ -12,51 +11,50 @@ use crate::errors::CoreError;
 use crate::gains::problem::GainProblem;
 use crate::gains::results::{front_fields, global_fields, search_fields};
 use crate::gains::watch::{Followers, follow};
+use crate::keywords::{Keywords, taken};
 use crate::parameters::word;
 
 /// The state that a search is resumed from.
-fn state_of(state: Option<&[u8]>) -> Result<Option<SearchState>> {
-    state.map(SearchState::from_bytes).transpose()
+fn state_of(given: &Keywords<'_>) -> PyResult<Option<SearchState>> {
+    let state: Option<Bound<'_, PyBytes>> = given.take("state")?;
+    let state = state.map(|state| SearchState::from_bytes(state.as_bytes()));
+    Ok(state.transpose().map_err(CoreError::from)?)
 }
 
 /// Coarse-to-fine grids, then local searches from their best points.
 #[pyfunction]
-#[pyo3(signature = (problem, lower, upper, *, shape, refinements, survivors, keep, local_starts,
-    threads, state, save, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (problem, lower, upper, **given))]
 #[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn search_gains<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    shape: Vec<usize>,
-    refinements: usize,
-    survivors: usize,
-    keep: usize,
-    local_starts: usize,
-    threads: Option<usize>,
-    state: Option<&[u8]>,
-    save: Option<Py<PyAny>>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
+    let local_starts = given.take("local_starts")?;
     let local = LocalOptions {
         starts: local_starts,
         ..LocalOptions::default()
     };
     let options = SearchOptions {
-        grid: GridOptions {
-            shape,
-            refinements,
-            survivors,
-            keep,
-        },
+        grid: taken!(
+            given,
+            GridOptions {
+                shape,
+                refinements,
+                survivors,
+                keep
+            }
+        ),
         local: (local_starts > 0).then_some(local),
-        threads,
+        threads: given.take("threads")?,
     };
-    let resume = state_of(state).map_err(CoreError::from)?;
-    let followers = Followers { progress, save };
+    let resume = state_of(&given)?;
+    let followers = taken!(given, Followers { progress, save });
+    given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {
         follow(problem, &followers, |observer| {
@@ -68,24 +66,16 @@ pub fn search_gains<'py>(
 
 /// Global search with a budget.
 #[pyfunction]
-#[pyo3(signature = (problem, lower, upper, *, method, evaluations, islands, seed,
-    threads, state, save, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (problem, lower, upper, **given))]
 #[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn search_gains_globally<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    method: &Bound<'py, PyAny>,
-    evaluations: u64,
-    islands: usize,
-    seed: u64,
-    threads: Option<usize>,
-    state: Option<&[u8]>,
-    save: Option<Py<PyAny>>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
     let methods = [
         (
@@ -95,15 +85,17 @@ pub fn search_gains_globally<'py>(
         ("cma_es", GlobalMethod::CmaEs),
     ];
     let rule = "be \"differential_evolution\" or \"cma_es\"";
+    let method: Bound<'py, PyAny> = given.take("method")?;
     let options = GlobalOptions {
-        method: word("method", method, rule, &methods)?,
-        evaluations,
-        islands,
-        seed,
-        threads,
+        method: word("method", &method, rule, &methods)?,
+        evaluations: given.take("evaluations")?,
+        islands: given.take("islands")?,
+        seed: given.take("seed")?,
+        threads: given.take("threads")?,
     };
-    let resume = state_of(state).map_err(CoreError::from)?;
-    let followers = Followers { progress, save };
+    let resume = state_of(&given)?;
+    let followers = taken!(given, Followers { progress, save });
+    given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {
         follow(problem, &followers, |observer| {
@@ -115,29 +107,28 @@ pub fn search_gains_globally<'py>(
 
 /// Gain sets that no other one beats in every objective.
 #[pyfunction]
-#[pyo3(signature = (problem, lower, upper, *, shape, refinements, threads, state, save, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (problem, lower, upper, **given))]
 #[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn gain_front<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    shape: Vec<usize>,
-    refinements: usize,
-    threads: Option<usize>,
-    state: Option<&[u8]>,
-    save: Option<Py<PyAny>>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
-    let options = FrontOptions {
-        shape,
-        refinements,
-        threads,
-    };
-    let resume = state_of(state).map_err(CoreError::from)?;
-    let followers = Followers { progress, save };
+    let options = taken!(
+        given,
+        FrontOptions {
+            shape,
+            refinements,
+            threads
+        }
+    );
+    let resume = state_of(&given)?;
+    let followers = taken!(given, Followers { progress, save });
+    given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {
         follow(problem, &followers, |observer| {

@@ -4,30 +4,12 @@ use impact_core::identify::{self, DesiredMotion};
 use pyo3::prelude::*;
 
 use crate::errors::CoreResult;
+use crate::keywords::parameter_class;
 
-/// Controller of the pneumatic cylinder.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct CylinderController(identify::CylinderController);
-
-#[pymethods]
-impl CylinderController {
-    #[new]
-    #[pyo3(signature = (*, acceleration_gain, velocity_gain, proportional, derivative, sample_time))]
-    fn new(
-        acceleration_gain: f64,
-        velocity_gain: f64,
-        proportional: f64,
-        derivative: f64,
-        sample_time: f64,
-    ) -> CoreResult<Self> {
-        let controller = identify::CylinderController {
-            acceleration_gain,
-            velocity_gain,
-            proportional,
-            derivative,
-            sample_time,
-        };
-        Ok(Self(controller.checked()?))
+parameter_class! {
+    /// Controller of the pneumatic cylinder.
+    CylinderController(identify::CylinderController) {
+        acceleration_gain, velocity_gain, proportional, derivative, sample_time,
     }
 
     /// Command of the valve.

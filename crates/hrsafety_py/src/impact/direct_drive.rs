@@ -5,43 +5,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
-use crate::errors::CoreResult;
 use crate::impact::parameters::{Foam, Head};
+use crate::keywords::{Keywords, parameter_class, taken};
 use crate::watch::{Report, watched};
 
-/// Direct-drive joint with its controller.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct DirectDrive(direct_drive::DirectDrive);
-
-#[pymethods]
-impl DirectDrive {
-    #[new]
-    #[pyo3(signature = (*, inertia, lever_arm, torque_constant, amplifier_gain, viscous_friction,
-        static_friction, voltage_limit, proportional, derivative))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        inertia: f64,
-        lever_arm: f64,
-        torque_constant: f64,
-        amplifier_gain: f64,
-        viscous_friction: f64,
-        static_friction: f64,
-        voltage_limit: f64,
-        proportional: f64,
-        derivative: f64,
-    ) -> CoreResult<Self> {
-        let drive = direct_drive::DirectDrive {
-            inertia,
-            lever_arm,
-            torque_constant,
-            amplifier_gain,
-            viscous_friction,
-            static_friction,
-            voltage_limit,
-            proportional,
-            derivative,
-        };
-        Ok(Self(drive.checked()?))
+parameter_class! {
+    /// Direct-drive joint with its controller.
+    DirectDrive(direct_drive::DirectDrive) {
+        inertia, lever_arm, torque_constant, amplifier_gain, viscous_friction, static_friction,
+        voltage_limit, proportional, derivative,
     }
 
     /// Mass, damping and stiffness without friction and limit.
@@ -53,24 +25,25 @@ impl DirectDrive {
 
 /// Histories of a direct-drive joint in an impact.
 #[pyfunction]
-#[pyo3(signature = (drive, foam, head, *, closing_speed, manipulator_speed, duration, step))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (drive, foam, head, **given))]
 pub fn simulate_direct_drive<'py>(
     py: Python<'py>,
     drive: &DirectDrive,
     foam: &Foam,
     head: &Head,
-    closing_speed: f64,
-    manipulator_speed: f64,
-    duration: f64,
-    step: f64,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let impact = DriveImpact {
-        closing_speed,
-        manipulator_speed,
-        duration,
-        step,
-    };
+    let given = given.unwrap_or_default();
+    let impact = taken!(
+        given,
+        DriveImpact {
+            closing_speed,
+            manipulator_speed,
+            duration,
+            step
+        }
+    );
+    given.done()?;
     let (drive, foam, head) = (&drive.0, &foam.0, &head.0);
     let run = watched(py, Report::none(), |control| {
         let interrupted = || control.interrupted();

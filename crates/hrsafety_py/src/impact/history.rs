@@ -1,7 +1,8 @@
 //! Histories of one impact.
 
-use impact_core::criteria::{self, MetricOptions, Metrics, Status};
+use impact_core::criteria;
 use impact_core::drive::{self, DriveSegment, Stop};
+use impact_core::metrics::{Loads, MetricOptions, Metrics, Status};
 use impact_core::parameters::{GRAVITY, System, Target};
 use impact_core::response::{
     Approach, Contact, Equations, Method, Response, ResponsePeaks, SimulationOptions, simulate,
@@ -14,6 +15,7 @@ use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::impact::parameters::{self, Foam, Manipulator, system};
 use crate::impact::single::row_tuple;
+use crate::keywords::{Keywords, taken};
 use crate::watch::{Report, watched};
 
 /// Samples of a response that takes less than a look at signals.
@@ -69,50 +71,45 @@ pub fn stopping_segments(
 
 /// Columns of the response, and the row of its metrics.
 #[pyfunction]
-#[pyo3(signature = (manipulator, foam, head, *, closing_speed, manipulator_speed, duration, step,
-    runge_kutta, unilateral, as_printed, set_point))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
-#[allow(clippy::fn_params_excessive_bools)] // keyword-only in Python
+#[pyo3(signature = (manipulator, foam, head, **given))]
 #[allow(clippy::needless_pass_by_value)] // extracted from a Python object
 pub fn impact_simulate<'py>(
     py: Python<'py>,
     manipulator: &Manipulator,
     foam: &Foam,
     head: parameters::Target,
-    closing_speed: f64,
-    manipulator_speed: Option<f64>,
-    duration: f64,
-    step: f64,
-    runge_kutta: bool,
-    unilateral: bool,
-    as_printed: bool,
-    set_point: &SetPoint,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyTuple>)> {
+    let given = given.unwrap_or_default();
     let system = system(manipulator, foam, &head);
-    let approach = Approach {
-        closing_speed,
-        manipulator_speed,
-    };
+    let approach = taken!(
+        given,
+        Approach {
+            closing_speed,
+            manipulator_speed
+        }
+    );
     let options = SimulationOptions {
-        duration,
-        step,
-        method: if runge_kutta {
+        duration: given.take("duration")?,
+        step: given.take("step")?,
+        method: if given.take("runge_kutta")? {
             Method::RungeKutta
         } else {
             Method::Exact
         },
-        contact: if unilateral {
+        contact: if given.take("unilateral")? {
             Contact::Unilateral
         } else {
             Contact::Linear
         },
-        set_point: set_point.0.clone(),
-        equations: if as_printed {
+        set_point: given.take::<PyRef<'_, SetPoint>>("set_point")?.0.clone(),
+        equations: if given.take("as_printed")? {
             Equations::AsPrinted
         } else {
             Equations::Corrected
         },
     };
+    given.done()?;
     let run = run(py, &system, &approach, &options)?;
     let row = metrics(&system, &approach, &options, run.peaks)?;
     let fields = Fields::new(py);
@@ -179,13 +176,13 @@ fn metrics(
         Some(found) => Status::released(found.compression, &system.foam),
         None => Status::Released,
     };
-    let row = Metrics::none(status);
-    Ok(peaks.map_or(row, |found| Metrics {
+    let loads = peaks.map_or(Loads::none(), |found| Loads {
         peak_head_acceleration: found.head_acceleration,
         peak_head_acceleration_g: found.head_acceleration / GRAVITY,
         peak_contact_force: found.contact_force,
         max_compression: found.compression,
         impact_duration: found.impact_duration,
-        ..row
-    }))
+        ..Loads::none()
+    });
+    Ok(Metrics { loads, status })
 }

@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
+use crate::keywords::{Keywords, taken};
 use crate::watch::{Report, watched};
 
 /// Samples, and radians of a foam's oscillation, that take less than a look at signals.
@@ -30,30 +31,25 @@ fn rows<const N: usize, const M: usize>(matrix: &[[f64; M]; N]) -> Vec<f64> {
 
 /// Stiffness, damping ratio and friction from static and drop tests.
 #[pyfunction]
-#[pyo3(signature = (static_force, static_compression, drops, *, moving_mass, gravity, confidence,
-    attached, bootstrap, seed))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (static_force, static_compression, drops, **given))]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn identify_foam<'py>(
     py: Python<'py>,
     static_force: Samples<'py>,
     static_compression: Samples<'py>,
     drops: Vec<(Samples<'py>, Samples<'py>)>,
-    moving_mass: f64,
-    gravity: f64,
-    confidence: f64,
-    attached: bool,
-    bootstrap: usize,
-    seed: u64,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let settings = FoamFitSettings {
-        moving_mass,
-        gravity,
-        confidence,
-        contact: contact(attached),
-        bootstrap,
-        seed,
+        moving_mass: given.take("moving_mass")?,
+        gravity: given.take("gravity")?,
+        confidence: given.take("confidence")?,
+        contact: contact(given.take("attached")?),
+        bootstrap: given.take("bootstrap")?,
+        seed: given.take("seed")?,
     };
+    given.done()?;
     let mut signals = Vec::with_capacity(drops.len());
     for (time, position) in &drops {
         signals.push(Drop {
@@ -108,41 +104,37 @@ pub fn fit_static<'py>(
 
 /// Height of a mass that is dropped on foam.
 #[pyfunction]
-#[pyo3(signature = (time, *, height, mass, stiffness, damping_ratio, friction, gravity, attached))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (time, **given))]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn drop_trajectory<'py>(
     py: Python<'py>,
     time: Samples<'py>,
-    height: f64,
-    mass: f64,
-    stiffness: f64,
-    damping_ratio: f64,
-    friction: f64,
-    gravity: f64,
-    attached: bool,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let given = given.unwrap_or_default();
     let model = DropModel {
-        mass,
-        stiffness,
-        damping_ratio,
-        friction,
-        height,
-        gravity,
-        contact: contact(attached),
+        mass: given.take("mass")?,
+        stiffness: given.take("stiffness")?,
+        damping_ratio: given.take("damping_ratio")?,
+        friction: given.take("friction")?,
+        height: given.take("height")?,
+        gravity: given.take("gravity")?,
+        contact: contact(given.take("attached")?),
     };
+    given.done()?;
     let time = time.as_slice()?;
     let end = time
         .last()
         .zip(time.first())
         .map_or(0.0, |(last, first)| last - first);
-    let heights = if time.len() < SHORT && end * (stiffness / mass).sqrt() < SHORT as f64 {
-        identify::drop_trajectory(time, &model).map_err(CoreError::from)?
-    } else {
-        watched(py, Report::none(), |control| {
-            identify::drop_trajectory_until(time, &model, &|| control.interrupted())
-        })?
-    };
+    let heights =
+        if time.len() < SHORT && end * (model.stiffness / model.mass).sqrt() < SHORT as f64 {
+            identify::drop_trajectory(time, &model).map_err(CoreError::from)?
+        } else {
+            watched(py, Report::none(), |control| {
+                identify::drop_trajectory_until(time, &model, &|| control.interrupted())
+            })?
+        };
     Ok(heights.into_pyarray(py).into_any())
 }
 
@@ -201,43 +193,40 @@ pub fn identify_direct_drive<'py>(
 
 /// Proportional and derivative gain for a wanted stiffness and damping.
 #[pyfunction]
-#[pyo3(signature = (*, stiffness, damping, lever_arm, torque_constant, viscous_friction,
-    amplifier_gain))]
-pub fn pd_gains(
-    stiffness: f64,
-    damping: f64,
-    lever_arm: f64,
-    torque_constant: f64,
-    viscous_friction: f64,
-    amplifier_gain: f64,
-) -> PyResult<(f64, f64)> {
-    let constants = DriveConstants {
-        lever_arm,
-        torque_constant,
-        viscous_friction,
-        amplifier_gain,
-    };
+#[pyo3(signature = (**given))]
+pub fn pd_gains(given: Option<Keywords<'_>>) -> PyResult<(f64, f64)> {
+    let given = given.unwrap_or_default();
+    let [stiffness, damping] = [given.take("stiffness")?, given.take("damping")?];
+    let constants = taken!(
+        given,
+        DriveConstants {
+            lever_arm,
+            torque_constant,
+            viscous_friction,
+            amplifier_gain,
+        }
+    );
+    given.done()?;
     let gains = identify::pd_gains(stiffness, damping, &constants).map_err(CoreError::from)?;
     Ok((gains.proportional, gains.derivative))
 }
 
 /// Mass and inertia of a rectangular tube.
 #[pyfunction]
-#[pyo3(signature = (*, density, length, width, height, wall))]
-pub fn tube_inertia(
-    density: f64,
-    length: f64,
-    width: f64,
-    height: f64,
-    wall: f64,
-) -> PyResult<(f64, f64)> {
-    let tube = Tube {
-        density,
-        length,
-        width,
-        height,
-        wall,
-    };
+#[pyo3(signature = (**given))]
+pub fn tube_inertia(given: Option<Keywords<'_>>) -> PyResult<(f64, f64)> {
+    let given = given.unwrap_or_default();
+    let tube = taken!(
+        given,
+        Tube {
+            density,
+            length,
+            width,
+            height,
+            wall
+        }
+    );
+    given.done()?;
     let found = identify::tube_inertia(&tube).map_err(CoreError::from)?;
     Ok((found.mass, found.inertia))
 }

@@ -7,31 +7,12 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, parameter_class, taken};
 
-/// Elastic joint under control.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Joint(joint::Joint);
-
-#[pymethods]
-impl Joint {
-    #[new]
-    #[pyo3(signature = (*, inertia, mechanical_stiffness, mechanical_damping, control_stiffness,
-        control_damping))]
-    fn new(
-        inertia: f64,
-        mechanical_stiffness: f64,
-        mechanical_damping: f64,
-        control_stiffness: f64,
-        control_damping: f64,
-    ) -> CoreResult<Self> {
-        let joint = joint::Joint {
-            inertia,
-            mechanical_stiffness,
-            mechanical_damping,
-            control_stiffness,
-            control_damping,
-        };
-        Ok(Self(joint.checked()?))
+parameter_class! {
+    /// Elastic joint under control.
+    Joint(joint::Joint) {
+        inertia, mechanical_stiffness, mechanical_damping, control_stiffness, control_damping,
     }
 
     /// Reduced stiffness.
@@ -68,42 +49,40 @@ fn triple(manipulator: Manipulator) -> (f64, f64, f64) {
 
 /// Effective mass, damping and stiffness of one joint.
 #[pyfunction]
-#[pyo3(signature = (*, inertia, damping, stiffness, lever_arm))]
-pub fn effective_one_joint(
-    inertia: f64,
-    damping: f64,
-    stiffness: f64,
-    lever_arm: f64,
-) -> CoreResult<(f64, f64, f64)> {
-    let joint = OneJoint {
-        inertia,
-        damping,
-        stiffness,
-        lever_arm,
-    };
-    Ok(triple(joint.manipulator()?))
+#[pyo3(signature = (**given))]
+pub fn effective_one_joint(given: Option<Keywords<'_>>) -> PyResult<(f64, f64, f64)> {
+    let given = given.unwrap_or_default();
+    let joint = taken!(
+        given,
+        OneJoint {
+            inertia,
+            damping,
+            stiffness,
+            lever_arm
+        }
+    );
+    given.done()?;
+    Ok(triple(joint.manipulator().map_err(CoreError::from)?))
 }
 
 /// Effective mass, damping and stiffness of two joints.
 #[pyfunction]
-#[pyo3(signature = (*, mass_matrix, damping, stiffness, second_link, lever_arm, elbow))]
-pub fn effective_two_joints(
-    mass_matrix: [[f64; 2]; 2],
-    damping: [f64; 2],
-    stiffness: [f64; 2],
-    second_link: f64,
-    lever_arm: f64,
-    elbow: f64,
-) -> CoreResult<(f64, f64, f64)> {
-    let joints = TwoJoints {
-        mass_matrix,
-        damping,
-        stiffness,
-        second_link,
-        lever_arm,
-        elbow,
-    };
-    Ok(triple(joints.manipulator()?))
+#[pyo3(signature = (**given))]
+pub fn effective_two_joints(given: Option<Keywords<'_>>) -> PyResult<(f64, f64, f64)> {
+    let given = given.unwrap_or_default();
+    let joints = taken!(
+        given,
+        TwoJoints {
+            mass_matrix,
+            damping,
+            stiffness,
+            second_link,
+            lever_arm,
+            elbow,
+        }
+    );
+    given.done()?;
+    Ok(triple(joints.manipulator().map_err(CoreError::from)?))
 }
 
 /// Speed of the impact point of two joints.

@@ -1,9 +1,8 @@
 //! Loads of many impacts: one crossing of the boundary.
 
-use impact_core::batch::{
-    BatchOptions, Column, Columns, FieldSet, HeadColumns, Width, metrics_batch,
-};
-use impact_core::criteria::Status;
+use impact_core::batch::{BatchOptions, FieldSet, Width, metrics_batch};
+use impact_core::columns::{Column, Columns, HeadColumns};
+use impact_core::metrics::{CRITERIA, Status};
 use numeric::error::{Failure, finite};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -28,6 +27,52 @@ impl Numbers<'_> {
         Ok(match self {
             Self::Same(value) => Column::Value(*value),
             Self::Each(values) => Column::Array(values.as_slice()?),
+        })
+    }
+}
+
+/// Numbers of all rows by the names of Python's arguments; a constrained head has none.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Given<'py> {
+    manipulator_mass: Numbers<'py>,
+    manipulator_damping: Numbers<'py>,
+    manipulator_stiffness: Numbers<'py>,
+    foam_stiffness: Numbers<'py>,
+    foam_damping: Numbers<'py>,
+    linear_range: Numbers<'py>,
+    #[pyo3(default)]
+    head_mass: Option<Numbers<'py>>,
+    #[pyo3(default)]
+    head_damping: Option<Numbers<'py>>,
+    #[pyo3(default)]
+    head_stiffness: Option<Numbers<'py>>,
+    closing_speed: Numbers<'py>,
+    #[pyo3(default)]
+    manipulator_speed: Option<Numbers<'py>>,
+}
+
+impl Given<'_> {
+    fn columns(&self) -> PyResult<Columns<'_>> {
+        let head = match (&self.head_mass, &self.head_damping, &self.head_stiffness) {
+            (Some(mass), Some(damping), Some(stiffness)) => HeadColumns::Free {
+                mass: mass.column()?,
+                damping: damping.column()?,
+                stiffness: stiffness.column()?,
+            },
+            _ => HeadColumns::Constrained,
+        };
+        let own_speed = self.manipulator_speed.as_ref().map(Numbers::column);
+        Ok(Columns {
+            manipulator_mass: self.manipulator_mass.column()?,
+            manipulator_damping: self.manipulator_damping.column()?,
+            manipulator_stiffness: self.manipulator_stiffness.column()?,
+            foam_stiffness: self.foam_stiffness.column()?,
+            foam_damping: self.foam_damping.column()?,
+            linear_range: self.linear_range.column()?,
+            head,
+            closing_speed: self.closing_speed.column()?,
+            manipulator_speed: own_speed.transpose()?,
         })
     }
 }
@@ -95,44 +140,18 @@ fn name_bad_numbers(
 
 /// Columns of metrics, those that were asked for.
 #[pyfunction]
-#[pyo3(signature = (*, manipulator, foam, head, closing_speed, manipulator_speed, horizon,
-    peaks_only, threads, lanes, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (given, *, horizon, peaks_only, threads, lanes, progress))]
 #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn impact_metrics_batch<'py>(
     py: Python<'py>,
-    manipulator: [Numbers<'py>; 3],
-    foam: [Numbers<'py>; 3],
-    head: Option<[Numbers<'py>; 3]>,
-    closing_speed: Numbers<'py>,
-    manipulator_speed: Option<Numbers<'py>>,
+    given: Given<'py>,
     horizon: Option<f64>,
     peaks_only: bool,
     threads: Option<usize>,
     lanes: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let columns = Columns {
-        manipulator_mass: manipulator[0].column()?,
-        manipulator_damping: manipulator[1].column()?,
-        manipulator_stiffness: manipulator[2].column()?,
-        foam_stiffness: foam[0].column()?,
-        foam_damping: foam[1].column()?,
-        linear_range: foam[2].column()?,
-        head: match &head {
-            None => HeadColumns::Constrained,
-            Some([mass, damping, stiffness]) => HeadColumns::Free {
-                mass: mass.column()?,
-                damping: damping.column()?,
-                stiffness: stiffness.column()?,
-            },
-        },
-        closing_speed: closing_speed.column()?,
-        manipulator_speed: manipulator_speed
-            .as_ref()
-            .map(Numbers::column)
-            .transpose()?,
-    };
+    let columns = given.columns()?;
     let options = BatchOptions {
         horizon,
         threads,
@@ -153,23 +172,9 @@ pub fn impact_metrics_batch<'py>(
         Ok::<_, Failure>(found)
     })?;
     let fields = Fields::new(py);
-    let named = [
-        ("peak_head_acceleration", rows.peak_head_acceleration),
-        ("peak_head_acceleration_g", rows.peak_head_acceleration_g),
-        ("mean_head_acceleration_g", rows.mean_head_acceleration_g),
-        ("peak_contact_force", rows.peak_contact_force),
-        ("max_compression", rows.max_compression),
-        ("impact_duration", rows.impact_duration),
-        ("hic15", rows.hic15),
-        ("hic36", rows.hic36),
-        ("average_3ms_g", rows.average_3ms_g),
-        ("clip_3ms_g", rows.clip_3ms_g),
-        ("peak_power_manipulator", rows.peak_power_manipulator),
-        ("peak_power_foam", rows.peak_power_foam),
-    ];
-    for (name, values) in named {
+    for (criterion, values) in CRITERIA.iter().zip(rows.loads.into_array()) {
         if values.len() == rows.status.len() {
-            fields.vector(name, values)?;
+            fields.vector(criterion.name, values)?;
         }
     }
     fields.vector("status_code", rows.status)?;

@@ -3,42 +3,21 @@
 use impact_core::parameters;
 use pyo3::prelude::*;
 
-use crate::errors::CoreResult;
+use crate::keywords::parameter_class;
 
-/// Manipulator at the impact point.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Manipulator(pub parameters::Manipulator);
-
-#[pymethods]
-impl Manipulator {
-    #[new]
-    #[pyo3(signature = (*, mass, damping, stiffness))]
-    fn new(mass: f64, damping: f64, stiffness: f64) -> CoreResult<Self> {
-        let manipulator = parameters::Manipulator {
-            mass,
-            damping,
-            stiffness,
-        };
-        Ok(Self(manipulator.checked()?))
-    }
+parameter_class! {
+    /// Manipulator at the impact point.
+    Manipulator(parameters::Manipulator) { mass, damping, stiffness }
 }
 
-/// Head on a neck.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Head(pub parameters::Head);
+parameter_class! {
+    /// Head on a neck.
+    Head(parameters::Head) { mass, damping, stiffness }
+}
 
-#[pymethods]
-impl Head {
-    #[new]
-    #[pyo3(signature = (*, mass, damping, stiffness))]
-    fn new(mass: f64, damping: f64, stiffness: f64) -> CoreResult<Self> {
-        let head = parameters::Head {
-            mass,
-            damping,
-            stiffness,
-        };
-        Ok(Self(head.checked()?))
-    }
+parameter_class! {
+    /// Foam covering.
+    Foam(parameters::Foam) { stiffness, damping, thickness, linear_range }
 }
 
 /// Head that cannot move.
@@ -50,25 +29,6 @@ impl ConstrainedHead {
     #[new]
     fn new() -> Self {
         Self
-    }
-}
-
-/// Foam covering.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Foam(pub parameters::Foam);
-
-#[pymethods]
-impl Foam {
-    #[new]
-    #[pyo3(signature = (*, stiffness, damping, thickness, linear_range))]
-    fn new(stiffness: f64, damping: f64, thickness: f64, linear_range: f64) -> CoreResult<Self> {
-        let foam = parameters::Foam {
-            stiffness,
-            damping,
-            thickness,
-            linear_range,
-        };
-        Ok(Self(foam.checked()?))
     }
 }
 

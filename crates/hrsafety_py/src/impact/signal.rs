@@ -1,16 +1,17 @@
 //! Injury criteria of sampled signals.
 
-use impact_core::batch::Interrupted;
-use impact_core::criteria::INJURY_WINDOWS;
+use impact_core::metrics::INJURY_WINDOWS;
 use impact_core::parameters::GRAVITY;
 use impact_core::signal::{self, Recording};
 use numeric::error::Failure;
+use numeric::threads::Interrupted;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::errors::CoreError;
 use crate::impact::single::row_tuple;
+use crate::keywords::Keywords;
 use crate::watch::{Report, watched};
 
 /// Samples whose work ends within a tenth of the time that Ctrl-C may take.
@@ -125,22 +126,20 @@ fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
 
 /// Numbers, status and whether the foam leaves its linear range, of a recorded impact.
 #[pyfunction]
-#[pyo3(signature = (time, acceleration_g, *, contact_force, compression, manipulator_velocity,
-    start, linear_range, thickness))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (time, acceleration_g, **given))]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn recorded_metrics<'py>(
     py: Python<'py>,
     time: Samples<'py>,
     acceleration_g: Samples<'py>,
-    contact_force: Option<Samples<'py>>,
-    compression: Option<Samples<'py>>,
-    manipulator_velocity: Option<Samples<'py>>,
-    start: Option<f64>,
-    linear_range: f64,
-    thickness: f64,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
+    let given = given.unwrap_or_default();
+    let signal = |name| given.take::<Option<Samples<'py>>>(name);
+    let (contact_force, compression) = (signal("contact_force")?, signal("compression")?);
+    let manipulator_velocity = signal("manipulator_velocity")?;
     let time = time.as_slice()?;
+    let start: Option<f64> = given.take("start")?;
     let recording = Recording {
         time,
         acceleration_g: acceleration_g.as_slice()?,
@@ -148,14 +147,15 @@ pub fn recorded_metrics<'py>(
         compression: slice(compression.as_ref())?,
         manipulator_velocity: slice(manipulator_velocity.as_ref())?,
         start: start.or(time.first().copied()).unwrap_or(f64::NAN),
-        linear_range,
-        thickness,
+        linear_range: given.take("linear_range")?,
+        thickness: given.take("thickness")?,
         gravity: GRAVITY,
     };
+    given.done()?;
     let row = stopped(py, time.len(), |interrupted| {
         let row = recording.metrics_until(interrupted)?;
         signal::check_step(time, INJURY_WINDOWS[0], interrupted)?;
         Ok(row)
     })?;
-    row_tuple(py, &row, linear_range)
+    row_tuple(py, &row, recording.linear_range)
 }

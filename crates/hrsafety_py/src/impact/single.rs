@@ -1,30 +1,14 @@
 //! Loads of one impact.
 
-use impact_core::criteria::{self, MetricOptions, Metrics};
-use impact_core::gradients::{METRIC_NAMES, METRICS, PARAMETER_NAMES, PARAMETERS, gradients};
+use impact_core::criteria;
+use impact_core::gradients::{PARAMETER_NAMES, PARAMETERS, gradients};
+use impact_core::metrics::{CRITERIA, Criterion, MetricOptions, Metrics};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat, PyString, PyTuple};
 
 use crate::errors::CoreError;
 use crate::impact::parameters::{Foam, Manipulator, Target, system};
-
-fn numbers(row: &Metrics) -> [f64; 12] {
-    [
-        row.peak_head_acceleration,
-        row.peak_head_acceleration_g,
-        row.mean_head_acceleration_g,
-        row.peak_contact_force,
-        row.max_compression,
-        row.impact_duration,
-        row.hic15,
-        row.hic36,
-        row.average_3ms_g,
-        row.clip_3ms_g,
-        row.peak_power_manipulator,
-        row.peak_power_foam,
-    ]
-}
 
 /// Numbers, status and whether the foam leaves its linear range.
 #[pyfunction]
@@ -54,18 +38,31 @@ pub fn row_tuple<'py>(
     row: &Metrics,
     linear_range: f64,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let values = numbers(row).map(|value| PyFloat::new(py, value).into_any());
-    let [a, b, c, d, e, f, g, h, i, j, k, l] = values;
+    let loads = row.loads.into_array();
+    let numbers = loads.map(|value| PyFloat::new(py, value).into_any());
     let status = PyString::intern(py, row.status.word()).into_any();
     let beyond = row.max_compression > linear_range;
     let beyond = PyBool::new(py, beyond).to_owned().into_any();
-    PyTuple::new(py, [a, b, c, d, e, f, g, h, i, j, k, l, status, beyond])
+    let mut values = Vec::with_capacity(numbers.len() + 2);
+    values.extend(numbers);
+    values.extend([status, beyond]);
+    PyTuple::new(py, values)
 }
 
-/// Names of the rows and columns of the derivatives.
+/// What is known about each criterion: name, label, unit, symbol, whether peaks alone give it.
+type Known = (&'static str, &'static str, &'static str, &'static str, bool);
+
+/// The criteria, in the order of rows.
 #[pyfunction]
-pub fn impact_gradient_names() -> (Vec<&'static str>, Vec<&'static str>) {
-    (METRIC_NAMES.to_vec(), PARAMETER_NAMES.to_vec())
+pub fn impact_criteria() -> Vec<Known> {
+    let known = |each: Criterion| (each.name, each.label, each.unit, each.symbol, each.is_peak);
+    CRITERIA.map(known).to_vec()
+}
+
+/// Names of the columns of the derivatives.
+#[pyfunction]
+pub fn impact_parameter_names() -> Vec<&'static str> {
+    PARAMETER_NAMES.to_vec()
 }
 
 /// The row of metrics and the matrix of their derivatives.
@@ -88,8 +85,10 @@ pub fn impact_gradients<'py>(
     };
     let system = system(manipulator, foam, &head);
     let found = gradients(&system, closing_speed, &options).map_err(CoreError::from)?;
-    let values: Vec<f64> = found.values.into_iter().flatten().collect();
-    let matrix = values.into_pyarray(py).reshape([METRICS, PARAMETERS])?;
+    let values: Vec<f64> = found.values.into_array().into_iter().flatten().collect();
+    let matrix = values
+        .into_pyarray(py)
+        .reshape([CRITERIA.len(), PARAMETERS])?;
     let row = row_tuple(py, &found.metrics, foam.0.linear_range)?;
     Ok((row, matrix))
 }

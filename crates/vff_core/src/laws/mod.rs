@@ -10,7 +10,7 @@ mod masoud;
 pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
-mod registry;
+pub mod registry;
 pub mod tree;
 pub mod velocity_obstacle;
 

@@ -51,6 +51,12 @@ impl AnyLaw {
         self.0.gain_names()
     }
 
+    /// The gains, in that order.
+    #[must_use]
+    pub fn gains(&self) -> Vec<f64> {
+        self.0.gains()
+    }
+
     /// Passes a law whose gains are allowed.
     ///
     /// # Errors

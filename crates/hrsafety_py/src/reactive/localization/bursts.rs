@@ -17,7 +17,8 @@ use vff_core::sensing::sound::trials::{
 };
 
 use crate::arrays::Fields;
-use crate::errors::CoreResult;
+use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, taken};
 use crate::reactive::localization::MicrophoneArray;
 use crate::watch::{Report, watched};
 
@@ -34,38 +35,33 @@ pub struct Burst {
 #[pymethods]
 impl Burst {
     #[new]
-    #[pyo3(signature = (*, kind, low, high, duration, level, ramp, seed))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        kind: &str,
-        low: f64,
-        high: f64,
-        duration: f64,
-        level: f64,
-        ramp: f64,
-        seed: u64,
-    ) -> CoreResult<Self> {
-        let sound = match kind {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (low, high): (f64, f64) = (given.take("low")?, given.take("high")?);
+        let (kind, seed): (String, u64) = (given.take("kind")?, given.take("seed")?);
+        let refused = |name, rule: &'static str, value| -> PyErr {
+            CoreError::from(Failure::invalid(name, rule, value)).into()
+        };
+        let sound = match kind.as_str() {
             "noise" => Sound::Noise { low, high, seed },
             "sweep" => Sound::Sweep { low, high },
             "tone" if low == high => Sound::Tone { frequency: low },
-            "tone" => {
-                let rule = "equal low for a tone";
-                return Err(Failure::invalid("high", rule, Given::Number(high)).into());
-            }
+            "tone" => return Err(refused("high", "equal low for a tone", Given::Number(high))),
             _ => {
                 let rule = "be one of \"noise\", \"sweep\", \"tone\"";
-                return Err(Failure::invalid("kind", rule, Given::Word(kind.into())).into());
+                return Err(refused("kind", rule, Given::Word(kind)));
             }
         };
         let burst = burst::Burst {
             sound,
-            duration,
-            level,
-            ramp,
+            duration: given.take("duration")?,
+            level: given.take("level")?,
+            ramp: given.take("ramp")?,
         };
+        given.done()?;
         Ok(Self {
-            burst: burst.checked()?,
+            burst: burst.checked().map_err(CoreError::from)?,
             signal: OnceLock::new(),
         })
     }
@@ -259,22 +255,23 @@ fn trial_columns(py: Python<'_>, found: TrialDelays) -> PyResult<Bound<'_, PyDic
 
 /// Delays with jitter of the arrivals, the runs of a source side by side.
 #[pyfunction]
-#[pyo3(signature = (array, sources, *, arrival_deviation, runs, seed, threads, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (array, sources, **given))]
 #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn jittered_sound_delays<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
     sources: Vec<[f64; 2]>,
-    arrival_deviation: f64,
-    runs: usize,
-    seed: u64,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let array = array.0;
-    let repetition = Repetition { runs, seed };
-    let report = Report::new(progress.as_ref(), sources.len().saturating_mul(runs));
+    let arrival_deviation = given.take("arrival_deviation")?;
+    let repetition = taken!(given, Repetition { runs, seed });
+    let threads: Option<usize> = given.take("threads")?;
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
+    given.done()?;
+    let total = sources.len().saturating_mul(repetition.runs);
+    let report = Report::new(progress.as_ref(), total);
     let found = watched(py, report, |control| {
         let work = Work {
             threads,
@@ -288,8 +285,7 @@ pub fn jittered_sound_delays<'py>(
 
 /// Delays from full waveforms, the runs of a source side by side.
 #[pyfunction]
-#[pyo3(signature = (burst, array, converter, places, options, *, runs, seed, threads, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (burst, array, converter, places, options, **given))]
 #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn burst_trial_delays<'py>(
     py: Python<'py>,
@@ -298,19 +294,21 @@ pub fn burst_trial_delays<'py>(
     converter: &Converter,
     places: Vec<Place>,
     options: Options,
-    runs: usize,
-    seed: u64,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
     let equipment = Equipment {
         array: array.0,
         converter: converter.0,
         options: delay_options(options, converter.0.sample_rate)?,
     };
-    let repetition = Repetition { runs, seed };
+    let repetition = taken!(given, Repetition { runs, seed });
+    let threads: Option<usize> = given.take("threads")?;
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
+    given.done()?;
     let signal = burst.signal()?;
-    let report = Report::new(progress.as_ref(), places.len().saturating_mul(runs));
+    let total = places.len().saturating_mul(repetition.runs);
+    let report = Report::new(progress.as_ref(), total);
     let hearings: Vec<Hearing> = places.into_iter().map(hearing).collect();
     let found = watched(py, report, |control| {
         let work = Work {

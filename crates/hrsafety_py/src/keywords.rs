@@ -1,0 +1,94 @@
+//! Keyword arguments of Python, taken by name where a struct of the core is built: the names stand in the core's
+//! struct and in Python's class only, their types in the core's only.
+
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The keyword arguments of a call.
+#[derive(Default)]
+pub struct Keywords<'py>(Option<Bound<'py, PyDict>>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Keywords<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        // A copy: what is taken from it may be the caller's.
+        Ok(Self(Some(given.cast::<PyDict>()?.copy()?)))
+    }
+}
+
+impl<'py> Keywords<'py> {
+    /// Takes an argument.
+    pub fn take<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
+        let missing = || PyTypeError::new_err(format!("missing argument '{name}'"));
+        let items = self.0.as_ref().ok_or_else(missing)?;
+        let value = items.get_item(name)?.ok_or_else(missing)?;
+        items.del_item(name)?;
+        value.extract().map_err(|error: T::Error| {
+            let error: PyErr = error.into();
+            if error.is_instance_of::<PyTypeError>(items.py()) {
+                let words = error.value(items.py());
+                PyTypeError::new_err(format!("argument '{name}': {words}"))
+            } else {
+                error
+            }
+        })
+    }
+
+    /// Refuses arguments that nobody took.
+    pub fn done(&self) -> PyResult<()> {
+        match &self.0 {
+            Some(items) if !items.is_empty() => {
+                let names = items.keys();
+                Err(PyTypeError::new_err(format!("unknown arguments {names}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A struct of the core whose fields are called as the arguments are; the others come from another one.
+macro_rules! taken {
+    ($given:expr, $core:ty { $($field:ident),+ $(,)? } $(, ..$rest:expr)?) => {{
+        type Core = $core;
+        Core { $($field: $given.take(stringify!($field))?,)+ $(..$rest)? }
+    }};
+}
+
+/// A class of checked parameters: made from keywords, and read back by the same names.
+macro_rules! parameter_class {
+    (
+        $(#[$about:meta])*
+        $name:ident($core:ty) { $($field:ident),+ $(,)? }
+        $($methods:tt)*
+    ) => {
+        $(#[$about])*
+        #[pyclass(frozen, module = "hrsafety._hrsafety")]
+        pub struct $name(pub $core);
+
+        #[pymethods]
+        impl $name {
+            #[new]
+            #[pyo3(signature = (**given))]
+            fn new(given: Option<$crate::keywords::Keywords<'_>>) -> PyResult<Self> {
+                let given = given.unwrap_or_default();
+                let core = $crate::keywords::taken!(given, $core { $($field),+ });
+                given.done()?;
+                Ok(Self(core.checked().map_err($crate::errors::CoreError::from)?))
+            }
+
+            $(
+                #[getter]
+                fn $field<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                    pyo3::IntoPyObjectExt::into_bound_py_any(self.0.$field, py)
+                }
+            )+
+
+            $($methods)*
+        }
+    };
+}
+
+pub(crate) use {parameter_class, taken};
