@@ -13,7 +13,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, instance, numbers, positive, thread_count, word
 from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics
+from hrsafety.impact.criteria.declared import CRITERIA, Loads, with_criteria
+from hrsafety.impact.criteria.loads import Doubts
 from hrsafety.impact.parameters import (
     LINEAR_RANGE,
     LINEAR_SHARE,
@@ -35,32 +36,21 @@ _FOAM = ("foam_stiffness", "foam_damping", "linear_range")
 _HEAD = ("head_mass", "head_damping", "head_stiffness")
 STATUS_WORDS: tuple[str, ...] = (*_hrsafety.impact_status_words(), "invalid_thickness")
 """Every word that a status can be."""
-_FLAGS = ("status", "beyond_linear_range")
 _BEYOND, _BOTTOMED, _INVALID_THICKNESS = (
     STATUS_WORDS.index(each) for each in ("beyond_linear_range", "bottomed", "invalid_thickness")
 )
 
 
+@with_criteria("ndarray")
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ImpactMetricsBatch(Table):
+class ImpactMetricsBatch(Loads[Array], Table):
     """Loads of many impacts: the fields of `ImpactMetrics` as arrays of the broadcast shape.
+
+    Criteria that were not asked for are NaN.
 
     Attributes
     ----------
-    peak_head_acceleration, peak_head_acceleration_g, mean_head_acceleration_g : ndarray
-        In m/s^2, g, g.
-    peak_contact_force : ndarray
-        In N.
-    max_compression : ndarray
-        In m.
-    impact_duration : ndarray
-        In s; infinite without release within the horizon.
-    hic15, hic36 : ndarray
-        Head injury criterion.
-    average_3ms_g, clip_3ms_g : ndarray
-        In g; NaN if the impact period is shorter than 3 ms.
-    peak_power_manipulator, peak_power_foam : ndarray
-        In W.
+    {criteria}
     beyond_linear_range : ndarray of bool
         Whether the compression leaves the linear range of the foam.
     bottomed : ndarray of bool
@@ -69,18 +59,6 @@ class ImpactMetricsBatch(Table):
         Numbers that are hardly what was meant, one warning for each argument.
     """
 
-    peak_head_acceleration: Array
-    peak_head_acceleration_g: Array
-    mean_head_acceleration_g: Array
-    peak_contact_force: Array
-    max_compression: Array
-    impact_duration: Array
-    hic15: Array
-    hic36: Array
-    average_3ms_g: Array
-    clip_3ms_g: Array
-    peak_power_manipulator: Array
-    peak_power_foam: Array
     beyond_linear_range: npt.NDArray[np.bool_]
     _status_code: npt.NDArray[np.uint8] = field(repr=False)
     _bottomed: npt.NDArray[np.bool_] = field(repr=False)
@@ -234,13 +212,8 @@ def metrics_batch(
     doubts = _doubts(given)
     thick = given.pop("thickness")
     possible = _possible(given, thick)
-    flat = {name: _column(array, shape) for name, array in possible.items()}
     result = _hrsafety.impact_metrics_batch(
-        manipulator=[flat[name] for name in _MANIPULATOR],
-        foam=[flat[name] for name in _FOAM],
-        head=None if constrained else [flat[name] for name in _HEAD],
-        closing_speed=flat["closing_speed"],
-        manipulator_speed=flat.get("manipulator_speed"),
+        {name: _column(array, shape) for name, array in possible.items()},
         horizon=None if horizon is None else positive("horizon", horizon),
         peaks_only=word("fields", fields, ("all", "peaks")) == "peaks",
         threads=_threads(threads),
@@ -258,7 +231,7 @@ def metrics_batch(
     if not (np.isfinite(thick) & (thick > 0.0)).all():
         code[np.broadcast_to(~(np.isfinite(thick) & (thick > 0.0)), shape)] = _INVALID_THICKNESS
     return ImpactMetricsBatch(
-        **{name: columns.get(name, missing) for name in ImpactMetrics._fields if name not in _FLAGS},
+        **{name: columns.get(name, missing) for name in CRITERIA},
         beyond_linear_range=beyond,
         _status_code=code,
         _bottomed=bottomed,

@@ -8,6 +8,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
+from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 
@@ -139,7 +140,7 @@ def gradients(
         None if horizon is None else number("horizon", horizon),
     )
     doubts = manipulator.warnings + foam.warnings + head.warnings + speed_warnings(speed, own_speed)
-    metrics, parameters = _hrsafety.impact_gradient_names()
+    parameters = _hrsafety.impact_parameter_names()
     parts = {"manipulator": manipulator, "foam": foam, "head": head}
     given = {
         f"{owner}_{name}": float(getattr(part, name, np.nan))
@@ -149,7 +150,7 @@ def gradients(
     given |= {"closing_speed": speed, "manipulator_speed": speed if own_speed is None else own_speed}
     return ImpactGradients(
         metrics=judged(values, foam, doubts),
-        metric_names=tuple(metrics),
+        metric_names=tuple(CRITERIA),
         parameter_names=tuple(parameters),
         values=matrix,
         parameters=np.array([given[name] for name in parameters]),

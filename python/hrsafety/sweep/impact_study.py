@@ -13,6 +13,7 @@ from hrsafety import impact
 from hrsafety._arguments import Array, number, positive, with_article, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.batch import STATUS_WORDS
+from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.studies import Found, Study, chosen
 
@@ -31,22 +32,8 @@ IMPACT_UNITS: Mapping[str, str] = MappingProxyType(
         **{f"head_{part}": unit for part, unit in _PARTS.items()},
     }
 )
-_PEAKS = (
-    Column(name="peak_head_acceleration", unit="m/s^2"),
-    Column(name="peak_head_acceleration_g", unit="g"),
-    Column(name="peak_contact_force", unit="N"),
-    Column(name="max_compression", unit="m"),
-    Column(name="impact_duration", unit="s"),
-)
-_OTHERS = (
-    Column(name="mean_head_acceleration_g", unit="g"),
-    Column(name="hic15"),
-    Column(name="hic36"),
-    Column(name="average_3ms_g", unit="g"),
-    Column(name="clip_3ms_g", unit="g"),
-    Column(name="peak_power_manipulator", unit="W"),
-    Column(name="peak_power_foam", unit="W"),
-)
+_PEAKS = tuple(Column(name=each.name, unit=each.unit) for each in CRITERIA.values() if each.is_peak)
+_OTHERS = tuple(Column(name=each.name, unit=each.unit) for each in CRITERIA.values() if not each.is_peak)
 _FLAGS = (Column(name="beyond_linear_range", kind="flag"), Column(name="status", kind="word", words=STATUS_WORDS))
 
 

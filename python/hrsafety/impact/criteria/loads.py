@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns, flag, instance, number
 from hrsafety.errors import InvalidParameterError
+from hrsafety.impact.criteria.declared import LoadRow, with_criteria
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
@@ -35,54 +36,18 @@ STANDARD_GRAVITY = 9.80665
 Doubts = tuple[ResultWarning, ...]
 
 
-class _Loads(NamedTuple):
-    peak_head_acceleration: float
-    peak_head_acceleration_g: float
-    mean_head_acceleration_g: float
-    peak_contact_force: float
-    max_compression: float
-    impact_duration: float
-    hic15: float
-    hic36: float
-    average_3ms_g: float
-    clip_3ms_g: float
-    peak_power_manipulator: float
-    peak_power_foam: float
-    status: str
-    beyond_linear_range: bool
-
-
-class ImpactMetrics(_Loads):
+@with_criteria("float")
+class ImpactMetrics(LoadRow):
     """Loads of one impact, maxima over the impact period.
 
     The impact period runs from first contact to the first zero of the head acceleration. All
-    maxima are found on the continuous solution, both ends included. g is 9.80665 m/s^2.
+    maxima are found on the continuous solution, both ends included. g is 9.80665 m/s^2. The period
+    is infinite without a zero within the horizon, and NaN for a constrained head; the criteria of
+    3 ms are NaN if the period is shorter.
 
     Attributes
     ----------
-    peak_head_acceleration : float
-        a_h,max in m/s^2.
-    peak_head_acceleration_g : float
-        The same in g.
-    mean_head_acceleration_g : float
-        Mean over the impact period, in g.
-    peak_contact_force : float
-        f_c,max in N.
-    max_compression : float
-        eps_max in m.
-    impact_duration : float
-        Impact period in s; infinite without a zero within the horizon, NaN for a constrained
-        head.
-    hic15, hic36 : float
-        Head injury criterion with windows of up to 15 and 36 ms.
-    average_3ms_g : float
-        Largest moving average over 3 ms, in g; NaN if the period is shorter.
-    clip_3ms_g : float
-        Level that is exceeded for 3 contiguous ms, in g; NaN if the period is shorter.
-    peak_power_manipulator : float
-        Largest f_c x_r', in W.
-    peak_power_foam : float
-        Largest f_c eps', in W.
+    {criteria}
     status : str
         What the numbers mean. ``"released"``: the impact period ended within the horizon.
         ``"no_release"``: it did not, and maxima are over the horizon. ``"no_impact"``: the
@@ -106,7 +71,7 @@ class ImpactMetrics(_Loads):
     def _replace(self, /, **kwargs: object) -> Self:
         """Return the same loads with other fields; what is no item of the tuple is kept, or given, too."""
         kept = {name: kwargs.pop(name, getattr(self, name)) for name in ("bottomed", "warnings")}
-        found = super()._replace(**kwargs)  # type: ignore[arg-type]  # checked by the tuple
+        found = super()._replace(**kwargs)
         for name, value in kept.items():
             setattr(found, name, value)
         return found
