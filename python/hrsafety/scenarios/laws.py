@@ -10,52 +10,21 @@ from typing import Any
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.declared import LAWS
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, Kind, checked, located
 
 __all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of"]
 
-LAWS: Mapping[str, type[nav.Law]] = MappingProxyType(
-    {
-        "virtual_force_field": nav.VirtualForceField,
-        "khatib": nav.Khatib,
-        "borenstein_koren": nav.BorensteinKoren,
-        "masoud": nav.Masoud,
-        "ge_cui": nav.GeCui,
-        "virtual_impedance": nav.VirtualImpedanceLaw,
-        "velocity_obstacle": nav.VelocityObstacle,
-        "rapidly_exploring_random_tree": nav.RapidlyExploringRandomTree,
-        "field_d_star": nav.FieldDStar,
-        "optimal_reciprocal_collision_avoidance": nav.OptimalReciprocalCollisionAvoidance,
-    }
-)
 SHORT_NAMES: Mapping[str, str] = MappingProxyType(
-    {
-        "vff": "virtual_force_field",
-        "zeng": "virtual_force_field",
-        "borenstein": "borenstein_koren",
-        "bk": "borenstein_koren",
-        "gecui": "ge_cui",
-        "impedance": "virtual_impedance",
-        "vo": "velocity_obstacle",
-        "velocity_obstacles": "velocity_obstacle",
-        "rrt": "rapidly_exploring_random_tree",
-        "tree": "rapidly_exploring_random_tree",
-        "dstar": "field_d_star",
-        "d_star": "field_d_star",
-        "field_dstar": "field_d_star",
-        "orca": "optimal_reciprocal_collision_avoidance",
-        "rvo2": "optimal_reciprocal_collision_avoidance",
-    }
+    {short: name for name, law in LAWS.items() for short in law.OTHER_NAMES}
 )
 """Short names that files and the command line take for a law, too."""
 _SYMBOLS = {
-    **dict.fromkeys(("k1", "k_1"), "attractive_gain"),
-    **dict.fromkeys(("k3", "k_3"), "repulsive_gain"),
-    **dict.fromkeys(("k5", "k_5"), "detour_gain"),
-    "b": "gain_ratio",
+    symbol: name
+    for name, declared in nav.VirtualForceField.GAIN_SYMBOLS.items()
+    for symbol in (declared.lower(), declared.lower().replace("_", ""))
 }
-"""Symbols of the source for the gains of the field, which files name by their words."""
 _KINDS: Mapping[str, Kind] = MappingProxyType(
     {"float": kind.number, "float | None": kind.number, "bool": kind.boolean, "int": kind.integer}
 )
@@ -69,7 +38,7 @@ def keys_of(law: type[nav.Law]) -> Keys:
 
 def name_of(law: nav.Law) -> str:
     """Return the name of the law's table."""
-    return next(name for name, each in LAWS.items() if each is type(law))
+    return law.NAME
 
 
 def law_named(path: str, word: str) -> type[nav.Law]:

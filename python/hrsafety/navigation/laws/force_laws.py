@@ -3,65 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from types import MappingProxyType
-from typing import ClassVar, Literal, Self
+from dataclasses import dataclass
+from typing import Literal
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, flag, number, word
+from hrsafety._arguments import flag, number, word
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.declared import Law, gain, law
 
 __all__ = ["BorensteinKoren", "GeCui", "Khatib", "Law", "Masoud", "StabilizingMode", "VirtualForceField"]
 
 StabilizingMode = Literal["off", "capped", "full"]
 
 
-class Law(Parameters):
-    """What all navigation laws share: numbers that a search may choose, by name.
-
-    Attributes
-    ----------
-    GAIN_NAMES : tuple of str
-        Names of those numbers, in the order in which batches and searches take them.
-    GAIN_BOUNDS : mapping of str to (float, float)
-        Where a search looks for them without bounds of its own.
-    GAIN_UNITS : mapping of str to str
-        Their units.
-    """
-
-    __slots__ = ()
-    GAIN_NAMES: ClassVar[tuple[str, ...]]
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]]
-    GAIN_UNITS: ClassVar[Mapping[str, str]]
-    _native: _hrsafety.Law
-
-    @property
-    def gains(self) -> tuple[float, ...]:
-        """The numbers in the order of `GAIN_NAMES`."""
-        return tuple(getattr(self, name) for name in self.GAIN_NAMES)
-
-    def replaced(self, **changes: object) -> Self:
-        """Return the law with some fields changed.
-
-        Parameters
-        ----------
-        **changes
-            New values by the names of the fields.
-
-        Returns
-        -------
-        Law
-            A law of the same kind.
-
-        Raises
-        ------
-        InvalidParameterError
-            If a value is not allowed.
-        """
-        return replace(self, **changes)  # type: ignore[type-var]  # every law is a dataclass
-
-
+@law("virtual_force_field", "vff", "zeng", color="#000000")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VirtualForceField(Law):
     """Virtual force field with a stabilizing force, Zeng (2011), chapter 5.
@@ -111,35 +66,16 @@ class VirtualForceField(Law):
     (4.3, 20.0, 17.0, 0.68)
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = (
-        "attractive_gain",
-        "repulsive_gain",
-        "detour_gain",
-        "gain_ratio",
-    )
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {
-            # Zeng (2011), appendix C.2.
-            "attractive_gain": (0.0, 50.0),
-            "repulsive_gain": (0.0, 200.0),
-            "detour_gain": (0.0, 500.0),
-            "gain_ratio": (0.0, 3.0),
-        }
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"attractive_gain": "N/m", "repulsive_gain": "N/m", "detour_gain": "N/m^2", "gain_ratio": "s"}
-    )
-
-    attractive_gain: float = 3.0
-    repulsive_gain: float = 20.0
-    detour_gain: float = 17.0
-    gain_ratio: float = 0.25
+    # Bounds: Zeng (2011), appendix C.2.
+    attractive_gain: float = gain(3.0, unit="N/m", bounds=(0.0, 50.0), symbol="K_1")
+    repulsive_gain: float = gain(20.0, unit="N/m", bounds=(0.0, 200.0), symbol="K_3")
+    detour_gain: float = gain(17.0, unit="N/m^2", bounds=(0.0, 500.0), symbol="K_5")
+    gain_ratio: float = gain(0.25, unit="s", bounds=(0.0, 3.0), symbol="b")
     stabilizing: StabilizingMode = "capped"
     stabilizing_force_cap: float | None = None
     stabilizing_momentum_cap: float | None = None
     pass_behind: bool = True
     side_hysteresis: float | None = None
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -162,6 +98,7 @@ class VirtualForceField(Law):
         self._set(_native=native)
 
 
+@law("masoud", color="#332288")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Masoud(Law):
     """Circulating repulsion of Masoud (2007).
@@ -192,24 +129,12 @@ class Masoud(Law):
     6.34
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "detour_gain")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 200.0), "detour_gain": (0.0, 500.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"attractive_gain": "N/m", "repulsive_gain": "N/m", "detour_gain": "N/m"}
-    )
-
-    attractive_gain: float = 5.0
-    repulsive_gain: float = 24.0
-    detour_gain: float = 36.0
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        self._set(_native=_hrsafety.Law.masoud(**self._as_numbers(*self.GAIN_NAMES)))
+    attractive_gain: float = gain(5.0, unit="N/m", bounds=(0.0, 50.0), symbol="K_1")
+    repulsive_gain: float = gain(24.0, unit="N/m", bounds=(0.0, 200.0), symbol="K_3")
+    detour_gain: float = gain(36.0, unit="N/m", bounds=(0.0, 500.0), symbol="K_5")
 
 
+@law("ge_cui", "gecui", color="#56B4E9")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GeCui(Law):
     """Dynamic potential field of Ge and Cui (2002).
@@ -241,24 +166,12 @@ class GeCui(Law):
     'collided'
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "gain_ratio")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 200.0), "gain_ratio": (0.0, 3.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"attractive_gain": "N/m", "repulsive_gain": "N m^2", "gain_ratio": "s"}
-    )
-
-    attractive_gain: float = 1.0
-    repulsive_gain: float = 14.2
-    gain_ratio: float = 0.75
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        self._set(_native=_hrsafety.Law.ge_cui(**self._as_numbers(*self.GAIN_NAMES)))
+    attractive_gain: float = gain(1.0, unit="N/m", bounds=(0.0, 50.0), symbol="K_1")
+    repulsive_gain: float = gain(14.2, unit="N m^2", bounds=(0.0, 200.0), symbol="K")
+    gain_ratio: float = gain(0.75, unit="s", bounds=(0.0, 3.0), symbol="b")
 
 
+@law("khatib", color="#44AA99")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Khatib(Law):
     """Artificial potential field of Khatib (1986).
@@ -287,26 +200,18 @@ class Khatib(Law):
         If a gain is negative or not finite, or the form is unknown.
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain", "gain_ratio")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 20.0), "gain_ratio": (0.0, 3.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"attractive_gain": "N/m", "repulsive_gain": "N m^2", "gain_ratio": "s"}
-    )
-
-    attractive_gain: float = 23.2
-    repulsive_gain: float = 20.0
-    gain_ratio: float = 3.0
+    attractive_gain: float = gain(23.2, unit="N/m", bounds=(0.0, 50.0), symbol="K_1")
+    repulsive_gain: float = gain(20.0, unit="N m^2", bounds=(0.0, 20.0), symbol="K")
+    gain_ratio: float = gain(3.0, unit="s", bounds=(0.0, 3.0), symbol="b")
     form: Literal["gradient", "printed"] = "gradient"
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         printed = word("form", self.form, ("gradient", "printed")) == "printed"
-        self._set(_native=_hrsafety.Law.khatib(**self._as_numbers(*self.GAIN_NAMES), printed=printed))
+        self._make(printed=printed)
 
 
+@law("borenstein_koren", "borenstein", "bk", color="#117733")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BorensteinKoren(Law):
     """Virtual force of Borenstein and Koren (1989).
@@ -332,19 +237,11 @@ class BorensteinKoren(Law):
         If a gain is negative or not finite.
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("attractive_gain", "repulsive_gain")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"attractive_gain": (0.0, 50.0), "repulsive_gain": (0.0, 20.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType({"attractive_gain": "N", "repulsive_gain": "N m"})
-
-    attractive_gain: float = 16.93
-    repulsive_gain: float = 14.21
+    attractive_gain: float = gain(16.93, unit="N", bounds=(0.0, 50.0), symbol="K_1")
+    repulsive_gain: float = gain(14.21, unit="N m", bounds=(0.0, 20.0), symbol="K")
     attracted_inside: bool = True
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(attracted_inside=flag("attracted_inside", self.attracted_inside))
-        numbers = self._as_numbers(*self.GAIN_NAMES)
-        self._set(_native=_hrsafety.Law.borenstein_koren(**numbers, attracted_inside=self.attracted_inside))
+        self._make(attracted_inside=self.attracted_inside)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import ClassVar, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import number, positive, word
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.declared import Law, gain, law
 
 __all__ = ["VirtualImpedanceLaw"]
 
 Form = Literal["active", "conventional"]
 
 
+@law("virtual_impedance", "impedance")
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VirtualImpedanceLaw(Law):
     """Virtual impedance, conventional or active, with every obstacle known exactly.
@@ -60,45 +59,15 @@ class VirtualImpedanceLaw(Law):
     'arrived'
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = (
-        "attraction_stiffness",
-        "attraction_damping",
-        "stiffness",
-        "damping",
-        "safe_distance",
-        "speed_limit",
-    )
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {
-            "attraction_stiffness": (0.5, 20.0),
-            "attraction_damping": (0.0, 20.0),
-            "stiffness": (10.0, 80.0),
-            "damping": (2.0, 30.0),
-            "safe_distance": (0.3, 1.5),
-            "speed_limit": (0.3, 1.5),
-        }
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "attraction_stiffness": "N/m",
-            "attraction_damping": "N s/m",
-            "stiffness": "N/m",
-            "damping": "N s/m",
-            "safe_distance": "m",
-            "speed_limit": "m/s",
-        }
-    )
-
     form: Form = "active"
-    attraction_stiffness: float = 2.0
-    attraction_damping: float = 1.0
-    stiffness: float = 40.0
-    damping: float = 10.0
-    safe_distance: float = 0.8
-    speed_limit: float = 0.72
+    attraction_stiffness: float = gain(2.0, unit="N/m", bounds=(0.5, 20.0), symbol="K_r")
+    attraction_damping: float = gain(1.0, unit="N s/m", bounds=(0.0, 20.0), symbol="D_r")
+    stiffness: float = gain(40.0, unit="N/m", bounds=(10.0, 80.0), symbol="K_0")
+    damping: float = gain(10.0, unit="N s/m", bounds=(2.0, 30.0), symbol="D_0")
+    safe_distance: float = gain(0.8, unit="m", bounds=(0.3, 1.5), symbol="rho_0")
+    speed_limit: float = gain(0.72, unit="m/s", bounds=(0.3, 1.5), symbol="mu_0")
     reach: float = 3.0
     view: float = math.pi
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""

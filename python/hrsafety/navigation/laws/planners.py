@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import ClassVar, Literal, get_args
+from dataclasses import dataclass
+from typing import Literal, get_args
 
-from hrsafety import _hrsafety
-from hrsafety._arguments import count, flag, not_negative, number, word
+from hrsafety._arguments import count, flag, not_negative, word
 from hrsafety._bounds import MOST_DRAWS
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.declared import Law, gain, law
 
 __all__ = [
     "FieldDStar",
@@ -27,6 +24,7 @@ __all__ = [
 VelocitySelection = Literal["to_goal", "fastest", "time_and_risk"]
 
 
+@law("velocity_obstacle", "vo", "velocity_obstacles", color="#999933", plans=True)
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VelocityObstacle(Law):
     """Velocity obstacles of Fiorini and Shiller (1998).
@@ -70,32 +68,24 @@ class VelocityObstacle(Law):
     ('arrived', 0.4)
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("margin", "horizon", "risk_weight", "sector")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"margin": (0.0, 0.4), "horizon": (0.5, 20.0), "risk_weight": (0.0, 10.0), "sector": (0.2, 3.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"margin": "m", "horizon": "s", "risk_weight": "s^2", "sector": "rad"}
-    )
-
-    margin: float = 0.4
-    horizon: float = float("inf")
-    risk_weight: float = 1.0
-    sector: float = 1.0
+    margin: float = gain(0.4, unit="m", bounds=(0.0, 0.4))
+    horizon: float = gain(float("inf"), unit="s", bounds=(0.5, 20.0))
+    risk_weight: float = gain(1.0, unit="s^2", bounds=(0.0, 10.0))
+    sector: float = gain(1.0, unit="rad", bounds=(0.2, 3.0))
     selection: VelocitySelection = "to_goal"
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         word("selection", self.selection, get_args(VelocitySelection))
-        numbers = self._as_numbers(*self.GAIN_NAMES)
+        self._as_numbers(*self.GAIN_NAMES)
         # These two are not looked at by every selection, but by every search.
         not_negative("risk_weight", self.risk_weight)
         if not 0.0 <= self.sector <= math.pi:
             raise InvalidParameterError("sector", "be an angle from 0 to pi", self.sector)
-        self._set(_native=_hrsafety.Law.velocity_obstacle(**numbers, selection=self.selection))
+        self._make(selection=self.selection)
 
 
+@law("optimal_reciprocal_collision_avoidance", "orca", "rvo2", color="#CC6677", plans=True)
 @dataclass(frozen=True, kw_only=True, slots=True)
 class OptimalReciprocalCollisionAvoidance(Law):
     """Optimal reciprocal collision avoidance of van den Berg, Guy, Lin and Manocha (2011).
@@ -134,30 +124,19 @@ class OptimalReciprocalCollisionAvoidance(Law):
     'arrived'
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("horizon", "margin", "turn", "reach")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {"horizon": (0.2, 8.0), "margin": (0.0, 0.4), "turn": (0.0, 0.5), "reach": (1.0, 10.0)}
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"horizon": "s", "margin": "m", "turn": "rad", "reach": "m"}
-    )
-
-    horizon: float = 5.03
-    margin: float = 0.4
-    turn: float = 0.01
-    reach: float = 5.0
+    horizon: float = gain(5.03, unit="s", bounds=(0.2, 8.0))
+    margin: float = gain(0.4, unit="m", bounds=(0.0, 0.4))
+    turn: float = gain(0.01, unit="rad", bounds=(0.0, 0.5))
+    reach: float = gain(5.0, unit="m", bounds=(1.0, 10.0))
     reciprocal: bool = False
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(reciprocal=flag("reciprocal", self.reciprocal))
-        numbers = {name: number(name, getattr(self, name)) for name in self.GAIN_NAMES}
-        self._set(**numbers)
-        share = 0.5 if self.reciprocal else 1.0
-        self._set(_native=_hrsafety.Law.reciprocal(**numbers, share=share))
+        self._make(share=0.5 if self.reciprocal else 1.0)
 
 
+@law("rapidly_exploring_random_tree", "rrt", "tree", color="#882255", plans=True)
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RapidlyExploringRandomTree(Law):
     """Extended rapidly-exploring random tree of Bruce and Veloso (2002, 2006).
@@ -205,54 +184,21 @@ class RapidlyExploringRandomTree(Law):
     'arrived'
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = (
-        "step",
-        "goal_probability",
-        "waypoint_probability",
-        "margin",
-        "horizon",
-        "room",
-        "look_ahead",
-    )
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {
-            "step": (0.1, 0.5),
-            "goal_probability": (0.05, 0.4),
-            "waypoint_probability": (0.0, 0.6),
-            "margin": (0.0, 0.4),
-            "horizon": (0.0, 3.0),
-            "room": (3.0, 3.0),
-            "look_ahead": (0.05, 0.4),
-        }
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "step": "m",
-            "goal_probability": "",
-            "waypoint_probability": "",
-            "margin": "m",
-            "horizon": "s",
-            "room": "m",
-            "look_ahead": "m",
-        }
-    )
-
-    step: float = 0.4158
-    goal_probability: float = 0.3298
-    waypoint_probability: float = 0.5008
-    margin: float = 0.4
-    horizon: float = 0.489
-    room: float = 3.0
-    look_ahead: float = 0.2612
+    step: float = gain(0.4158, unit="m", bounds=(0.1, 0.5))
+    goal_probability: float = gain(0.3298, unit="", bounds=(0.05, 0.4), symbol="p_g")
+    waypoint_probability: float = gain(0.5008, unit="", bounds=(0.0, 0.6), symbol="p_w")
+    margin: float = gain(0.4, unit="m", bounds=(0.0, 0.4))
+    horizon: float = gain(0.489, unit="s", bounds=(0.0, 3.0))
+    room: float = gain(3.0, unit="m", bounds=(3.0, 3.0))
+    look_ahead: float = gain(0.2612, unit="m", bounds=(0.05, 0.4))
     waypoints: int = 50
     draws: int = 2000
     keeps_path: bool = True
     safety_draws: int = 32
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
-        numbers = self._as_numbers(*self.GAIN_NAMES)
+        self._as_numbers(*self.GAIN_NAMES)
         self._set(
             waypoints=count("waypoints", self.waypoints, least=0),
             draws=count("draws", self.draws),
@@ -262,16 +208,12 @@ class RapidlyExploringRandomTree(Law):
         for name in ("waypoints", "draws", "safety_draws"):
             if getattr(self, name) > MOST_DRAWS:
                 raise InvalidParameterError(name, f"be at most {MOST_DRAWS}", getattr(self, name))
-        native = _hrsafety.Law.random_tree(
-            **numbers,
-            waypoints=self.waypoints,
-            draws=self.draws,
-            keeps_path=self.keeps_path,
-            safety_draws=self.safety_draws,
+        self._make(
+            waypoints=self.waypoints, draws=self.draws, keeps_path=self.keeps_path, safety_draws=self.safety_draws
         )
-        self._set(_native=native)
 
 
+@law("field_d_star", "dstar", "d_star", "field_dstar", color="#AA4499", plans=True)
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FieldDStar(Law):
     """Field D* of Ferguson and Stentz (2006): a path of least cost over a grid, repaired as things move.
@@ -307,27 +249,8 @@ class FieldDStar(Law):
     'arrived'
     """
 
-    GAIN_NAMES: ClassVar[tuple[str, ...]] = ("resolution", "margin", "horizon", "room", "look_ahead")
-    GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = MappingProxyType(
-        {
-            "resolution": (0.1, 0.1),
-            "margin": (0.0, 0.4),
-            "horizon": (0.0, 3.0),
-            "room": (3.0, 3.0),
-            "look_ahead": (0.05, 0.4),
-        }
-    )
-    GAIN_UNITS: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"resolution": "m", "margin": "m", "horizon": "s", "room": "m", "look_ahead": "m"}
-    )
-
-    resolution: float = 0.1
-    margin: float = 0.3175
-    horizon: float = 0.2466
-    room: float = 3.0
-    look_ahead: float = 0.301
-    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Check the values."""
-        self._set(_native=_hrsafety.Law.field_d_star(**self._as_numbers(*self.GAIN_NAMES)))
+    resolution: float = gain(0.1, unit="m", bounds=(0.1, 0.1))
+    margin: float = gain(0.3175, unit="m", bounds=(0.0, 0.4))
+    horizon: float = gain(0.2466, unit="s", bounds=(0.0, 3.0))
+    room: float = gain(3.0, unit="m", bounds=(3.0, 3.0))
+    look_ahead: float = gain(0.301, unit="m", bounds=(0.05, 0.4))

@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
-from hrsafety.navigation.laws.planners import (
-    FieldDStar,
-    OptimalReciprocalCollisionAvoidance,
-    RapidlyExploringRandomTree,
-    VelocityObstacle,
-)
+from hrsafety.navigation.laws.declared import LAWS, Law
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, shapes, style
@@ -26,19 +20,8 @@ if TYPE_CHECKING:
 
 Runs = dict[str, Trajectory]
 
-# Tol's muted colors, which differ for every common kind of color vision; planners are dashed.
-LAW_COLORS: dict[type[Law], str] = {
-    VirtualForceField: "#000000",
-    Masoud: "#332288",
-    GeCui: "#56B4E9",
-    Khatib: "#44AA99",
-    BorensteinKoren: "#117733",
-    VelocityObstacle: "#999933",
-    OptimalReciprocalCollisionAvoidance: "#CC6677",
-    RapidlyExploringRandomTree: "#882255",
-    FieldDStar: "#AA4499",
-}
-PLANNERS = (VelocityObstacle, OptimalReciprocalCollisionAvoidance, RapidlyExploringRandomTree, FieldDStar)
+# Tol's muted colors, which differ for every common kind of color vision, as the laws declare them; planners are dashed.
+LAW_COLORS: dict[type[Law], str] = {each: each.COLOR for each in LAWS.values() if each.COLOR}
 FORCE_STYLES = ("-", (0, (8, 1.5)), (0, (1.2, 1.2)))
 PLANNER_STYLES = ((0, (5, 2)), (0, (5, 1.5, 1, 1.5)), (0, (2.5, 1.2)))
 CROSS: style.Properties = CONTACT | {"markersize": 9}
@@ -70,7 +53,7 @@ def looks_of(runs: Runs) -> dict[str, style.Properties]:
     found: dict[str, style.Properties] = {}
     for name, run in runs.items():
         kind = type(run.law)
-        styles = PLANNER_STYLES if issubclass(kind, PLANNERS) else FORCE_STYLES
+        styles = PLANNER_STYLES if kind.PLANS else FORCE_STYLES
         number = seen.get(kind, 0)
         seen[kind] = number + 1
         color = LAW_COLORS.get(kind, style.NEUTRAL)
