@@ -27,11 +27,11 @@ JOBS = {
         "reactive.record_burst(burst, row, **places, noise=0.1)",
     ),
     "transforms of a long record": (
-        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**22)), sample_rate=48e3)",
+        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**20)), sample_rate=48e3)",
         "[reactive.estimate_delays(heard, row) for _ in range(100)]",
     ),
     "phases of a long record": (
-        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**22)), sample_rate=48e3)",
+        "heard = reactive.SoundRecording(samples=np.random.default_rng(1).normal(size=(3, 2**20)), sample_rate=48e3)",
         '[reactive.likeness(heard, row, method="phase") for _ in range(100)]',
     ),
     "smallest skirt": ("", "reactive.smallest_skirt(0.01, layouts=100_000)"),

@@ -132,8 +132,7 @@ def test_regions_for_a_late_robot_are_as_much_larger_as_the_text_says() -> None:
 def test_readme_prints_the_successes_with_every_sensing() -> None:
     rows = successes()
     found = [rows["New", "capped", "c2", SENSINGS[place], "person"] for place in (1, 2, 4)]
-    (line,) = [
-        line for line in README.splitlines() if line.startswith("| c2, successes without and with the side kept")
-    ]
-    shown = "; ".join("{afresh}, {0} %".format(row["3.05"], afresh=row["afresh"]) for row in found)
+    start = "| c2, successes without and with the side kept"
+    (line,) = [line for line in README.splitlines() if line.startswith(start)]
+    shown = "; ".join(f"{row['afresh']}, {row['3.05']} %" for row in found)
     assert line.endswith(f"| {shown} |")

@@ -275,6 +275,8 @@ pub fn tube_inertia(tube: &Tube) -> Result<TubeInertia> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
 
     /// Table A.1.
@@ -343,6 +345,12 @@ mod tests {
                 })
                 .collect();
             let found = fit_open_loop(&time, &angle).unwrap();
+            for looks in 0..8 {
+                let looked = AtomicUsize::new(0);
+                let stopped = || looked.fetch_add(1, Ordering::Relaxed) >= looks;
+                let stopped = fit_open_loop_until(&time, &angle, &stopped);
+                assert!(matches!(stopped, Err(Failure::Interrupted)), "{looks}");
+            }
             assert!((found.acceleration - 1.5).abs() < 1e-6, "{decay} {found:?}");
             assert!(
                 (found.decay - decay).abs() < 1e-6 * (1.0 + decay),

@@ -59,6 +59,13 @@ mod tests {
     }
 
     #[test]
+    fn a_test_that_is_to_stop_has_no_angles() {
+        let drive = holonomic_wheels()[2];
+        let found = open_loop_angles(&drive, &test(-0.4), &|| true);
+        assert!(matches!(found, Err(Failure::Interrupted)));
+    }
+
+    #[test]
     fn angles_are_those_of_the_formula_to_half_a_count() {
         let drive = holonomic_wheels()[2];
         let angles = open_loop_angles(&drive, &test(-0.4), &|| false).unwrap();

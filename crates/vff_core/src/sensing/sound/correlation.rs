@@ -270,7 +270,26 @@ fn smooth_size(least: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::smooth_size;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::{Correlator, smooth_size};
+    use crate::error::Failure;
+
+    #[test]
+    fn it_stops_before_each_transform() {
+        let channel = [0.5; 100];
+        for looks in 0..4 {
+            let looked = AtomicUsize::new(0);
+            let stopped = || looked.fetch_add(1, Ordering::Relaxed) >= looks;
+            let found = Correlator::new(100, 5).curves([&channel; 3], None, &stopped);
+            assert!(matches!(found, Err(Failure::Interrupted)), "{looks}");
+        }
+        assert!(
+            Correlator::new(100, 5)
+                .curves([&channel; 3], None, &|| false)
+                .is_ok()
+        );
+    }
 
     #[test]
     fn smooth_sizes_are_the_next_products_of_two_three_and_five() {
