@@ -221,7 +221,9 @@ def metrics(
         manipulator_speed = number("manipulator_speed", manipulator_speed)
     if horizon is not None and type(horizon) is not float:
         horizon = number("horizon", horizon)
-    check_speeds(closing_speed, manipulator_speed)
+    usual = manipulator_speed is None and _LEAST_PLAUSIBLE <= closing_speed <= _MOST_PLAUSIBLE
+    if not usual:
+        check_speeds(closing_speed, manipulator_speed)
     try:
         values = _hrsafety.impact_metrics(
             manipulator._native, foam._native, head._native, closing_speed, manipulator_speed, horizon
@@ -231,7 +233,7 @@ def metrics(
         check_parts(manipulator, foam, head)
         raise
     doubts = manipulator.warnings + foam.warnings + head.warnings
-    if manipulator_speed is not None or not _LEAST_PLAUSIBLE <= closing_speed <= _MOST_PLAUSIBLE:
+    if not usual:
         doubts += speed_warnings(closing_speed, manipulator_speed)
     return judged(values, foam, doubts)
 
