@@ -14,7 +14,7 @@ use vff_core::run::AnyLaw;
 use vff_core::laws::impedance::attraction::Attraction;
 use vff_core::laws::impedance::law::{Form, Impedance};
 
-use crate::errors::{CoreError, CoreResult, InvalidParameterError};
+use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;
 use crate::python_law::PythonLaw;
 use crate::reactive::arena::ImpedanceFamily;
