@@ -104,3 +104,12 @@ def test_every_part_has_words_a_maker_and_a_template() -> None:
 def test_every_table_with_pictures_has_a_title_or_is_of_a_paper() -> None:
     placed = data.table("names")["pictures"]
     assert [table for table in placed if table not in names.TABLE_TITLES and not table[0].islower()] == []
+
+
+def test_every_caption_is_a_sentence_and_is_used() -> None:
+    captions = data.table("captions")
+    code = words_of_the_code()
+    for key, caption in captions.items():
+        assert key in code, key
+        assert caption[0].isupper() or caption.startswith("{")
+        assert caption.endswith(".")

@@ -9,6 +9,7 @@ from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.pages import Picture
 from hrsafety.reproduce.built_runs import LAW, SEEDS, as_built, repeated, scene, score
+from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.figures import Drawing, paths_and_distances, picture
 
 __all__ = ["make"]
@@ -54,8 +55,7 @@ def _both_robots(name: str) -> Iterator[Drawing]:
     if name == "n1":
         yield (
             "figure-7.5-energy-n1",
-            f"Motor currents and electrical loss over time (as Fig. 7.5): {where}. The resistance of each robot is a "
-            "calibration of its own.",
+            caption("figure-7.5-energy-n1", where=where),
             partial(plotting.energy, runs, labels=_ROBOTS),
         )
 
@@ -66,18 +66,18 @@ def _multiple() -> Iterator[Drawing]:
     where = "a person, a disc and another robot (section 7.5.5)"
     yield (
         "figure-7.12-layout-multiple",
-        f"The scene with {where} and their regions (as Fig. 7.12).",
+        caption("figure-7.12-layout-multiple", where=where),
         partial(plotting.layout, scene("multiple_obstacles")),
     )
     instants = [time for time in _INSTANTS if time < run.time[-1]]
     yield (
         "figure-7.13-sequence-multiple",
-        f"The two-wheel robot among {where} at one instant after the other (as Fig. 7.13).",
+        caption("figure-7.13-sequence-multiple", where=where),
         partial(plotting.time_sequence, run, instants=[*instants, float(run.time[-1])]),
     )
     yield (
         "figure-7.14-distances-multiple",
-        f"Distances of the two-wheel robot to goal and obstacles among {where} (as Fig. 7.14).",
+        caption("figure-7.14-distances-multiple", where=where),
         partial(plotting.distances, run),
     )
 
@@ -95,11 +95,11 @@ def _spread(name: str) -> Iterator[Drawing]:
     )
     yield (
         f"figure-{paths}-spread-paths-{name}",
-        f"Spread of the paths (as Fig. {paths}): {where}.",
+        caption("spread-paths", figure=paths, where=where),
         partial(plotting.repeated_paths, runs, exact=exact),
     )
     yield (
         f"figure-{distances}-spread-distances-{name}",
-        f"Spread of e and d over time (as Fig. {distances}): {where}.",
+        caption("spread-distances", figure=distances, where=where),
         partial(plotting.repeated_distances, runs, exact=exact),
     )

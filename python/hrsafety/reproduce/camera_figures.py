@@ -8,7 +8,7 @@ from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.pages import Picture
 from hrsafety.reproduce import camera_tables
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 
 __all__ = ["make"]
 
@@ -33,16 +33,8 @@ def make() -> list[Picture]:
         nav.sensing.observe(nav.sensing.Vision(error=WORST, estimator=each), time, path) for each in estimators.values()
     ]
     return [
-        picture(
-            "camera-errors",
-            "Calibration points in the picture, and mean errors of patches over 200 calibrations with noise of "
-            f"{noise} pixel (section D.4).",
-            plotting.robots.calibration_errors(camera_tables.study(noise)),
-        ),
-        picture(
-            "camera-velocities",
-            "Velocity of the person of configuration 2 from positions with errors of up to 25 mm at 16.7 Hz (as in "
-            "Fig. 6.9), by differences and by the default Kalman filter.",
-            plotting.robots.velocity_estimates(time, velocity, seen, labels=list(estimators)),
+        captioned("camera-errors", plotting.robots.calibration_errors(camera_tables.study(noise)), noise=noise),
+        captioned(
+            "camera-velocities", plotting.robots.velocity_estimates(time, velocity, seen, labels=list(estimators))
         ),
     ]

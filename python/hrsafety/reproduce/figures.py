@@ -18,6 +18,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.pages import Picture
+from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes
@@ -26,7 +27,7 @@ from hrsafety.reproduce.study import MODES, NOISE_SCALE, SIDES, Key, Study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["make", "of_study", "picture"]
+__all__ = ["captioned", "make", "of_study", "picture"]
 
 DOTS_PER_INCH = 120
 SCENES = {
@@ -63,14 +64,16 @@ def of_study(study: Study) -> list[Picture]:
             continue
         name = re.sub(r"[^a-z0-9]+", "-", experiment)
         words = f"{runs} runs, {experiment.replace('+-', '±')}"
-        caption = f"How the runs ended by gain set and mode of the stabilizing force: {words}."
-        pictures.append(picture(f"outcomes-{name}", caption, _outcomes(groups)))
+        pictures.append(captioned(f"outcomes-{name}", _outcomes(groups), key="outcomes", words=words))
         for gains, label in GAIN_LABELS.items() if experiment.startswith("crowds") else ():
-            caption = f"Least clearance with {label} by mode of the stabilizing force: {words}."
             drawn = plotting.clearances(
                 {mode: study.runs[Key(experiment, side, gains, mode)].clearance for mode in MODES}
             )
-            pictures.append(picture(f"clearances-{name}-{gains.replace('_', '-')}", caption, drawn))
+            pictures.append(
+                captioned(
+                    f"clearances-{name}-{gains.replace('_', '-')}", drawn, key="clearances", label=label, words=words
+                )
+            )
     return pictures
 
 
@@ -80,6 +83,11 @@ def _outcomes(groups: Mapping[str, Outcomes]) -> Figure:
         contacts_moving={name: own.moving.astype(np.int64) for name, own in groups.items()},
         contacts_standing={name: own.standing.astype(np.int64) for name, own in groups.items()},
     )
+
+
+def captioned(name: str, figure: Figure, /, *, key: str = "", **words: object) -> Picture:
+    """Return a figure as a picture with its caption of ``data/captions.toml``, by its name or another key."""
+    return picture(name, caption(key or name, **words), figure)
 
 
 def picture(name: str, caption: str, figure: Figure) -> Picture:
@@ -106,7 +114,7 @@ def _pictures() -> Iterator[Drawing]:
     for name, words in SCENES.items():
         yield (
             f"figure-6.3-{name}",
-            f"Configuration {name[1]} (as Fig. 6.3): {words}, with the active and critical regions.",
+            caption("layout", number=name[1], scene=words),
             partial(plotting.layout, scenarios.configuration(name)),
         )
     for name, words in SCENES.items():
@@ -133,12 +141,12 @@ def paths_and_distances(
     paths, distances = numbers
     yield (
         f"figure-{paths}-paths-{name}",
-        f"Paths{whose} ({relation} Fig. {paths}): {where}.",
+        caption("paths", whose=whose, relation=relation, figure=paths, where=where),
         partial(plotting.paths, runs, labels=labels),
     )
     yield (
         f"figure-{distances}-distances-{name}",
-        f"Distance to goal and obstacles over time ({relation} Fig. {distances}): {where}.",
+        caption("distances", relation=relation, figure=distances, where=where),
         partial(plotting.distances, runs, labels=labels),
     )
 
@@ -178,22 +186,17 @@ def _valley() -> Drawing:
     field = nav.laws.force_field(
         _law("new_vff"), scenario, position=np.column_stack([x.ravel(), y.ravel()]), velocity=(-0.7, 0.0)
     )
-    caption = (
-        "Magnitude of the repulsive force of the disc and the rectangle of configuration 3 for a robot at "
-        "(-0.7, 0) m/s (as Fig. 6.12): a valley between two walls. Critical regions are blank, and grey tops of the "
-        "surface."
+    return (
+        "figure-6.12-valley",
+        caption("figure-6.12-valley"),
+        partial(plotting.potential_valley, field, scenario, term="repulsive"),
     )
-    return "figure-6.12-valley", caption, partial(plotting.potential_valley, field, scenario, term="repulsive")
 
 
 def _measured_speed() -> Drawing:
     """Return the speed of the walking person as a camera would measure it."""
     scenario = scenarios.configuration("c2")
     run = nav.simulate(scenario, _law("new_vff"))
-    caption = (
-        "Velocity of the person of configuration 2 by backward difference of positions that are wrong by up to "
-        "0.025 m, every 0.06 s (as Fig. 6.9): the spread of about 0.8 m/s is that of the measurements."
-    )
 
     def draw() -> Figure:
         periods = np.arange(0.0, run.time[-1], scenario.control_period)
@@ -202,7 +205,7 @@ def _measured_speed() -> Drawing:
         measured = np.diff(true + error) / scenario.control_period
         return _speed_figure(periods[1:], measured, np.diff(true) / scenario.control_period)
 
-    return "figure-6.9-measured-speed", caption, draw
+    return "figure-6.9-measured-speed", caption("figure-6.9-measured-speed"), draw
 
 
 def _speed_figure(time: np.ndarray, measured: np.ndarray, true: np.ndarray) -> Figure:
@@ -228,7 +231,7 @@ def _more() -> Iterator[Drawing]:
         run = nav.simulate(scenarios.configuration(name), _law("new_vff"))
         yield (
             f"sequence-{name}",
-            f"Configuration {name[1]} at six instants: New VFF, stabilizing force off.",
+            caption("sequence", number=name[1]),
             partial(plotting.time_sequence, run),
         )
     for name, words in SCENES.items():
@@ -236,7 +239,7 @@ def _more() -> Iterator[Drawing]:
         runs = [nav.simulate(scenario, _law("new_vff", mode)) for mode in COMPARED_MODES]
         yield (
             f"lyapunov-{name}",
-            f"Lyapunov function over time, configuration {name[1]}, {words}: stabilizing force off and capped.",
+            caption("lyapunov", number=name[1], scene=words),
             partial(plotting.lyapunov, runs, labels=COMPARED_MODES),
         )
     for name in ("c1", "c4"):
@@ -244,6 +247,6 @@ def _more() -> Iterator[Drawing]:
         both = [nav.simulate(scenario, _law(gains)) for gains in GAIN_SETS]
         yield (
             f"energy-{name}",
-            f"Wheel currents and accumulated loss, configuration {name[1]}: both gain sets, stabilizing force off.",
+            caption("energy", number=name[1]),
             partial(plotting.energy, both, labels=[GAIN_LABELS[gains] for gains in GAIN_SETS]),
         )

@@ -15,6 +15,7 @@ import numpy as np
 from hrsafety import impact, plotting
 from hrsafety.pages import Picture
 from hrsafety.plotting.impacts.boundaries import refined
+from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.impact_appendix import drives
 from hrsafety.reproduce.impact_cases import (
@@ -70,13 +71,12 @@ def _head_parameters() -> Iterator[Drawing]:
     labels = [f"Simulation {key}" for key in simulations()]
     yield (
         "figure-3.10-forces",
-        "Contact force (as Fig. 3.10) of the four simulations of Table 3.2 at 1.25 m/s, Foam 1 as measured; "
-        "the asterisk is the largest force within the impact period. Real hardware would not meet the ramp at the end.",
+        caption("figure-3.10-forces"),
         partial(plotting.impact_histories, runs, labels=labels, quantities=["contact_force"], peaks=range(4)),
     )
     yield (
         "figure-3.11-accelerations",
-        "Head acceleration (as Fig. 3.11) of the same impacts; the asterisk is the peak of Simulation 3.",
+        caption("figure-3.11-accelerations"),
         partial(
             plotting.impact_histories,
             runs,
@@ -94,7 +94,7 @@ def _head_parameters() -> Iterator[Drawing]:
     ]
     yield (
         "figure-3.12-constrained",
-        "Contact force at 0.25 m/s (as Fig. 3.12): a head that is free (Simulation 3) and one held against a wall.",
+        caption("figure-3.12-constrained"),
         partial(
             plotting.impact_histories, pair, labels=["free head", "constrained head"], quantities=["contact_force"]
         ),
@@ -115,8 +115,7 @@ def _studies() -> Iterator[Drawing]:
         fixed = "stiffness 20 kN/m" if name == "mass" else "mass 9.6 kg"
         yield (
             f"figure-{number}-{name}",
-            f"Peak head acceleration over the effective {name} of the manipulator (as Fig. {number}): {fixed}, damping "
-            "250 N s/m where not said, minimum head, 1.25 m/s.",
+            caption("effective", name=name, figure=number, fixed=fixed),
             partial(
                 plotting.impact_study,
                 values / scale,
@@ -129,7 +128,7 @@ def _studies() -> Iterator[Drawing]:
     grid = np.geomspace(1e3, 100e3, 160)
     yield (
         "figure-3.15-foam",
-        "Peak head acceleration over the foam stiffness (as Fig. 3.15): damping ratios 0.05 and 0.2, minimum head.",
+        caption("figure-3.15-foam"),
         partial(
             plotting.impact_study,
             grid / KILO,
@@ -151,8 +150,7 @@ def _impact_point() -> Drawing:
     best = int(np.argmax(first))
     return (
         "figure-3.16-impact-point",
-        "Peak head acceleration over the impact point (as Fig. 3.16), as a share of the arm (0.4 and 0.5 m), whose end "
-        "moves at 0.25 m/s against a head at 1.0 m/s: a light arm is worst close to its joint, a heavy one at its end.",
+        caption("figure-3.16-impact-point"),
         partial(
             plotting.impact_study,
             share,
@@ -175,8 +173,7 @@ def _maneuvers() -> Iterator[Drawing]:
         runs = maneuvers(feed_forward=feed_forward)
         yield (
             f"figure-3.17-maneuvers-{name}",
-            f"A manipulator that speeds up or slows down by 0.51 g for 50 ms from first contact on, {words} (as Fig. "
-            "3.17): Simulation 3, 0.25 m/s against a head at 1.0 m/s.",
+            caption("maneuvers", words=words),
             partial(
                 plotting.impact_histories, list(runs.values()), labels=list(runs), quantities=quantities, peaks=range(3)
             ),
@@ -184,8 +181,7 @@ def _maneuvers() -> Iterator[Drawing]:
     runs = stops()
     yield (
         "stop-after-detection",
-        "A stop after detection (section 3.6): constant speed until 4 ms, then constant deceleration to rest at 50 ms. "
-        "The peaks come too early for it to help much; it lowers the ramp after them.",
+        caption("stop-after-detection"),
         partial(plotting.impact_histories, list(runs.values()), labels=list(runs), quantities=quantities),
     )
 
@@ -201,8 +197,7 @@ def _boundaries() -> Iterator[Drawing]:
         damping = refined(DAMPING, [design.upper, design.lower])
         yield (
             f"figure-3.{17 + arm}-boundaries",
-            f"Foam stiffness between the two boundaries (as Fig. 3.{17 + arm}): {words}, 1.25 m/s, at most 10 g with "
-            "the minimum head and 20 mm with the maximum head. Where a curve is broken it has another meaning.",
+            caption("boundaries", figure=f"3.{17 + arm}", arm=words),
             partial(
                 plotting.foam_boundaries,
                 damping,
@@ -245,8 +240,7 @@ def _experiments() -> Iterator[Drawing]:
         runs = sum(len(row.measured["a_h_max"]) for row in rows)
         yield (
             f"figure-{figure}-experiment",
-            f"Head acceleration and compression (as Fig. {figure}a and b): Foam {foam_number}, {arm}, {speed:g} m/s. "
-            f"Curves are simulated; markers are peaks and impact periods of the {runs} runs of Table {table}.",
+            caption("experiment", figure=figure, foam=foam_number, arm=arm, speed=speed, runs=runs, table=table),
             partial(_with_runs, rows),
         )
 
@@ -287,8 +281,7 @@ def _saturated() -> Drawing:
     real = impact.joints.simulate_direct_drive(drives()["right"], FOAM_OF_FIGURES, head, **setting)
     return (
         "direct-drive-saturated",
-        "The direct-drive joint with friction, controller and its limit of 5 V (appendix A.2), beside the linear joint "
-        "of the tables: peaks are alike, what follows is not.",
+        caption("direct-drive-saturated"),
         partial(
             plotting.impact_histories,
             [linear, real],

@@ -9,7 +9,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety.pages import Picture
 from hrsafety.plotting.floor import CONTACT
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 from hrsafety.reproduce.laws_compared import FORCES
 from hrsafety.reproduce.laws_figures import GOAL_COLOR, PERSON_COLOR, frame
 from hrsafety.reproduce.laws_study import LawsStudy
@@ -28,21 +28,8 @@ OSCILLATION_TIME = 12.0  # s
 def make(study: LawsStudy) -> list[Picture]:
     """Draw both demonstrations."""
     return [
-        picture(
-            "figure-2.5-collinear",
-            "Collinear condition (as Fig. 2.5): robot, obstacle and goal on one line, left a standing disc, right a "
-            "person who comes the other way (configuration 2). Above the paths, below the position along the line over "
-            "time; shaded is what the obstacle bars for a robot on the line, a cross marks the first contact, the "
-            "dashed line is the goal.",
-            _collinear(study),
-        ),
-        picture(
-            "figure-2.6-oscillation",
-            "Oscillation at the edge of an active region (as Fig. 2.6), configuration 1: paths past the disc and "
-            "magnitude of the commanded force over time. The dashed circle is the edge; the force jumps there as "
-            "given.",
-            _oscillation(study),
-        ),
+        captioned("figure-2.5-collinear", _collinear(study)),
+        captioned("figure-2.6-oscillation", _oscillation(study)),
     ]
 
 

@@ -11,7 +11,7 @@ from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.pages import Picture
 from hrsafety.plotting.floor import CONTACT
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 from hrsafety.reproduce.laws_compared import COMPARED, FORCES, PLANNERS
 from hrsafety.reproduce.laws_study import LawsStudy
 
@@ -36,37 +36,12 @@ def make(study: LawsStudy) -> list[Picture]:
     laws = {entry.label: study.printed[name] for name, entry in COMPARED.items()}
     beside = "a person who walks parallel to the way of the robot (section 6.4.5); New VFF and Masoud"
     return [
-        picture(
-            "figure-5.11-paths",
-            f"Paths with {walk} (as Fig. 5.11): nine laws with their default parameters, planners dashed; a triangle "
-            "on each path each second, the person at some times, a cross at the first contact.",
-            plotting.plot_arena_paths(laws),
-        ),
-        picture(
-            "figure-5.11-instants",
-            f"Nine laws at six instants with {walk} (as Fig. 5.11); discs have the size of robots and person, drawn "
-            "through are laws of virtual forces, dashed laws that plan.",
-            plotting.plot_arena_sequence(laws, INSTANTS),
-        ),
-        picture(
-            "figure-5.12-distances",
-            f"Distance between the centers of robot and person over time (as Fig. 5.12), {walk}: nine laws with their "
-            "default parameters. Below 0.6 m they touch. Lines end at the arrival.",
-            _distances(study),
-        ),
-        picture(
-            "unpredictable-contacts",
-            f"{len(study.varied['new_vff'].contact)} varied walks of the unpredictable person: share of walks with a "
-            "contact with its 95 % Wilson interval, and least distance of the centers (line: median, box: quartiles, "
-            "whiskers: all walks; they touch at 0.6 m).",
-            _contacts(study),
-        ),
-        picture("figure-6.19-paths", f"Paths (as Fig. 6.19): {beside}.", plotting.paths(parallel, labels=labels)),
-        picture(
-            "figure-6.20-distances",
-            f"Distance to goal and person over time (as Fig. 6.20): {beside}.",
-            plotting.distances(parallel, labels=labels),
-        ),
+        captioned("figure-5.11-paths", plotting.plot_arena_paths(laws), walk=walk),
+        captioned("figure-5.11-instants", plotting.plot_arena_sequence(laws, INSTANTS), walk=walk),
+        captioned("figure-5.12-distances", _distances(study), walk=walk),
+        captioned("unpredictable-contacts", _contacts(study), walks=len(study.varied["new_vff"].contact)),
+        captioned("figure-6.19-paths", plotting.paths(parallel, labels=labels), beside=beside),
+        captioned("figure-6.20-distances", plotting.distances(parallel, labels=labels), beside=beside),
     ]
 
 

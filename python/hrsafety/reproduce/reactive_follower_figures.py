@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from hrsafety import plotting, reactive
 from hrsafety.pages import Picture
 from hrsafety.reactive.follower.layouts import Kind
+from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, SETTINGS, FollowerStudy
 from hrsafety.reproduce.reactive_follower_tables import SECOND
@@ -28,8 +29,7 @@ def make(study: FollowerStudy) -> list[Picture]:
 def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
     yield (
         "follower_forces",
-        "Repulsion over the size of the collision vector, and over the approach speed at half the safe distance "
-        "(figure 6): K_0 = 40 N/m, D_0 = 10 N s/m, rho_0 = 0.8 m, mu_0 = 0.72 m/s.",
+        caption("follower_forces"),
         plotting.reactive.impedance_forces(
             {
                 "conventional (19-a)": reactive.VirtualImpedance(form="conventional"),
@@ -47,14 +47,18 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
         runs = {f"{law} law": reactive.follow(scene, law=laws[law], seed=seed) for law in LAWS}
         yield (
             f"follower_{kind}",
-            f"{SETTINGS[kind].capitalize()} (figure {PUBLISHED[kind]}): layout {seed}, the first one in which the "
-            f"conventional law touches and the active law follows, as in the source. It is one of {layouts:,}.",
+            caption(
+                "follower_layout",
+                setting=SETTINGS[kind].capitalize(),
+                figure=PUBLISHED[kind],
+                seed=seed,
+                layouts=layouts,
+            ),
             plotting.reactive.follower_runs(runs),
         )
     yield (
         "follower_rates",
-        f"Share of {len(study.base['static', 'active']):,} layouts with a contact, 95 % intervals; diamonds: a second "
-        "implementation of the same description in other layouts.",
+        caption("follower_rates", layouts=len(study.base["static", "active"])),
         plotting.reactive.follower_rates(
             {SETTINGS[kind]: {law: study.base[kind, law].collision_rate for law in LAWS} for kind in KINDS},
             marks={SETTINGS[kind]: {law: SECOND[f"{kind}_{law}"][0] for law in LAWS} for kind in KINDS},
@@ -64,7 +68,7 @@ def _drawings(study: FollowerStudy) -> Iterator[tuple[str, str, Figure]]:
     names = {"as specified": "front", "mirrored rear sensors": "front and rear"}
     yield (
         "follower_rear",
-        "Three more sensors, turned by half a turn: share of layouts with a contact, active law.",
+        caption("follower_rear"),
         plotting.reactive.follower_rates(
             {
                 SETTINGS[kind]: {

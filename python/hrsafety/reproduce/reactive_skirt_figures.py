@@ -6,7 +6,7 @@ import numpy as np
 
 from hrsafety import plotting, reactive
 from hrsafety.pages import Picture
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 from hrsafety.reproduce.reactive_skirt_study import LOW, LOW_SHARE, SkirtStudy
 
 __all__ = ["make"]
@@ -26,11 +26,7 @@ def make(study: SkirtStudy) -> list[Picture]:
 
 def _ring() -> Picture:
     figure = plotting.reactive.skirt_ring(reactive.UltrasonicSkirt(), directions=reactive.skirt.MOTION_DIRECTIONS)
-    caption = (
-        "The published ring: nine sensors clockwise, their beams up to the triggering distance, wheels (black), and "
-        "the motion directions."
-    )
-    return picture("skirt-ring", caption, figure)
+    return captioned("skirt-ring", figure)
 
 
 def _runs(study: SkirtStudy) -> Picture:
@@ -45,14 +41,12 @@ def _runs(study: SkirtStudy) -> Picture:
                 direction=str(low.direction[row]), layout=int(low.layout[row]), repeat=int(low.repeat[row]), scene=scene
             )
             shown[f"contact {words}"] = run
-    caption = "Tests with 5 % of the discs below the sensors: the first one of four directions, and the first contacts."
-    return picture("skirt-runs", caption, plotting.reactive.skirt_runs(shown))
+    return captioned("skirt-runs", plotting.reactive.skirt_runs(shown))
 
 
 def _curve(study: SkirtStudy) -> Picture:
     figure = plotting.reactive.skirt_clearances({name: study.tests[name] for name in CURVES}, printed=PRINTED_SHARE)
-    caption = 'Share of the tests that avoid all discs completely, over the limit below which a clearance is "close".'
-    return picture("skirt-clearances", caption, figure)
+    return captioned("skirt-clearances", figure)
 
 
 def _counts() -> Picture:
@@ -61,8 +55,4 @@ def _counts() -> Picture:
         reactive.smallest_skirt(CONTACT_SHARE, chassis_radius=radius, speed=speed, layouts=STUDY_LAYOUTS)
         for radius, speed in settings
     ]
-    caption = (
-        f"Contacts by the number of sensors with equal gaps, each fired in turn every 20 ms: the smallest number that "
-        f"keeps them below {100 * CONTACT_SHARE:g} % (upper end of the 95 % interval), 1,000 tests for each mark."
-    )
-    return picture("skirt-sensor-counts", caption, plotting.reactive.skirt_sensor_counts(studies))
+    return captioned("skirt-sensor-counts", plotting.reactive.skirt_sensor_counts(studies), share=100 * CONTACT_SHARE)

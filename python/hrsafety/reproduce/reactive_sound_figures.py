@@ -10,6 +10,7 @@ import numpy as np
 
 from hrsafety import plotting, reactive
 from hrsafety.pages import Picture
+from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.figures import picture
 from hrsafety.reproduce.reactive_sound_study import BURST, NOISE, ROW
 
@@ -35,8 +36,7 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
     heard = reactive.record_burst(BURST, ROW, range=DISTANCE, bearing=BEARING, noise=0.01, lead=LEAD)
     yield (
         "sound_burst",
-        "A burst from 2 m, 30 deg to the left: its beginning at the three microphones, with 0.01 of full scale of "
-        "noise and 10 bits. Dashed: the arrivals.",
+        caption("sound_burst"),
         plotting.reactive.sound_burst(
             heard, arrivals=[LEAD + each - min(delays) for each in delays], span=(LEAD - 0.001, LEAD + 0.011)
         ),
@@ -45,8 +45,7 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
     rate = noisy.sample_rate
     yield (
         "sound_likeness",
-        f"How alike M1 is to M2 and M3 over the lag, 4096 samples of the same burst with {NOISE:g} of full scale of "
-        "noise. Dashed: the true lags. The similarity of (5) is the inverse of the mean square difference.",
+        caption("sound_likeness", noise=NOISE),
         plotting.reactive.sound_likeness(
             {
                 "similarity": reactive.sound.likeness(noisy, ROW, method="mean_square"),
@@ -65,7 +64,6 @@ def _drawings() -> Iterator[tuple[str, str, Figure]]:
     fixes = reactive.sound.jittered_fixes(ROW, range=distance, bearing=np.radians(bearing), runs=SHOWN_RUNS)
     yield (
         "sound_fixes",
-        f"{SHOWN_RUNS} fixes of each source with a quarter of a sample of jitter on every arrival, seen from above. "
-        "Crosses: the sources; curves: two standard deviations by the covariance of a fix.",
+        caption("sound_fixes", runs=SHOWN_RUNS),
         plotting.reactive.sound_fixes(fixes, truth, labels=[f"{each:g} m, {angle:g} deg" for each, angle in SOURCES]),
     )

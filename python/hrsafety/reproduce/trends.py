@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hrsafety.pages import Picture
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,11 +33,15 @@ def make(cells: Sequence[Cell]) -> list[Picture]:
     pictures = []
     for gain, *tables in GAINS:
         own = [cell for cell in cells if cell.table in tables]
-        caption = (
-            f"Arrival time, least distance and score over the change of {gain} (Tables {' and '.join(tables)}): "
-            "measured as lines, printed as circles; configurations 1 to 3, optimized gains."
+        pictures.append(
+            captioned(
+                f"trend-{gain.replace('_', '').lower()}",
+                _figure(gain, own),
+                key="trend",
+                gain=gain,
+                tables=" and ".join(tables),
+            )
         )
-        pictures.append(picture(f"trend-{gain.replace('_', '').lower()}", caption, _figure(gain, own)))
     return pictures
 
 

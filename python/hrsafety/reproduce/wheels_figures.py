@@ -5,7 +5,7 @@ from __future__ import annotations
 from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.pages import Picture
-from hrsafety.reproduce.figures import picture
+from hrsafety.reproduce.figures import captioned
 from hrsafety.reproduce.wheels_tables import COMMANDS, ROBOTS, sine_runs
 
 __all__ = ["make"]
@@ -21,20 +21,25 @@ def make() -> list[Picture]:
         index = len(wheels) - 1
         runs = [sine_runs(letter, "differences", True)[index], sine_runs(letter, "observer", True)[index]]
         made.append(
-            picture(
+            captioned(
                 f"wheels-{letter}-tracking",
-                f"Wheel {index + 1} of the {name} after 1 rad/s, 0.5 Hz, with the speed from differences of counts and "
-                f"from the observer (section {letter}.3, Figure {figure}).",
                 plotting.robots.wheel_tracking(runs, labels=["differences of counts", "observer"]),
+                key="wheels-tracking",
+                wheel=index + 1,
+                robot=name,
+                letter=letter,
+                figure=figure,
             )
         )
         tests = nav.robots.open_loop_tests(wheels[index], COMMANDS)
         made.append(
-            picture(
+            captioned(
                 f"wheels-{letter}-identification",
-                f"Simulated open-loop tests of wheel {index + 1} of the {name} with the encoder's counts, and the "
-                f"wheel that is identified from them (section {letter}.2); a cross is a test that did not move.",
                 plotting.robots.wheel_identification(tests, nav.robots.identify_wheel(tests)),
+                key="wheels-identification",
+                wheel=index + 1,
+                robot=name,
+                letter=letter,
             )
         )
     return made

@@ -7,13 +7,18 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-__all__ = ["printed_text", "table"]
+__all__ = ["caption", "printed_text", "table"]
 
 
 @cache
 def table(name: str) -> dict[str, Any]:
     """Return a TOML file of this folder; do not change it."""
     return tomllib.loads(_read(f"{name}.toml"))
+
+
+def caption(key: str, /, **words: object) -> str:
+    """Return what a picture shows, with words filled in."""
+    return str(table("captions")[key]).format_map(words)
 
 
 @cache
