@@ -80,7 +80,10 @@ def _compared(cases: Cases, found: Found, first: int, second: int) -> Iterator[C
         yield SHEET.number(
             "compared",
             _ratio_percent(getattr(found[first], quantity), getattr(found[second], quantity)),
-            **{"first": first, "second": second, "name": name, "figure": figure},
+            first=first,
+            second=second,
+            name=name,
+            figure=figure,
             as_printed=_ratio_percent(*(getattr(each, quantity) for each in as_printed)),
         )
 

@@ -91,7 +91,9 @@ def _percentages() -> Iterator[Cell]:
             yield SHEET.number(
                 "maneuver",
                 _change(fed[name], fed["constant speed"], quantity),
-                **{"name": name, "column": column, "figure": f"{key}_{kind}"},
+                name=name,
+                column=column,
+                figure=f"{key}_{kind}",
                 without=_change(alone[name], alone["constant speed"], quantity),
             )
 

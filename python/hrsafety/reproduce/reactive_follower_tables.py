@@ -72,10 +72,15 @@ def _rate(found: FollowerExperiment, kind: str, law: str) -> Cell:
     return SHEET.claim(
         "rate",
         holds=rate.low > 0.5 if "collides" in said else rate.high < 0.05,
-        **{"setting": SETTINGS[kind], "law": law, "said": said},
+        setting=SETTINGS[kind],
+        law=law,
+        said=said,
         rate=_shown(rate),
         follows=_shown(found.following_rate),
-        **{"value": value, "low": other.low, "high": other.high, "runs": runs},
+        value=value,
+        low=other.low,
+        high=other.high,
+        runs=runs,
         verdict="overlap" if _overlap(rate, other) else "do not overlap",
     )
 
@@ -107,7 +112,11 @@ def _influence(study: FollowerStudy, name: str, kind: str, law: str, found: Foll
         "influence",
         holds=agrees,
         number=PRINTED if "as printed" in name or name.startswith("(20)") else INFLUENCES,
-        **{"row": name, "setting": SETTINGS[kind], "law": law, "rate": _shown(rate), "base": base.value},
+        row=name,
+        setting=SETTINGS[kind],
+        law=law,
+        rate=_shown(rate),
+        base=base.value,
         said="-" if value is None else f"second implementation {value:.2f}",
         why=_DATA["notes"].get(name, "") if agrees else SHEET.text("unexplained"),
     )

@@ -124,7 +124,9 @@ def _published_shares(study: SkirtStudy) -> Iterator[Cell]:
         yield SHEET.claim(
             "avoids",
             holds=avoids.low <= of_40.high and avoids.high >= of_40.low,
-            **{"row": name, "limit": limit, "share": _shown(avoids)},
+            row=name,
+            limit=limit,
+            share=_shown(avoids),
             said=f"{100 * printed:.1f} %, 31 of 40 tests [{100 * of_40.low:.1f}, {100 * of_40.high:.1f}]",
             why=SHEET.text("fitted" if limit == CLOSELY_FITTED else "not_fitted"),
         )

@@ -57,7 +57,10 @@ def _trends(study: SoundStudy) -> Iterator[Cell]:
     yield SHEET.claim(
         "noise",
         holds=len(known) == len(wanted) and max(known) < 1.2 * min(known),
-        **{"least": min(known), "most": max(known), "low": LEVELS[0], "high": LEVELS[-1]},
+        least=min(known),
+        most=max(known),
+        low=LEVELS[0],
+        high=LEVELS[-1],
         beyond=len(wanted) - len(known),
     )
 

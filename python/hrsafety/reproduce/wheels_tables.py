@@ -112,7 +112,10 @@ def _loops(letter: str) -> Iterator[Cell]:
         ratio = (wheel.derivative_gain + wheel.viscous_friction) / (2.0 * wheel.inertia * frequency)
         yield SHEET.listed(
             "loop",
-            **{"letter": letter, "wheel": row["wheel"], "K_P": row["K_P"], "K_D": row["K_D"]},
+            letter=letter,
+            wheel=row["wheel"],
+            K_P=row["K_P"],
+            K_D=row["K_D"],
             frequency=frequency,
             ratio=ratio,
             error=MILLI * run.rms_angle_error,
