@@ -138,9 +138,12 @@ impl Correlator {
         phase_of: Option<PhaseBins>,
         interrupted: Interrupted<'_>,
     ) -> Result<[Vec<f64>; 2]> {
-        let attend = || match interrupted() {
-            true => Err(Failure::Interrupted),
-            false => Ok(()),
+        let attend = || {
+            if interrupted() {
+                Err(Failure::Interrupted)
+            } else {
+                Ok(())
+            }
         };
         let zero = Number::new(0.0, 0.0);
         self.first.fill(zero);
