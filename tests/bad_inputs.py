@@ -214,6 +214,8 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "milliseconds in a recording": "impact.recorded_metrics(np.arange(0.0, 100.0, 1.0), "
         "np.sin(np.linspace(0.0, np.pi, 100)))",
         "closing speed of 1e308 m/s": "impact.simulate(arm, foam, head, closing_speed=1e308)",
+        "foam as stiff as no solid": "impact.identification.drop_trajectory("
+        "[0.0, 0.4], height=0.05, mass=1.54, stiffness=1e20, damping_ratio=0.1)",
         "forces of 1e200 N": "impact.identification.fit_static([1e200, 2e200, 3e200], [0.001, 0.002, 0.003])",
         "signal for a channel class": "impact.criteria.channel_filter(np.arange(9) / 1e4, np.ones(9), np.ones(3))",
         "masked acceleration": "impact.hic([0.0, 0.001, 0.002], np.ma.masked_greater([0.0, 50.0, 1e6], 1e3))",

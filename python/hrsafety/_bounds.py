@@ -28,6 +28,7 @@ __all__ = [
     "MOST_RUNS",
     "MOST_SAMPLES",
     "MOST_SEEDS",
+    "MOST_SWINGS",
     "MOST_TASKS",
     "MOST_THREADS",
 ]
@@ -61,6 +62,8 @@ MOST_FRAMES = 6000
 MOST_DRAWN = 10**6
 # Samples of a record: 80 MB a column.
 MOST_SAMPLES = 10**7
+# Radians that a mass swings on its foam within a record: a drop test has a hundred.
+MOST_SWINGS = 10**6
 # Draws of a bootstrap.
 MOST_RESAMPLES = 10**6
 # Pixels along a side of a picture.

@@ -141,6 +141,16 @@ DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
         lambda period: reactive.skirt_test(reactive.UltrasonicSkirt(firing_period=period), layouts=1),
         (1e-308, 1e-12),
     ),
+    "swings of a drop": (
+        lambda stiffness: impact.identification.drop_trajectory(
+            FLIGHT, height=0.05, mass=1.54, stiffness=stiffness, damping_ratio=0.1
+        ),
+        (1e20, 1e200),
+    ),
+    "swings of a fit": (
+        lambda mass: impact.identify_foam(24e3 * DEPTH, DEPTH, FLIGHT, DROP, mass),
+        (1e-12, 1e-300),
+    ),
     "record": (
         lambda duration: impact.simulate(
             impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=1.0, duration=duration

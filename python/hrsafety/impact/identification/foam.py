@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
-from hrsafety._bounds import MOST_RESAMPLES
+from hrsafety._bounds import MOST_RESAMPLES, MOST_SWINGS
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import THICKNESS, Foam
 from hrsafety.plausibility import ResultWarning, implausible
@@ -175,6 +176,20 @@ def _check_squares(**signals: Array) -> None:
             raise InvalidParameterError(name, f"be at most {MOST:g}, so that squares can be summed", largest)
 
 
+def _check_swings(name: str, time: Array, what: str, mass: object, stiffness: float) -> None:
+    """Refuse records in which a mass swings so often on its foam that each swing cannot be looked for.
+
+    A value that breaks another rule is left to the core.
+    """
+    moving = number(what, mass)
+    span = float(time[-1] - time[0]) if len(time) else 0.0
+    if not (0.0 < moving < np.inf and 0.0 < stiffness < np.inf and 0.0 < span < np.inf):
+        return
+    if span * math.sqrt(stiffness / moving) > MOST_SWINGS:
+        rule = f"make at most {MOST_SWINGS} rad of swing in the {span:g} s of {name}, on {stiffness:.3g} N/m"
+        raise InvalidParameterError(what, rule, mass, "masses are in kg, stiffness is in N/m, times are in s")
+
+
 def _extremes(values: Array) -> Array:
     return np.array([values.min(), values.max()])
 
@@ -268,6 +283,11 @@ def identify_foam(
     force, compression = columns(static_force=static_force, static_compression=static_compression)
     drops = _drops(drop_time, drop_position)
     _check_squares(static_force=force, static_compression=compression)
+    if len(force) == len(compression) > 0:
+        with np.errstate(all="ignore"):
+            slope = float(force @ compression / (compression @ compression))
+        for index, (time, _) in enumerate(drops):
+            _check_swings(f"drop_time[{index}]", time, "moving_mass", moving_mass, slope)
     mass, pull = number("moving_mass", moving_mass), number("gravity", gravity)
     doubts = _static_warnings(force, compression) if len(force) else ()
     doubts += _drop_warnings(drops, mass, pull)
@@ -365,11 +385,13 @@ def drop_trajectory(
     ...     [0.0, 0.05], height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112).round(6).tolist()
     [0.05, 0.037742]
     """
+    instants, spring = vector("time", time), number("stiffness", stiffness)
+    _check_swings("time", instants, "mass", mass, spring)
     return _hrsafety.drop_trajectory(
-        vector("time", time),
+        instants,
         height=number("height", height),
         mass=number("mass", mass),
-        stiffness=number("stiffness", stiffness),
+        stiffness=spring,
         damping_ratio=number("damping_ratio", damping_ratio),
         friction=number("friction", friction),
         gravity=number("gravity", gravity),
