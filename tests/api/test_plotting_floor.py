@@ -30,6 +30,12 @@ def test_panels_have_equal_scales_and_labels_where_nothing_lies_below() -> None:
     assert [axes.get_ylabel() for axes in panels] == ["y (m)", "", "y (m)"]
 
 
+def test_only_titles_of_two_lines_are_small() -> None:
+    _, (usual, small) = floor.panels(LIMITS, titles=["a", "a\nb"], columns=2, entries=0)
+    plain = usual.figure.add_subplot().set_title("a").get_fontsize()
+    assert usual.title.get_fontsize() == plain > small.title.get_fontsize()
+
+
 def test_figure_grows_with_rows_and_legend() -> None:
     def height(number: int, entries: int) -> float:
         figure, _ = floor.panels(LIMITS, titles=["t"] * number, columns=2, entries=entries)

@@ -9,9 +9,10 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from hrsafety.pages import Picture
-from hrsafety.reproduce import figures, names, page, tables
+from hrsafety.reproduce import figures, names, page, tables, wheels_tables
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.parts import Made
+from hrsafety.reproduce.parts import PARTS, Made
+from hrsafety.reproduce.sections import section_of
 
 NAMES = [name for name, _, _ in figures._pictures()]
 
@@ -46,6 +47,25 @@ def test_no_picture_is_lost_or_shown_twice() -> None:
     shown = [each for table in placed for each in names.beside(table, pictures)]
     rest = names.beside_none(placed, pictures)
     assert sorted(each.name for each in [*shown, *rest]) == sorted(each.name for each in pictures)
+
+
+def test_pictures_of_a_study_stand_in_its_own_section_only() -> None:
+    cells = tables.chapter_6()
+    made = {
+        "tables-6": Made(cells=cells),
+        "figures-6": Made(pictures=[Picture(name="figure-6.8-paths-c2", caption="A.", png=b"")]),
+        "stabilizing": Made(pictures=[Picture(name="outcomes-c2-noise", caption="A.", png=b"")]),
+    }
+    section = section_of(PARTS["tables-6"], made, cells)
+    assert [each.name for view in section["tables"] for each in view.pictures] == ["figure-6.8-paths-c2"]
+
+
+def test_tables_of_the_wheels_stand_robot_by_robot() -> None:
+    cells = wheels_tables.cells()
+    shown = [view.key for view in section_of(PARTS["wheels"], {"wheels": Made(cells=cells)}, cells)["tables"]]
+    robots = (("D.1", "Section D.2", "D.2", "Section D.3"), ("E.1", "Section E.2", "E.2", "Section E.3"))
+    assert shown == [table for robot in robots for table in robot]
+    assert set(shown) == {cell.table for cell in cells}
 
 
 def test_reasons_wrap_and_names_of_rows_too() -> None:

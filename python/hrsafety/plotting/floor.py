@@ -88,7 +88,8 @@ def panels(
             axes.set_xlabel("x (m)")
             axes.tick_params(labelbottom=True)
         if titles[number]:
-            axes.set_title(titles[number], fontsize=style.SMALL_FONT_SIZE if "\n" in titles[number] else None)
+            long: style.Properties = {"fontsize": style.SMALL_FONT_SIZE} if "\n" in titles[number] else {}
+            axes.set_title(titles[number], **long)
     return figure, grid[: len(titles)]
 
 

@@ -11,7 +11,7 @@ from hrsafety._atomic import write_file
 from hrsafety.pages import Picture
 from hrsafety.reproduce import records
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.parts import Made
+from hrsafety.reproduce.parts import PARTS, Made
 from hrsafety.reproduce.sections import section_of, shown_parts
 from hrsafety.reproduce.views import by_table, counted, view
 
@@ -76,7 +76,7 @@ def write(report: Report, folder: Path) -> Path:
 def html(report: Report) -> str:
     """Return the page: style and pictures inside, nothing loaded from elsewhere."""
     parts = shown_parts(report.made, report.cells)
-    own = [cell for part in parts if part.counted for cell in report.made[part.name].cells]
+    own = [cell for name, made in report.made.items() if PARTS[name].counted for cell in made.cells]
     return pages.written(
         "reproduce/page.html",
         title="Published tables and figures, measured again",

@@ -72,6 +72,10 @@ class Part:
         Template of the section.
     counted : bool
         Whether its cells count in the table at the top of the page.
+    placed : bool
+        Whether its pictures may stand beside tables; else all stand in its own section.
+    tables : list of str
+        Order of its tables; that of its cells if empty.
     """
 
     name: str
@@ -82,6 +86,8 @@ class Part:
     note: str = ""
     template: str = "tables.html"
     counted: bool = True
+    placed: bool = True
+    tables: list[str] = field(default_factory=list)
 
 
 def _laws(say: Say) -> Made:

@@ -42,10 +42,11 @@ def shown_parts(made: Mapping[str, Made], cells: Sequence[Cell]) -> list[Part]:
 def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[Cell]) -> dict[str, Any]:
     """Return what the template of a section shows."""
     own = made[part.name]
-    pictures = [picture for each in made.values() for picture in each.pictures]
+    pictures = [picture for name, each in made.items() if PARTS[name].placed for picture in each.pictures]
+    groups = by_table(own.cells)
     section: dict[str, Any] = {
         "part": part,
-        "tables": [view(table, group, pictures) for table, group in by_table(own.cells).items()],
+        "tables": [view(table, groups[table], pictures) for table in part.tables or groups],
         "total": counted(own.cells),
         "pictures": beside_none(list(by_table(cells)), own.pictures),
         "study": own.study,
