@@ -55,8 +55,9 @@ def simulate_file(options: argparse.Namespace) -> None:
     found = output.warnings_of(scenario, score.trajectory)
     written = []
     if place is not None:
+        written = [score.trajectory.to_csv(place / "trajectory.csv")]
         pictures = dict(_draw(score.trajectory, place))
-        written = [score.trajectory.to_csv(place / "trajectory.csv"), *pictures]
+        written += pictures
         page = simulate_page.html(
             source=options.scenario,
             said=_how_it_ended(score.trajectory),

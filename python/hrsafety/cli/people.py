@@ -83,8 +83,9 @@ def simulate_people(options: argparse.Namespace) -> None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
         if place is not None:
+            files = list(_tables(crossings, summary, met, place))
             pictures = dict(_draw(summary, trajectory, place))
-            files = [*_tables(crossings, summary, met, place), *pictures]
+            files += pictures
             page = simulate_page.html(
                 source=options.people,
                 said=_how_they_ended(summary, verdict.counted(summary)),
