@@ -149,7 +149,7 @@ DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
     ),
     "swings of a fit": (
         lambda mass: impact.identify_foam(24e3 * DEPTH, DEPTH, FLIGHT, DROP, mass),
-        (1e-12, 1e-300),
+        (1e-12, 1e-300, 1e7, 1e308),
     ),
     "record": (
         lambda duration: impact.simulate(

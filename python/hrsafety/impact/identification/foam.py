@@ -23,6 +23,8 @@ Contact = Literal["unilateral", "attached"]
 _CONTACTS = ("unilateral", "attached")
 # Of what is fitted, in SI units; squares of more overflow.
 MOST = 1e100
+# Of what is dropped, in kg: with more the fit looks for bounces that there are not.
+MOST_MASS = 1e6
 
 
 class _Line(NamedTuple):
@@ -289,6 +291,8 @@ def identify_foam(
         for index, (time, _) in enumerate(drops):
             _check_swings(f"drop_time[{index}]", time, "moving_mass", moving_mass, slope)
     mass, pull = number("moving_mass", moving_mass), number("gravity", gravity)
+    if MOST_MASS < mass < np.inf:
+        raise InvalidParameterError("moving_mass", f"be at most {MOST_MASS:g} kg", moving_mass)
     doubts = _static_warnings(force, compression) if len(force) else ()
     doubts += _drop_warnings(drops, mass, pull)
     try:
