@@ -32,6 +32,6 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_repeated_runs(benchmark: Any, case: str) -> None:
     scenario, built = CASES[case]
-    runs = benchmark(nav.metrics.repeat, scenario, LAW, seeds=SEEDS, built=built, threads=1)
+    runs = benchmark(nav.simulate_many, scenario, LAW, seeds=SEEDS, built=built, paths=True, threads=1)
     benchmark.extra_info["times_real_time"] = round(float(runs.end_time.sum()) / benchmark.stats.stats.min)
     assert (runs.outcome == "arrived").mean() > 0.5

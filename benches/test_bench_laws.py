@@ -42,7 +42,7 @@ GRAPH_PLANNERS: dict[str, nav.Law] = {
     "extended RRT": nav.RapidlyExploringRandomTree(),
     "Field D*": nav.FieldDStar(),
 }
-Work = Callable[[], nav.BatchSummary]
+Work = Callable[[], nav.RunTable]
 
 
 def gain_sets(law: nav.Law) -> npt.NDArray[np.float64]:

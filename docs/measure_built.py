@@ -107,10 +107,10 @@ def cameras() -> Iterator[str]:
         for estimator, filtered in ESTIMATORS.items():
             for side in ("afresh", "kept beyond 3.05"):
                 driver = law("New", SIDES[side])
-                cells = [cell([nav.built.simulate_built(exact, driver, as_built(None)).outcome])]
+                cells = [cell([nav.simulate(exact, driver, built=as_built(None)).outcome])]
                 for camera in CAMERAS.values():
                     built = as_built(replace(camera, estimator=filtered))
-                    cells.append(cell(nav.metrics.repeat(exact, driver, seeds=SEEDS, built=built).outcome.tolist()))
+                    cells.append(cell(nav.simulate_many(exact, driver, seeds=SEEDS, built=built).outcome.tolist()))
                 yield line(f"{name}, {estimator}, {side}", *cells)
     yield ""
 
@@ -145,7 +145,7 @@ def crowds() -> tuple[nav.Scenario, ...]:
     return tuple(scenarios.random_crowd(PEOPLE, seed=seed) for seed in CROWD_SEEDS)
 
 
-def crowd_tables(sensing: Sensing) -> dict[str, nav.BatchSummary]:
+def crowd_tables(sensing: Sensing) -> dict[str, nav.RunTable]:
     """Return the runs with one sensing of robot and people, by the rule for the side."""
     measurement = None if sensing.measurement is None else replace(sensing.measurement, of="both")
     scenes = [replace(crowd, measurement=measurement) for crowd in crowds()]
@@ -154,7 +154,7 @@ def crowd_tables(sensing: Sensing) -> dict[str, nav.BatchSummary]:
     return {name: nav.simulate_batch(scenes, law("New", side)) for name, side in SIDES.items()}
 
 
-def compared(table: nav.BatchSummary, afresh: nav.BatchSummary) -> str:
+def compared(table: nav.RunTable, afresh: nav.RunTable) -> str:
     """Return in how many crowds only this side, and only the one decided afresh, moved into somebody."""
     paired = compare_paired(table.contacts_moving > 0, afresh.contacts_moving > 0)
     return f"{paired.only_first} / {paired.only_second}, {paired.p_value:.2g}"

@@ -166,7 +166,7 @@ def tuned_table(found: dict[str, Tuned]) -> Iterator[str]:
     yield ""
 
 
-def outcome(result: nav.ArenaResult, row: int, runs: np.ndarray) -> str:
+def outcome(result: nav.Comparison, row: int, runs: np.ndarray) -> str:
     """Return time, clearance and H of one law in one scene, or what went wrong."""
     ends = result.outcome[row, runs]
     arrived = ends == "arrived"
@@ -184,7 +184,7 @@ def outcome(result: nav.ArenaResult, row: int, runs: np.ndarray) -> str:
 def scene_table(laws: dict[str, nav.Law]) -> Iterator[str]:
     """Yield every law in the scenes of the source."""
     say("scenes of the source")
-    result = nav.arena(laws, {name: scenarios.configuration(name) for name in SCENES}, seeds=DRAWS)
+    result = nav.compare({name: scenarios.configuration(name) for name in SCENES}, laws, seeds=DRAWS)
     yield from head("", *(name.replace("_human", " person") for name in SCENES))
     for row, name in enumerate(laws):
         yield line(name, *(outcome(result, row, result.scenario == index) for index in range(len(SCENES))))
@@ -208,14 +208,13 @@ def cost(law: nav.Law, scenes: Sequence[nav.Scenario]) -> float:
     return 1e6 * best
 
 
-def crowds(laws: dict[str, nav.Law], obstacles: int) -> nav.ArenaResult:
+def crowds(laws: dict[str, nav.Law], obstacles: int) -> nav.Comparison:
     """Return all laws among the same random obstacles."""
-    names = list(laws)
     scenes = {str(seed): scene for seed, scene in zip(TEST, traffic(obstacles, TEST), strict=True)}
-    return nav.arena(laws, scenes, progress=lambda done, _: say("crowds of", obstacles, "-", names[done - 1]))
+    return nav.compare(scenes, laws, progress=lambda done, runs: say("crowds of", obstacles, "-", done, "of", runs))
 
 
-def crowd_table(laws: dict[str, nav.Law], result: nav.ArenaResult, obstacles: int) -> Iterator[str]:
+def crowd_table(laws: dict[str, nav.Law], result: nav.Comparison, obstacles: int) -> Iterator[str]:
     """Yield shares and means of every law among random obstacles."""
     timed = traffic(obstacles, TEST[:TIMED])
     titles = ("success (%)", "contact (%)", "while moving (%)", "T (s)", "clearance (m)", "E (J)", "H", "step (µs)")
@@ -235,7 +234,7 @@ def crowd_table(laws: dict[str, nav.Law], result: nav.ArenaResult, obstacles: in
     yield ""
 
 
-def paired_table(laws: dict[str, nav.Law], results: Sequence[nav.ArenaResult]) -> Iterator[str]:
+def paired_table(laws: dict[str, nav.Law], results: Sequence[nav.Comparison]) -> Iterator[str]:
     """Yield each law beside the new field with its own kind of parameters, episode by episode."""
     titles = [title for n in CROWDS for title in (f"contacts, {n}", f"p, {n}", f"difference of H, {n}")]
     yield from head("", *titles)

@@ -130,7 +130,7 @@ def contact_cells(name: str, body: str, sensing: str, sized: bool) -> dict[tuple
     return cells
 
 
-def single(table: nav.BatchSummary) -> str:
+def single(table: nav.RunTable) -> str:
     """Return what a single run touched."""
     if table.contacts_moving[0]:
         return "contact, moving"

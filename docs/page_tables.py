@@ -28,7 +28,7 @@ def percent(count: int, runs: int, digits: int = 1) -> str:
     return f"{100 * share.value:.{digits}f} ({100 * share.low:.{digits}f} to {100 * share.high:.{digits}f})"
 
 
-def shares(table: nav.BatchSummary) -> str:
+def shares(table: nav.RunTable) -> str:
     """Return the shares of runs with a contact while the robot moves, and only while it stands."""
     moving = table.contacts_moving > 0
     standing = (table.contacts_standing > 0) & ~moving

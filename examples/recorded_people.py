@@ -24,7 +24,7 @@ def main(path: str) -> None:
     crossings = scenarios.crossings(recording, runs=RUNS)
     for mode in ("off", "capped"):
         law = nav.VirtualForceField(stabilizing=mode)
-        table = nav.simulate_batch([crossing.scenario for crossing in crossings], law)
+        table = nav.simulate_many([crossing.scenario for crossing in crossings], law)
         print(f"\nstabilizing force {mode}")
         print(f"  reached the goal                  {int((table.arrival_time > 0).sum()):3d} of {len(table)}")
         print(f"  without touching anybody          {int((table.outcome == 'arrived').sum()):3d}")

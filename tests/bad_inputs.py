@@ -168,9 +168,10 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "gain by half its name": 'nav.simulate_batch([scene], law, {"attractive": [3.0]})',
         "100,000 threads": "nav.simulate_batch([scene], law, threads=100_000)",
         "three lanes": "nav.simulate_batch([scene], law, lanes=3)",
-        "arena without laws": "nav.arena({}, [scene])",
-        "unknown law in an arena": 'nav.arena({"field": law}, [scene]).standing("Field")',
-        "no seeds": "nav.metrics.repeat(scene, law, seeds=0)",
+        "comparison without laws": "nav.compare(scene, {})",
+        "unknown law in a comparison": 'nav.compare(scene, {"field": law}).standing("Field")',
+        "gains of two kinds of laws": "nav.simulate_many(scene, [law, nav.Masoud()], gains=[[3.0, 20.0, 17.0, 0.25]])",
+        "no seeds": "nav.simulate_many(scene, law, seeds=0)",
         "position of one number": "nav.laws.command(law, scene, position=(3.0,), velocity=(0.0, 0.0))",
         "unknown search method": 'nav.optimize_gains([scene], law, method="cmaes")',
         "bounds exchanged": 'nav.optimize_gains([scene], law, bounds={"attractive_gain": (50.0, 0.0)})',
@@ -182,7 +183,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "[[0.0, 0.0], [1.0, 0.0]])",
         "camera of 1e12 frames per second": "nav.sensing.observe(nav.sensing.Vision(period=1e-12), [0.0, 1.0], "
         "[[0.0, 0.0], [1.0, 0.0]])",
-        "seeds without end": "nav.metrics.repeat(scene, law, seeds=2**53)",
+        "seeds without end": "nav.simulate_many(scene, law, seeds=2**53)",
         "refinements without end": "nav.optimize_gains([scene], law, refinements=2**31)",
     },
     "Impacts": {

@@ -29,6 +29,7 @@ __all__ = [
     "MOST_SAMPLES",
     "MOST_SEEDS",
     "MOST_SWINGS",
+    "MOST_TABLE_ROWS",
     "MOST_TASKS",
     "MOST_THREADS",
 ]
@@ -50,6 +51,8 @@ MOST_DRAWS = 10**6
 MOST_LAYOUTS = 10**7
 # Seeds of repeated runs, of noise in a search, of a calibration study.
 MOST_SEEDS = 10**6
+# Rows of a table of runs: about half a kilobyte each while it is made.
+MOST_TABLE_ROWS = 10**7
 # Runs of all sources together: their delays fill 1.6 GB.
 MOST_RUNS = 10**8
 # Tests of one kind, timed runs, runs across a recording.

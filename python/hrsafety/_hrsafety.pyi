@@ -55,7 +55,7 @@ __all__ = [
     "WheelDrive",
     "attraction_forces",
     "built_evaluate",
-    "built_repeat",
+    "built_many",
     "built_simulate",
     "burst_trial_delays",
     "cast_rays",
@@ -268,6 +268,8 @@ class Scenario:
     def __new__(cls, **given: object) -> Self: ...
     def point_mass(self) -> tuple[float, float, float, float]:
         """Return mass, radius, largest speed and acceleration of the point mass that a law drives."""
+    def reseeded(self, seed: int) -> Self:
+        """Return the same scenario with another seed."""
 
 @final
 class Law:
@@ -1293,18 +1295,20 @@ def built_evaluate(
 ) -> tuple[dict[str, float], dict[str, Any], dict[str, Any]]:
     """Return the score of a run of a robot as built, the run and the nominal run."""
 
-def built_repeat(
-    scenario: Scenario,
-    law: Law,
+def built_many(
+    scenarios: Sequence[Scenario],
+    laws: Sequence[Law],
+    gains: _Array,
     built: AsBuilt,
-    seeds: Sequence[int],
+    weights: _Triple,
     *,
     step: float,
     stop_on_contact: bool,
+    histories: bool,
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, Any]:
-    """Return the columns of runs with many seeds."""
+    """Return the columns of runs of every law in every scenario."""
 
 class _EstimateFields(TypedDict):
     position: _Array

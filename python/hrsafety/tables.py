@@ -9,6 +9,7 @@ line; a quantity without a unit has none. Summaries that are also the columns of
 from __future__ import annotations
 
 import csv
+import html
 import importlib
 import io
 import math
@@ -26,11 +27,15 @@ if TYPE_CHECKING:
     import pandas
     import polars
 
-__all__ = ["Column", "Columns", "Table", "each", "plane", "unit_suffix", "with_units", "write_csv"]
+__all__ = ["SHOWN_ROWS", "Column", "Columns", "Table", "each", "plane", "unit_suffix", "with_units", "write_csv"]
 
 Column = npt.NDArray[Any]
 Columns = dict[str, Column]
 """One-dimensional arrays of one length by name, in the order of the table."""
+
+SHOWN_ROWS = 5
+"""Rows that a table shows when it is printed."""
+_SHOWN_COLUMNS = 8
 
 
 class Table:
@@ -57,6 +62,37 @@ class Table:
             All of one length.
         """
         raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """Return the first rows, and how much more there is."""
+        header, cells, title = self._shown()
+        lines = [header, *cells]
+        widths = [max(len(line[index]) for line in lines) for index in range(len(header))]
+        rows = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)) for line in lines]
+        return "\n".join([title, *rows])
+
+    def _repr_html_(self) -> str:
+        """Return the first rows as a notebook shows them."""
+        header, cells, title = self._shown()
+        head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in cells)
+        return f"<p>{html.escape(title)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def _head(self) -> tuple[Columns, int]:
+        """Return the columns of the first rows, and the number of all rows."""
+        columns = self.columns()
+        head = {name: values[:SHOWN_ROWS] for name, values in columns.items()}
+        return head, len(next(iter(columns.values())))
+
+    def _shown(self) -> tuple[list[str], list[list[str]], str]:
+        """Return header, cells and title of the part that is printed."""
+        head, rows = self._head()
+        header = list(head)[:_SHOWN_COLUMNS]
+        columns = [[_short(value) for value in head[name].tolist()] for name in header]
+        title = f"{type(self).__name__}: {rows} rows, {len(head)} columns"
+        if rows > SHOWN_ROWS or len(head) > len(header):
+            title += f"; here the first {min(rows, SHOWN_ROWS)} and {len(header)}"
+        return header, [list(row) for row in zip(*columns, strict=True)], title
 
     def to_polars(self) -> polars.DataFrame:
         """Return a Polars data frame.
@@ -154,6 +190,11 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
         text.flush()
         text.detach()
     return place
+
+
+def _short(value: object) -> str:
+    """Return a cell as it is printed: six digits are enough to look at."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _place(path: object) -> Path:

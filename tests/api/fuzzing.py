@@ -75,7 +75,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "Reciprocal": (nav.OptimalReciprocalCollisionAvoidance, {"horizon": 5.0}),
     "simulate": (nav.simulate, {"scenario": SHORT, "law": FIELD, "step": 0.01, "hold": True}),
-    "simulate_built": (nav.built.simulate_built, {"scenario": SHORT, "law": FIELD, "step": 0.01}),
+    "simulate as built": (
+        nav.simulate,
+        {"scenario": SHORT, "law": FIELD, "step": 0.01, "built": nav.robots.AsBuilt()},
+    ),
     "simulate_batch": (
         nav.simulate_batch,
         {
@@ -87,7 +90,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "lanes": None,
         },
     ),
-    "repeat": (nav.metrics.repeat, {"scenario": SHORT, "law": FIELD, "seeds": 2, "threads": 1}),
+    "simulate_many": (nav.simulate_many, {"scenarios": SHORT, "laws": FIELD, "seeds": 2, "paths": True, "threads": 1}),
     "command": (nav.laws.command, {"law": FIELD, "scenario": SHORT, "position": (3.0, 0.7), "velocity": (0.0, 0.1)}),
     "force_field": (nav.laws.force_field, {"law": FIELD, "scenario": SHORT, "position": [[3.0, 0.7], [2.0, 1.5]]}),
     "region_radii": (

@@ -71,8 +71,8 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "grid": (lambda count: searched(grid=(count, 1, 1, 1)), HUGE),
     "evaluations": (lambda count: searched(method="cma_es", evaluations=count), HUGE),
     "front refinements": (lambda count: nav.gains.pareto_front([SCENE], grid=(2, 1, 1, 1), refinements=count), HUGE),
-    "seeds": (lambda count: nav.metrics.repeat(SCENE, FIELD, seeds=count), HUGE),
-    "range of seeds": (lambda count: nav.metrics.repeat(SCENE, FIELD, seeds=range(count)), (2**31, 2**53)),
+    "seeds": (lambda count: nav.simulate_many(SCENE, FIELD, seeds=count), HUGE),
+    "range of seeds": (lambda count: nav.simulate_many(SCENE, FIELD, seeds=range(count)), (2**31, 2**53)),
     "calibrations": (lambda count: nav.sensing.calibration_study(seeds=count), HUGE),
     "timed runs": (lambda count: nav.metrics.step_cost(FIELD, SCENE, repeats=count), HUGE),
     "wheel tests": (lambda count: nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0], repeats=count), HUGE),
@@ -105,8 +105,8 @@ DURATIONS: dict[str, tuple[Callable[[float], Any], tuple[float, ...]]] = {
         (1e-308, 1e-12, 1e-8),
     ),
     "camera period in a run": (
-        lambda period: nav.built.simulate_built(
-            SCENE, FIELD, nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(period=period), robot_vision=None)
+        lambda period: nav.simulate(
+            SCENE, FIELD, built=nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(period=period), robot_vision=None)
         ),
         (1e-308, 1e-12, 1e-8),
     ),
@@ -187,7 +187,7 @@ def test_what_is_beyond_its_bound_is_refused_at_once(call: Callable[[Any], Any],
     "call",
     [
         lambda seed: replace(SCENE, seed=seed),
-        lambda seed: nav.metrics.repeat(SCENE, FIELD, seeds=[seed]),
+        lambda seed: nav.simulate_many(SCENE, FIELD, seeds=[seed]),
         lambda seed: nav.sensing.observe(nav.sensing.Vision(), [0.0, 1.0], np.zeros((2, 2)), seed=seed),
         lambda seed: nav.robots.open_loop_tests(nav.robots.HOLONOMIC_WHEELS[0], seed=seed),
         lambda seed: reactive.Sonar().readings([], seed=seed),

@@ -39,11 +39,15 @@ def two_wheels(name: str, **changes: Any) -> nav.Scenario:
 def test_ideal_robot_is_the_point_mass_bit_for_bit(name: str, of: Any) -> None:
     measurement = None if of is None else nav.Measurement(of=of)
     scene = dataclasses.replace(scenarios.configuration(name), measurement=measurement, seed=3)
-    plain, built = nav.simulate(scene, LAW), nav.built.simulate_built(scene, LAW)
+    plain, built = nav.simulate(scene, LAW), nav.simulate(scene, LAW, built=nav.robots.AsBuilt())
+    assert plain.wheel_speed is None
+    assert list(built.columns())[: len(plain.columns())] == list(plain.columns())
     for field in dataclasses.fields(plain):
         one, other = getattr(plain, field.name), getattr(built, field.name)
         if isinstance(one, np.ndarray):
             assert one.tobytes() == other.tobytes(), field.name
+        elif one is None:
+            assert len(other) == len(plain.time), field.name
         else:
             assert one == other or (one != one and other != other), field.name
 
@@ -52,7 +56,7 @@ def test_ideal_robot_is_the_point_mass_bit_for_bit(name: str, of: Any) -> None:
 @pytest.mark.parametrize("wheels", [None, nav.robots.DIFFERENTIAL_WHEELS])
 def test_two_wheel_robot_arrives_without_a_contact_outside_critical_regions(name: str, wheels: Any) -> None:
     scene = two_wheels(name)
-    run = nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(wheels=wheels))
+    run = nav.simulate(scene, LAW, built=nav.robots.AsBuilt(wheels=wheels))
     assert run.outcome == "arrived"
     critical = [getattr(obstacle, "critical_radius", None) for obstacle in scene.obstacles]
     assert all(least > radius for least, radius in zip(run.min_distance, critical, strict=True) if radius)
@@ -65,7 +69,7 @@ def test_two_wheel_robot_arrives_without_a_contact_outside_critical_regions(name
 def test_every_law_drives_a_two_wheel_robot(law: str) -> None:
     # c3 is left out: the laws of other authors give up there as point masses, too.
     run = nav.simulate(two_wheels("n1", time_limit=20.0), LAWS[law])
-    assert isinstance(run, nav.built.BuiltTrajectory)
+    assert run.wheel_speed is not None
     assert np.isfinite(run.position).all()
     # The robot never moves sideways: its velocity lies along its heading.
     along = np.column_stack([np.cos(run.heading), np.sin(run.heading)])
@@ -90,7 +94,6 @@ def test_regions_of_a_two_wheel_robot_have_time_to_turn() -> None:
 
 BATCHES: dict[str, Callable[[nav.Scenario], object]] = {
     "simulate_batch": lambda scene: nav.simulate_batch([scenarios.configuration("c1"), scene], LAW),
-    "arena": lambda scene: nav.arena({"field": LAW}, [scenarios.configuration("c1"), scene]),
     "optimize_gains": lambda scene: nav.optimize_gains([scenarios.configuration("c1"), scene], LAW),
     "gain_sensitivity": lambda scene: nav.gain_sensitivity([scenarios.configuration("c1"), scene], LAW),
 }
@@ -121,7 +124,7 @@ def test_options_that_a_two_wheel_robot_cannot_have_are_refused(options: dict[st
 def test_what_does_not_suit_the_scenario_is_refused(built: dict[str, Any], argument: str) -> None:
     scene = two_wheels("n1", measurement=nav.Measurement())
     with pytest.raises(InvalidParameterError) as caught:
-        nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(**built))
+        nav.simulate(scene, LAW, built=nav.robots.AsBuilt(**built))
     assert caught.value.argument == argument
 
 
@@ -169,8 +172,8 @@ def test_wheels_with_controllers_lose_more_than_ideal_ones() -> None:
         (scenarios.configuration("c1"), nav.robots.HOLONOMIC_WHEELS),
         (two_wheels("n1"), nav.robots.DIFFERENTIAL_WHEELS),
     ):
-        ideal = nav.built.simulate_built(scene, LAW)
-        real = nav.built.simulate_built(scene, LAW, nav.robots.AsBuilt(wheels=wheels))
+        ideal = nav.simulate(scene, LAW, built=nav.robots.AsBuilt())
+        real = nav.simulate(scene, LAW, built=nav.robots.AsBuilt(wheels=wheels))
         assert real.energy > ideal.energy
         assert real.arrival_time == pytest.approx(ideal.arrival_time, rel=0.01)
 
@@ -181,6 +184,24 @@ def test_creeping_wheels_do_not_mislead_a_robot_that_is_seen() -> None:
         slip=nav.robots.Slip(creep=0.05),
         robot_vision=nav.sensing.Vision(error=nav.sensing.PositionNoise(distribution="gaussian", scale=0.0032)),
     )
-    run = nav.built.simulate_built(two_wheels("n3"), LAW, built)
+    run = nav.simulate(two_wheels("n3"), LAW, built=built)
     assert run.outcome == "arrived"
     assert not np.array_equal(run.seen_position, run.position)
+
+
+@pytest.mark.parametrize("options", [{"hold": False}, {"integrator": "rk4"}])
+@pytest.mark.parametrize("verb", [nav.simulate, nav.evaluate])
+def test_robots_as_built_move_by_one_scheme(verb: Any, options: dict[str, Any]) -> None:
+    with pytest.raises(InvalidParameterError, match="for a robot as built") as caught:
+        verb(scenarios.configuration("c1"), LAW, built=nav.robots.AsBuilt(), **options)
+    assert caught.value.argument == next(iter(options))
+
+
+def test_score_of_a_robot_as_built_is_that_of_its_run() -> None:
+    scene, built = two_wheels("n1"), nav.robots.AsBuilt(wheels=nav.robots.DIFFERENTIAL_WHEELS)
+    found, run = nav.evaluate(scene, LAW, built=built), nav.simulate(scene, LAW, built=built)
+    assert found.trajectory.position.tobytes() == run.position.tobytes()
+    assert found.arrival_time == found.nominal.arrival_time / run.arrival_time
+    assert found.total != nav.evaluate(scene, LAW).total
+    with pytest.raises(InvalidParameterError, match="built must be an AsBuilt"):
+        nav.simulate(scene, LAW, built="wheels")  # type: ignore[arg-type]  # refused

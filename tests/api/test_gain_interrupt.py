@@ -89,7 +89,7 @@ def test_search_stopped_again_and_again_ends_the_same(whole: nav.GainSearch, tmp
 def test_finished_checkpoint_is_not_computed_again(tmp_path: Path) -> None:
     calls: list[int] = []
 
-    def objective(table: nav.BatchSummary) -> np.ndarray:
+    def objective(table: nav.RunTable) -> np.ndarray:
         calls.append(len(table))
         return table.performance_total.reshape(-1, 3).mean(axis=1)
 
@@ -105,7 +105,7 @@ def test_finished_checkpoint_is_not_computed_again(tmp_path: Path) -> None:
 
 
 def test_local_searches_resume_bit_for_bit(tmp_path: Path) -> None:
-    def slowly(table: nav.BatchSummary) -> np.ndarray:
+    def slowly(table: nav.RunTable) -> np.ndarray:
         time.sleep(0.005)  # so that there are reports between the few calls
         return table.performance_total.reshape(-1, 3).mean(axis=1)
 
@@ -157,7 +157,7 @@ def test_exception_of_a_callable_is_raised_as_it_is() -> None:
     class OwnError(Exception):
         pass
 
-    def objective(_table: nav.BatchSummary) -> np.ndarray:
+    def objective(_table: nav.RunTable) -> np.ndarray:
         raise OwnError("as it is")
 
     with pytest.raises(OwnError, match="as it is"):
@@ -181,7 +181,7 @@ def test_what_a_callable_returns_is_checked(result: Any) -> None:
 
 
 def test_values_that_are_not_numbers_are_worst_of_all() -> None:
-    def objective(table: nav.BatchSummary) -> np.ndarray:
+    def objective(table: nav.RunTable) -> np.ndarray:
         values = table.gains[::3, 0].copy()
         values[values > 40] = np.nan
         return values

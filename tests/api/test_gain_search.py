@@ -30,7 +30,7 @@ def search() -> nav.GainSearch:
     return nav.optimize_gains(SCENES, **SMALL)
 
 
-def batch(gains: Any, scenes: list[nav.Scenario] = SCENES) -> nav.BatchSummary:
+def batch(gains: Any, scenes: list[nav.Scenario] = SCENES) -> nav.RunTable:
     return nav.simulate_batch(scenes, LAW, np.atleast_2d(gains), stop_on_contact=True)
 
 
@@ -170,7 +170,7 @@ def test_callable_that_says_the_same_finds_the_same(search: nav.GainSearch) -> N
 def test_callable_sees_every_gain_set_in_every_scenario() -> None:
     seen: list[np.ndarray] = []
 
-    def first_gain(table: nav.BatchSummary) -> np.ndarray:
+    def first_gain(table: nav.RunTable) -> np.ndarray:
         assert (table.scenario_index.reshape(-1, 3) == [0, 1, 2]).all()
         seen.append(table.gains[::3])
         return -table.gains[::3, 0]
@@ -274,7 +274,7 @@ def test_global_methods_agree_with_the_procedure_of_the_source_for_ten_seeds(met
 
 
 def test_a_callable_has_to_arrive_too() -> None:
-    def gentle(table: nav.BatchSummary) -> np.ndarray:
+    def gentle(table: nav.RunTable) -> np.ndarray:
         return -table.gains[:: len(SCENES), 0]
 
     found = nav.optimize_gains(SCENES, objective=gentle, **GRIDS_ONLY)
@@ -526,7 +526,7 @@ def test_front_of_nothing_is_empty() -> None:
 
 
 def test_callables_in_a_front_are_named_and_maximized() -> None:
-    def calm(table: nav.BatchSummary) -> np.ndarray:
+    def calm(table: nav.RunTable) -> np.ndarray:
         return -table.path_length.reshape(-1, len(SCENES)).mean(axis=1)
 
     named = nav.gains.pareto_front(SCENES, objectives=("energy", "path_length"), grid=(4, 4, 4, 4))

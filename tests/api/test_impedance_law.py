@@ -72,8 +72,8 @@ def test_batch_does_what_single_runs_do() -> None:
         np.testing.assert_array_equal(table.arrival_time[row], single.arrival_time)
 
 
-def test_arena_takes_it_beside_other_laws() -> None:
+def test_comparisons_take_it_beside_other_laws() -> None:
     laws = {"impedance": nav.VirtualImpedanceLaw(form="conventional"), "field": nav.VirtualForceField()}
     places = {str(seed): scenarios.random_traffic(3, seed=seed) for seed in range(4)}
-    result = nav.arena(laws, places)
+    result = nav.compare(places, laws)
     assert result.standing("impedance").success.runs == 4

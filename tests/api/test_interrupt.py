@@ -34,7 +34,7 @@ WHEELS = """
 from hrsafety import scenarios
 scene, built = scenarios.configuration("c4"), nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
 """
-REPEATED = "nav.metrics.repeat(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
+REPEATED = "nav.simulate_many(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
 
 PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
 SPEEDS = "speeds = np.linspace(0.1, 2.0, 20_000_000)\n" + PARTS

@@ -79,10 +79,10 @@ def test_every_way_to_run_a_robot_is_late_alike(of: str) -> None:
     gains = nav.simulate_batch([place], LAW, {"attractive_gain": [LAW.attractive_gain] * 17})
     assert (gains.path_length == one.path_length[0]).all()
     assert nav.evaluate(place, LAW).trajectory.position.tolist() == run.position.tolist()
-    assert nav.arena({"field": LAW}, [place]).min_clearance[0, 0] == run.min_clearance.min()
-    built = nav.built.simulate_built(place, LAW)
+    assert nav.compare(place, LAW).min_clearance[0, 0] == run.min_clearance.min()
+    built = nav.simulate(place, LAW, built=nav.robots.AsBuilt())
     assert built.position.tolist() == run.position.tolist()
-    again = nav.metrics.repeat(place, LAW, seeds=[5])
+    again = nav.simulate_many(place, LAW, seeds=[5], paths=True)
     assert again.path_length[0] == built.path_length
     prompt = nav.simulate(replace(place, measurement=replace(measured, latency=0.0)), LAW)
     assert prompt.path_length != run.path_length

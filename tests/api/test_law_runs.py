@@ -49,8 +49,8 @@ def law_of(law: nav.Law, gains: np.ndarray) -> nav.Law:
     return law.replaced(**dict(zip(law.GAIN_NAMES, gains.tolist(), strict=True)))
 
 
-def assert_same_bits(one: nav.BatchSummary, other: nav.BatchSummary) -> None:
-    for column in dataclasses.fields(nav.BatchSummary):
+def assert_same_bits(one: nav.RunTable, other: nav.RunTable) -> None:
+    for column in dataclasses.fields(nav.RunTable):
         first, second = getattr(one, column.name), getattr(other, column.name)
         if not isinstance(first, np.ndarray):
             assert first == second, column.name  # the names of the gains, and what was run

@@ -146,9 +146,9 @@ def flat() -> Any:
     return plotting.flatness(searched().flatness(5), marks={"published": ((4.3, 20.3, 240.7, 0.68), 0.706)})
 
 
-def noisy() -> nav.metrics.Repeated:
+def noisy() -> nav.RunTable:
     scene = dataclasses.replace(scenarios.configuration("c2"), measurement=nav.Measurement())
-    return nav.metrics.repeat(scene, nav.VirtualForceField(side_hysteresis=3.0), seeds=20)
+    return nav.simulate_many(scene, nav.VirtualForceField(side_hysteresis=3.0), seeds=20, paths=True)
 
 
 def wheels() -> Any:

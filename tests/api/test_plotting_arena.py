@@ -57,22 +57,9 @@ def legend_words(figure: object) -> list[str]:
     return [text.get_text() for legend in legends for text in legend.get_texts()]
 
 
-def three_episodes(outcomes: list[list[str]], moving: list[list[int]]) -> nav.ArenaResult:
-    ones = np.ones(np.shape(outcomes))
-    return nav.ArenaResult(
-        laws=("first", "second"),
-        scenario=np.arange(3),
-        seed=np.zeros(3, dtype=np.uint64),
-        scenario_names=("a", "b", "c"),
-        outcome=np.array(outcomes),
-        arrival_time=ones,
-        energy=ones,
-        path_length=ones,
-        min_clearance=ones,
-        min_distance=ones[..., np.newaxis],
-        moving_contacts=np.array(moving),
-        performance_total=ones,
-    )
+def three_episodes(outcomes: list[list[str]], moving: list[list[int]]) -> nav.Comparison:
+    runs = nav.compare([made_up_run(DISC).scenario] * 3, {"first": LAW, "second": LAW}).runs
+    return nav.Comparison(runs=dataclasses.replace(runs, outcome=np.ravel(outcomes), contacts_moving=np.ravel(moving)))
 
 
 @pytest.fixture(scope="module")
@@ -240,8 +227,8 @@ def test_instants_must_be_a_sequence_of_numbers(runs):
         plotting.plot_arena_sequence(runs, "soon")
 
 
-def test_only_a_result_of_an_arena_has_standings():
-    with pytest.raises(InvalidParameterError, match="ArenaResult"):
+def test_only_a_comparison_has_standings():
+    with pytest.raises(InvalidParameterError, match="Comparison"):
         plotting.plot_arena_standings({"field": 1.0})
 
 

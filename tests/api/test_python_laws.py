@@ -102,14 +102,16 @@ def test_a_law_that_remembers_starts_afresh_in_every_run():
     assert law.starts == [(0.0, [3.9, 0.6], 0)] * 2
     noisy = replace(C1, measurement=nav.Measurement(of="both"))
     law.starts.clear()
-    runs = nav.repeat(noisy, law, seeds=[7, 9, 7], threads=4)
-    assert [seed for _, _, seed in law.starts] == [7, 9, 7]
+    runs = nav.simulate_many(noisy, law, seeds=[7, 9, 7], paths=True, threads=4)
+    # The run without obstacles and noise, which the others are scored against, comes first.
+    assert [seed for _, _, seed in law.starts] == [0, 7, 9, 7]
+    assert runs.position is not None
     assert runs.position[0].tobytes() == runs.position[2].tobytes()
     assert runs.position[0].tobytes() != runs.position[1].tobytes()
 
 
 @pytest.mark.parametrize("threads", [None, 1, 2])
-def test_batches_and_arenas(threads):
+def test_batches_and_comparisons(threads):
     scenes = [scenarios.configuration(name) for name in ("c1", "c2", "c3")]
     alone = [nav.simulate(scene, Counting()) for scene in scenes]
     table = nav.simulate_batch(scenes, Counting(), threads=threads)
@@ -117,9 +119,10 @@ def test_batches_and_arenas(threads):
     assert table.path_length.tolist() == [run.path_length for run in alone]
     assert table.gains.shape == (3, 0)
     assert table.gain_names == ()
-    assert "path_length" in table.columns()
+    assert "path_length_m" in table.columns()
     assert not any(name.startswith("gains") for name in table.columns())
-    result = nav.arena({"own": field, "field": nav.VirtualForceField(stabilizing="off")}, {"c1": C1}, threads=threads)
+    result = nav.compare({"c1": C1}, [field, nav.VirtualForceField(stabilizing="off")], threads=threads)
+    assert result.laws == ("field", "VirtualForceField")
     assert result.outcome[:, 0].tolist() == ["arrived", "arrived"]
     assert result.arrival_time[0] == pytest.approx(result.arrival_time[1], abs=1e-12)
     assert result.performance_total[0] == pytest.approx(result.performance_total[1], abs=1e-12)
@@ -129,9 +132,14 @@ def test_evaluate_and_robots_as_built():
     native = nav.VirtualForceField(stabilizing="off")
     assert nav.evaluate(C1, field).total == pytest.approx(nav.evaluate(C1, native).total, abs=1e-12)
     built = nav.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
-    own, other = nav.simulate_built(C1, field, built), nav.simulate_built(C1, native, built)
+    own, other = nav.simulate(C1, field, built=built), nav.simulate(C1, native, built=built)
     assert np.abs(own.position - other.position).max() < 1e-9
-    assert nav.evaluate_built(C1, field, built=built).trajectory.outcome == own.outcome
+    assert nav.evaluate(C1, field, built=built).trajectory.outcome == own.outcome
+    many = nav.simulate_many(C1, {"own": field, "other": native}, built=built, threads=2)
+    assert many.energy[0] == own.energy
+    assert many.energy[1] == other.energy
+    assert many.gains.shape == (2, 4)
+    assert np.isnan(many.gains[0]).all()
 
 
 def test_two_wheels_show_their_heading_and_point_mass():
@@ -194,10 +202,10 @@ def failing_at(moment):
     [
         lambda law: nav.simulate(C1, law),
         lambda law: nav.evaluate(C1, law),
-        lambda law: nav.simulate_built(C1, law),
-        lambda law: nav.repeat(C1, law, seeds=3),
+        lambda law: nav.simulate(C1, law, built=nav.robots.AsBuilt()),
+        lambda law: nav.simulate_many(C1, law, paths=True),
         lambda law: nav.simulate_batch([C1], law),
-        lambda law: nav.arena({"own": law}, [C1]),
+        lambda law: nav.compare(C1, {"own": law}),
         lambda law: [run.step() for run in [nav.Run(C1, law)] * 9],
     ],
 )
@@ -261,9 +269,8 @@ class Both:
 def test_what_is_no_law_is_refused(law, words):
     calls = [
         lambda: nav.simulate(C1, law),
-        lambda: nav.simulate_built(C1, law),
+        lambda: nav.evaluate(C1, law),
         lambda: nav.simulate_batch([C1], law),
-        lambda: nav.repeat(C1, law),
     ]
     if law is not None:
         calls.append(lambda: nav.Run(C1, law))
@@ -271,7 +278,7 @@ def test_what_is_no_law_is_refused(law, words):
         with pytest.raises(nav.InvalidParameterError, match=words):
             call()
     with pytest.raises(nav.InvalidParameterError, match=r"laws\['own'\] must"):
-        nav.arena({"own": law}, [C1])
+        nav.compare(C1, {"own": law})
 
 
 def test_searches_and_terms_need_a_law_with_gains():
@@ -316,9 +323,7 @@ def test_an_error_in_a_nested_run_is_the_one_that_arrives():
     ]
 
 
-@pytest.mark.parametrize(
-    "call", [nav.simulate, nav.simulate_built, lambda scene, law: nav.simulate_batch([scene], law)]
-)
+@pytest.mark.parametrize("call", [nav.simulate, nav.simulate_many, lambda scene, law: nav.simulate_batch([scene], law)])
 def test_ctrl_c_in_a_law(call):
     def slow(_):
         time.sleep(0.02)
@@ -339,7 +344,7 @@ def test_ctrl_c_in_a_law(call):
 
 def test_progress_of_slow_laws():
     heard = []
-    nav.repeat(C1, field, seeds=30, progress=lambda done, total: heard.append((done, total)))
+    nav.simulate_many(C1, field, seeds=30, progress=lambda done, total: heard.append((done, total)))
     assert heard[-1] == (30, 30)
     assert [done for done, _ in heard] == sorted({done for done, _ in heard})
 

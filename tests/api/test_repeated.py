@@ -17,11 +17,11 @@ NOISY = dataclasses.replace(scenarios.configuration("c2"), measurement=nav.Measu
 
 
 @pytest.fixture(scope="module")
-def runs() -> nav.metrics.Repeated:
-    return nav.metrics.repeat(NOISY, LAW, seeds=40)
+def runs() -> nav.RunTable:
+    return nav.simulate_many(NOISY, LAW, seeds=40, paths=True)
 
 
-def test_rows_are_the_single_runs(runs: nav.metrics.Repeated) -> None:
+def test_rows_are_the_single_runs(runs: nav.RunTable) -> None:
     for row in (0, 17, 39):
         alone = nav.simulate(dataclasses.replace(NOISY, seed=row), LAW)
         assert runs.outcome[row] == alone.outcome
@@ -34,7 +34,7 @@ def test_rows_are_the_single_runs(runs: nav.metrics.Repeated) -> None:
         assert np.array_equal(runs.distance[row][inside], alone.distance[nearest])
 
 
-def test_rows_are_those_of_the_batch_of_point_masses(runs: nav.metrics.Repeated) -> None:
+def test_rows_are_those_of_the_batch_of_point_masses(runs: nav.RunTable) -> None:
     table = nav.simulate_batch([dataclasses.replace(NOISY, seed=seed) for seed in range(40)], LAW)
     assert runs.outcome.tolist() == table.outcome.tolist()
     assert runs.arrival_time.tobytes() == table.arrival_time.tobytes()
@@ -42,20 +42,20 @@ def test_rows_are_those_of_the_batch_of_point_masses(runs: nav.metrics.Repeated)
 
 def test_threads_change_no_bit() -> None:
     built = nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
-    tables = [nav.metrics.repeat(NOISY, LAW, seeds=9, built=built, threads=threads) for threads in (1, 2, 7)]
-    for field in dataclasses.fields(nav.metrics.Repeated):
+    tables = [nav.simulate_many(NOISY, LAW, seeds=9, built=built, threads=threads, paths=True) for threads in (1, 2, 7)]
+    for field in dataclasses.fields(nav.RunTable):
         values = [getattr(table, field.name) for table in tables]
         if isinstance(values[0], np.ndarray):
             assert len({value.tobytes() for value in values}) == 1, field.name
 
 
-def test_shares_are_those_of_the_outcomes(runs: nav.metrics.Repeated) -> None:
+def test_shares_are_those_of_the_outcomes(runs: nav.RunTable) -> None:
     assert runs.success.count == (runs.outcome == "arrived").sum()
     assert runs.contact.count == np.isfinite(runs.contact_time).any(axis=1).sum()
     assert runs.success.low <= runs.success.value <= runs.success.high
 
 
-def test_bands_hold_their_share(runs: nav.metrics.Repeated) -> None:
+def test_bands_hold_their_share(runs: nav.RunTable) -> None:
     whole = runs.goal_band(1.0)
     inner = runs.goal_band(0.5)
     assert (whole.low <= inner.low).all()
@@ -69,7 +69,7 @@ def test_bands_hold_their_share(runs: nav.metrics.Repeated) -> None:
 
 
 def test_band_of_exact_runs_has_no_width() -> None:
-    exact = nav.metrics.repeat(scenarios.configuration("c1"), LAW, seeds=3)
+    exact = nav.simulate_many(scenarios.configuration("c1"), LAW, seeds=3, paths=True)
     band = exact.path_band()
     there = band.runs > 0
     assert np.array_equal(band.low[there], band.high[there])
@@ -79,11 +79,11 @@ def test_band_of_exact_runs_has_no_width() -> None:
 
 
 def test_path_band_is_the_same_in_a_turned_scene() -> None:
-    plain = nav.metrics.repeat(scenarios.configuration("c1"), LAW, seeds=1).path_band()
+    plain = nav.simulate_many(scenarios.configuration("c1"), LAW, seeds=1, paths=True).path_band()
     scene = nav.Scenario(
         start=(-0.6, 3.9), goal=(-0.6, 0.0), obstacles=[dataclasses.replace(_disc(), center=(-0.595, 2.45))]
     )
-    turned = nav.metrics.repeat(scene, LAW, seeds=1).path_band()
+    turned = nav.simulate_many(scene, LAW, seeds=1, paths=True).path_band()
     there = (plain.runs > 0) & (turned.runs > 0)
     assert np.abs(plain.middle - turned.middle)[there].max() < 1e-9
 
@@ -94,29 +94,29 @@ def _disc() -> nav.Disc:
     return disc
 
 
-@pytest.mark.parametrize("seeds", [0, -1, True, 1.5, "3", [], [-1], [2**64], [0.5], None])
+@pytest.mark.parametrize("seeds", [0, -1, True, 1.5, "3", [], [-1], [2**64], [0.5]])
 def test_bad_seeds_are_refused(seeds: Any) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        nav.metrics.repeat(NOISY, LAW, seeds=seeds)
+        nav.simulate_many(NOISY, LAW, seeds=seeds, paths=True)
     assert caught.value.argument.startswith("seeds")
 
 
 @pytest.mark.parametrize("share", [0.0, 1.1, math.nan, -0.5, "1"])
-def test_bad_shares_are_refused(runs: nav.metrics.Repeated, share: Any) -> None:
+def test_bad_shares_are_refused(runs: nav.RunTable, share: Any) -> None:
     for band in (runs.goal_band, runs.path_band, lambda value: runs.distance_band(0, value)):
         with pytest.raises(InvalidParameterError) as caught:
             band(share)
         assert caught.value.argument == "share"
 
 
-def test_an_obstacle_that_is_not_there_is_refused(runs: nav.metrics.Repeated) -> None:
+def test_an_obstacle_that_is_not_there_is_refused(runs: nav.RunTable) -> None:
     with pytest.raises(InvalidParameterError):
         runs.distance_band(1)
 
 
 def test_progress_counts_to_the_end() -> None:
     heard: list[tuple[int, int]] = []
-    nav.metrics.repeat(NOISY, LAW, seeds=30, progress=lambda done, total: heard.append((done, total)))
+    nav.simulate_many(NOISY, LAW, seeds=30, paths=True, progress=lambda done, total: heard.append((done, total)))
     assert heard[-1] == (30, 30)
     assert sorted(heard) == heard
 
@@ -126,10 +126,10 @@ def test_an_exception_in_progress_ends_the_work() -> None:
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        nav.metrics.repeat(NOISY, LAW, seeds=100_000, progress=stop)
+        nav.simulate_many(NOISY, LAW, seeds=100_000, paths=True, progress=stop)
 
 
-def test_pictures_have_an_axes_for_each_distance(runs: nav.metrics.Repeated) -> None:
+def test_pictures_have_an_axes_for_each_distance(runs: nav.RunTable) -> None:
     exact = nav.simulate(scenarios.configuration("c2"), LAW)
     assert len(plotting.repeated_distances(runs, exact=exact).axes) == 2
     legend = plotting.repeated_paths(runs, exact=exact).legends[0]

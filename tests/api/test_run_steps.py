@@ -95,7 +95,7 @@ def test_every_configuration_and_seed(name, seed):
 def test_robots_as_built(built, law):
     scene = replace(scenarios.configuration("c2"), seed=3)
     run = nav.Run(scene, LAWS[law], BUILT[built])
-    assert_same_bits(stepped(run), nav.simulate_built(scene, LAWS[law], BUILT[built]))
+    assert_same_bits(stepped(run), nav.simulate(scene, LAWS[law], built=BUILT[built]))
 
 
 @pytest.mark.parametrize("built", TWO_WHEELS)
@@ -103,7 +103,7 @@ def test_robots_as_built(built, law):
 def test_two_wheels(built, law):
     scene = two_wheels("n2")
     run = nav.Run(scene, LAWS[law], TWO_WHEELS[built])
-    assert_same_bits(stepped(run), nav.simulate_built(scene, LAWS[law], TWO_WHEELS[built]))
+    assert_same_bits(stepped(run), nav.simulate(scene, LAWS[law], built=TWO_WHEELS[built]))
 
 
 def test_two_wheels_as_simulate_has_them():

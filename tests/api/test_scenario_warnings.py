@@ -105,19 +105,21 @@ def test_every_result_carries_the_warnings_that_matter_for_its_law() -> None:
     run = nav.simulate(noisy, LAW)
     assert [each.code for each in run.warnings] == ["region_below_safe"]
     assert nav.evaluate(noisy, LAW).warnings == run.warnings
-    assert nav.built.simulate_built(noisy, LAW).warnings == run.warnings
-    assert nav.metrics.repeat(noisy, LAW, seeds=2).warnings == run.warnings
+    assert nav.simulate(noisy, LAW, built=nav.robots.AsBuilt()).warnings == run.warnings
+    assert [each.code for each in nav.simulate_many(noisy, LAW, seeds=2).warnings] == [
+        each.code for each in run.warnings
+    ]
     # A law that knows no critical region does not depend on its size.
     assert nav.simulate(noisy, nav.Khatib()).warnings == ()
     batch = nav.simulate_batch([scenarios.configuration("c1"), noisy, noisy], LAW)
     (one,) = batch.warnings
     assert one.subject == "scenarios[1].obstacles[0].critical_radius"
     assert "1 more of this kind" in one.message
-    assert set(batch.columns()) >= {"outcome", "energy"}
+    assert set(batch.columns()) >= {"outcome", "energy_J"}
     assert not any("warning" in name or name.startswith("_") for name in batch.columns())
-    (of_arena,) = nav.arena({"field": LAW, "khatib": nav.Khatib()}, {"noisy": noisy}, seeds=[1, 2]).warnings
-    assert of_arena.subject == "scenarios['noisy'].obstacles[0].critical_radius"
-    assert nav.arena({"khatib": nav.Khatib()}, [noisy]).warnings == ()
+    (compared,) = nav.compare({"noisy": noisy}, [LAW, nav.Khatib()], seeds=[1, 2]).warnings
+    assert compared.subject == "scenarios['noisy'].obstacles[0].critical_radius"
+    assert nav.compare(noisy, nav.Khatib()).warnings == ()
 
 
 def test_somebody_faster_than_the_regions_are_sized_for() -> None:

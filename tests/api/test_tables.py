@@ -40,19 +40,17 @@ PARTS = (impact.MANIPULATOR_1, impact.FOAM_1)
 
 RESULTS: dict[str, Callable[[], Table]] = {
     "Trajectory": lambda: nav.simulate(CROSSING, LAW),
-    "BuiltTrajectory": lambda: nav.built.simulate_built(
-        NOISY, LAW, nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
+    "Trajectory of a robot as built": lambda: nav.simulate(
+        NOISY, LAW, built=nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
     ),
     "TrackingRun": lambda: nav.tracking.track(LINE, position=(0.0, 0.3), duration=3.0),
     "TrackingSummary": lambda: nav.tracking.track_batch(LINE, starts=[(0.0, 0.5, 0.0), (0.0, -0.2, 1.0)], duration=3.0),
     "WheelRun": lambda: nav.robots.follow_wheel(
         nav.robots.HOLONOMIC_WHEELS[0], nav.robots.WheelReference.sine(duration=1.0)
     ),
-    "ArenaResult": lambda: nav.arena(
-        {"field": LAW, "Khatib": nav.Khatib()}, {"c1": scenarios.configuration("c1"), "c3": CROSSING}
-    ),
-    "Repeated": lambda: nav.metrics.repeat(NOISY, LAW, seeds=5),
-    "BatchSummary": lambda: nav.simulate_batch([scenarios.configuration("c2"), CROSSING], LAW),
+    "Comparison": lambda: nav.compare({"c1": scenarios.configuration("c1"), "c3": CROSSING}, LAWS),
+    "RunTable": lambda: nav.simulate_many(NOISY, LAW, seeds=5, paths=True),
+    "RunTable of a batch": lambda: nav.simulate_batch([scenarios.configuration("c2"), CROSSING], LAW),
     "GainSearch": lambda: nav.optimize_gains([CROSSING], **FEW),
     "global GainSearch": lambda: nav.optimize_gains([CROSSING], method="cma_es", evaluations=200),
     "ParetoFront": lambda: nav.gains.pareto_front([CROSSING], grid=(4, 4, 4, 4), refinements=0),
@@ -74,10 +72,11 @@ RESULTS: dict[str, Callable[[], Table]] = {
 # A number without a unit, a word, a flag or an index.
 PLAIN = {"seed", "outcome", "law", "scenario", "stage", "evaluations", "best_value", "value", "violation", "action"}
 PLAIN |= {"status", "collided", "follows", "contact_obstacle"}
-PLAIN |= {"goal_phase", "moving_contacts", "performance_total"}
+PLAIN |= {"goal_phase", "entered_active", "contacts_moving", "contacts_standing", "descent_share", "force_evaluations"}
+PLAIN |= {f"performance_{part}" for part in ("total", "arrival_time", "avoidance", "energy_saving")}
 UNIT = re.compile(r"_(s|m|rad|N|A|V|J|N2|m_per_s|m_per_s2|rad_per_s|N_per_m|N_per_m2)$")
 # Their columns are those of a sweep, whose units stand beside the names.
-OF_SWEEPS = {"BatchSummary", "GainSensitivity", "SkirtTest", "SmallestSkirt", "ImpactMetricsBatch"}
+OF_SWEEPS = {"GainSensitivity", "SkirtTest", "SmallestSkirt", "ImpactMetricsBatch"}
 
 
 @pytest.fixture(scope="module", params=RESULTS)
@@ -146,8 +145,8 @@ def test_trajectory_has_the_columns_of_the_command_line(tmp_path: Path) -> None:
     assert {"current_0_A", "obstacle_0_x_m", "obstacle_0_y_m", "distance_0_m"} <= set(names)
 
 
-def test_arena_has_a_row_for_each_law_and_episode() -> None:
-    result = nav.arena(LAWS, {"noisy": NOISY, "c1": scenarios.configuration("c1")}, seeds=[3, 4])
+def test_comparison_has_a_row_for_each_law_and_episode() -> None:
+    result = nav.compare({"noisy": NOISY, "c1": scenarios.configuration("c1")}, LAWS, seeds=[3, 4])
     table = result.columns()
     assert table["law"].tolist() == ["field"] * 4 + ["Khatib"] * 4
     assert table["scenario"].tolist() == ["noisy", "noisy", "c1", "c1"] * 2

@@ -39,7 +39,7 @@ def test_what_reports_a_limit_exists() -> None:
     assert len(rows) >= 25
     assert len(named) >= 12
     assert named <= known | COLUMNS
-    assert set(nav.BatchSummary.__dataclass_fields__) >= COLUMNS
+    assert set(nav.RunTable.__dataclass_fields__) >= COLUMNS
 
 
 def test_every_law_has_a_row_of_corridors() -> None:

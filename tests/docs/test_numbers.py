@@ -29,7 +29,7 @@ ROWS = re.findall(
 )
 
 
-def crossed(recording: Path, measurement: nav.Measurement | None) -> nav.BatchSummary:
+def crossed(recording: Path, measurement: nav.Measurement | None) -> nav.RunTable:
     crossings = scenarios.crossings(datasets.load_pedestrians(recording), runs=24)
     scenes = [replace(each.scenario, measurement=measurement, seed=seed) for seed, each in enumerate(crossings)]
     return nav.simulate_batch(scenes, nav.VirtualForceField())
@@ -100,7 +100,7 @@ def test_text_quotes_the_contacts_with_a_delay() -> None:
         assert {of_source[title][2].split()[0] for title in titles} == {"0.0"}
 
 
-def counts(table: nav.BatchSummary) -> list[int]:
+def counts(table: nav.RunTable) -> list[int]:
     moving = table.contacts_moving > 0
     standing = (table.contacts_standing > 0) & ~moving
     columns = (table.outcome == "arrived", moving, standing, table.arrival_time > 0, table.entered_active >= 5)

@@ -76,7 +76,7 @@ def test_best_is_at_least_every_point_and_inside_the_bounds(
 @few
 @given(grids, st.floats(0.01, 100.0), st.floats(-5.0, 5.0))
 def test_a_scaled_and_shifted_objective_has_the_same_best(grid: tuple[int, ...], scale: float, shift: float) -> None:
-    def scores(table: nav.BatchSummary) -> np.ndarray:
+    def scores(table: nav.RunTable) -> np.ndarray:
         return np.round(table.performance_total.reshape(-1, len(SCENES)).mean(axis=1), 6)
 
     options: dict[str, Any] = {"grid": grid, "refinements": 1, "survivors": 12, "local_starts": 0}

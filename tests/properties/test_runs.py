@@ -41,9 +41,9 @@ def law_of(gains: np.ndarray, **options: object) -> nav.VirtualForceField:
     return nav.VirtualForceField(**named, **({"stabilizing": "off"} | options))  # type: ignore[arg-type]  # keywords of the class
 
 
-def assert_same_bits(first: nav.BatchSummary, second: nav.BatchSummary) -> None:
+def assert_same_bits(first: nav.RunTable, second: nav.RunTable) -> None:
     assert first.gain_names == second.gain_names
-    for column in dataclasses.fields(nav.BatchSummary):
+    for column in dataclasses.fields(nav.RunTable):
         if column.name == "gain_names":
             continue
         one, other = getattr(first, column.name), getattr(second, column.name)
@@ -98,7 +98,7 @@ def test_neither_lanes_nor_threads_change_a_bit(option: str, integrator: nav.sim
     gains = gain_sets(27 if hold else 5)
     chosen = [scenarios.configuration(name) for name in CONFIGURATIONS]
 
-    def table(lanes: int, threads: int) -> nav.BatchSummary:
+    def table(lanes: int, threads: int) -> nav.RunTable:
         law = law_of(gains[0], **OPTIONS[option])
         return nav.simulate_batch(chosen, law, gains, integrator=integrator, hold=hold, lanes=lanes, threads=threads)
 

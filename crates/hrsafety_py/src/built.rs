@@ -1,19 +1,22 @@
-//! Runs of robots as built: one, its score, and the same with many seeds.
+//! Runs of robots as built: one, its score, and many.
 
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::built::{
-    Built, BuiltTrajectory, Histories, PoseFusion, Steered, evaluate_built, repeat_built,
-    simulate_built,
+    Built, BuiltTrajectory, Histories, ManyOptions, PoseFusion, Steered, evaluate_built,
+    run_many_built, simulate_built,
 };
-use vff_core::run::{Contact, RunSummary};
+use vff_core::run::{AnyLaw, Contact, RunSummary};
 use vff_core::world::scenario;
 
 use crate::arrays::Fields;
+use crate::batch::columns;
 use crate::differential::{Tracking, VirtualTorque};
+use crate::errors::InvalidParameterError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
-use crate::run::{outcome_word, trajectory_fields, weights_of};
+use crate::run::{trajectory_fields, weights_of};
 use crate::sensing::Vision;
 use crate::watch::{Report, watched_law};
 use crate::wheels::{OmniKinematics, Slip, WheelDrive};
@@ -139,104 +142,115 @@ pub fn built_evaluate<'py>(
     ))
 }
 
-/// The same scenario with many seeds: a row for each, histories padded with NaN.
+/// Runs of every law in every scenario: columns of a batch, and histories padded with NaN if asked for.
 #[pyfunction]
-#[pyo3(signature = (scenario, law, built, seeds, *, step, stop_on_contact, threads, progress))]
+#[pyo3(signature = (scenarios, laws, gains, built, weights, *, step, stop_on_contact, histories,
+    threads, progress))]
 #[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[allow(clippy::fn_params_excessive_bools)] // keyword-only in Python
 #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
-pub fn built_repeat<'py>(
+pub fn built_many<'py>(
     py: Python<'py>,
-    scenario: &Scenario,
-    law: &Law,
+    scenarios: Vec<PyRef<'py, Scenario>>,
+    laws: Vec<PyRef<'py, Law>>,
+    gains: PyReadonlyArray2<'py, f64>,
     built: &AsBuilt,
-    seeds: Vec<u64>,
+    weights: (f64, f64, f64),
     step: f64,
     stop_on_contact: bool,
+    histories: bool,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let built = built.run(step, stop_on_contact);
-    let report = Report::new(progress.as_ref(), seeds.len());
-    let threads = law.threads(threads);
-    let runs = watched_law(py, law, report, |control| {
+    // Laws in Python run in the thread of their caller, and so do all beside them.
+    let lead = laws.iter().find(|law| law.is_python()).or(laws.first());
+    let lead: &Law = lead.ok_or_else(|| {
+        InvalidParameterError::new_err(("laws", "hold at least one law", "an empty list"))
+    })?;
+    let options = ManyOptions {
+        weights: weights_of(weights),
+        histories,
+        threads: lead.threads(threads),
+    };
+    let points = gains.as_slice()?.to_vec();
+    let scenarios: Vec<scenario::Scenario> = scenarios
+        .iter()
+        .map(|scenario| scenario.0.clone())
+        .collect();
+    let driven: Vec<AnyLaw> = laws.iter().map(|law| law.any.clone()).collect();
+    let report = Report::new(progress.as_ref(), driven.len() * scenarios.len());
+    let runs = watched_law(py, lead, report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
-        repeat_built(
-            &scenario.0,
-            &law.any,
-            &built,
-            &seeds,
-            threads,
-            &interrupted,
-            &count,
-        )
+        run_many_built(&scenarios, &driven, &built, &options, &interrupted, &count)
     })?;
-    repeated_fields(py, scenario.0.obstacle_count(), &runs)
+    let obstacles = runs.table.obstacles;
+    let all = columns(py, (&points, gains.shape()[1]), runs.table)?;
+    all.update(contact_fields(py, &runs.contact, obstacles)?.as_mapping())?;
+    if histories {
+        all.update(history_fields(py, &runs.histories, obstacles)?.as_mapping())?;
+    }
+    Ok(all)
 }
 
-/// Columns of repeated runs.
-fn repeated_fields<'py>(
+/// Time and speed of the first contacts, a row a run; NaN without.
+fn contact_fields<'py>(
     py: Python<'py>,
+    runs: &[Vec<Option<Contact>>],
     obstacles: usize,
-    runs: &[(RunSummary, Histories)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    let column = |value: fn(&Contact) -> f64| -> Vec<f64> {
+        let mut all = Vec::with_capacity(runs.len() * obstacles);
+        for (index, touches) in runs.iter().enumerate() {
+            let own = touches.iter();
+            all.extend(own.map(|touch| touch.as_ref().map_or(f64::NAN, value)));
+            all.resize((index + 1) * obstacles, f64::NAN);
+        }
+        all
+    };
+    let (time, speed) = (column(|touch| touch.time), column(|touch| touch.speed));
+    fields.matrix("contact_time", time, runs.len(), obstacles)?;
+    fields.matrix("contact_speed", speed, runs.len(), obstacles)?;
+    Ok(fields.finish())
+}
+
+/// Histories of runs, a row a run, padded with NaN.
+fn history_fields<'py>(
+    py: Python<'py>,
+    runs: &[Histories],
+    obstacles: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let count = runs.len();
-    let longest = runs.iter().map(|(_, kept)| kept.time.len()).max();
-    let longest = longest.unwrap_or(0);
-    let column = |value: &dyn Fn(&RunSummary) -> f64| -> Vec<f64> {
-        runs.iter().map(|(summary, _)| value(summary)).collect()
-    };
-    let contact = |value: fn(&Contact) -> f64| -> Vec<f64> {
-        let touches = runs.iter().flat_map(|(summary, _)| &summary.contact);
-        touches
-            .map(|touch| touch.as_ref().map_or(f64::NAN, value))
-            .collect()
-    };
-    let fields = Fields::new(py);
-    fields.words(
-        "outcome",
-        runs.iter()
-            .map(|(summary, _)| outcome_word(summary.outcome)),
-    )?;
-    fields.vector("end_time", column(&|run| run.end_time))?;
-    fields.vector(
-        "arrival_time",
-        column(&|run| run.arrival_time.unwrap_or(f64::NAN)),
-    )?;
-    fields.vector("energy", column(&|run| run.energy))?;
-    fields.vector("path_length", column(&|run| run.path_length))?;
-    let least = runs.iter().flat_map(|(run, _)| run.min_distance.clone());
-    fields.matrix("min_distance", least.collect(), count, obstacles)?;
-    fields.matrix(
-        "contact_time",
-        contact(|touch| touch.time),
-        count,
-        obstacles,
-    )?;
-    fields.matrix(
-        "contact_speed",
-        contact(|touch| touch.speed),
-        count,
-        obstacles,
-    )?;
+    let longest = runs.iter().map(|kept| kept.time.len()).max().unwrap_or(0);
     let padded = |width: usize, values: &dyn Fn(&Histories) -> Vec<f64>| -> Vec<f64> {
         let mut all = Vec::with_capacity(count * longest * width);
-        for (index, (_, kept)) in runs.iter().enumerate() {
+        for (index, kept) in runs.iter().enumerate() {
             all.extend(values(kept));
             all.resize((index + 1) * longest * width, f64::NAN);
         }
         all
     };
+    let fields = Fields::new(py);
     fields.matrix("time", padded(1, &|kept| kept.time.clone()), count, longest)?;
-    fields.cube(
-        "position",
-        padded(2, &|kept| kept.position.concat()),
-        [count, longest, 2],
-    )?;
-    fields.cube(
-        "distance",
-        padded(obstacles, &|kept| kept.distance.clone()),
-        [count, longest, obstacles],
-    )?;
+    let position = padded(2, &|kept| kept.position.concat());
+    fields.cube("position", position, [count, longest, 2])?;
+    let distance = padded(obstacles, &|kept| widened(kept, obstacles));
+    fields.cube("distance", distance, [count, longest, obstacles])?;
     Ok(fields.finish())
+}
+
+/// Distances with as many columns as the scenario with the most obstacles has.
+fn widened(kept: &Histories, obstacles: usize) -> Vec<f64> {
+    let own = kept.distance.len() / kept.time.len().max(1);
+    if own == obstacles {
+        return kept.distance.clone();
+    }
+    let mut all = Vec::with_capacity(kept.time.len() * obstacles);
+    for (row, _) in kept.time.iter().enumerate() {
+        all.extend_from_slice(&kept.distance[row * own..(row + 1) * own]);
+        all.resize((row + 1) * obstacles, f64::NAN);
+    }
+    all
 }

@@ -41,7 +41,7 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::batch::simulate_batch;
     #[pymodule_export]
-    use crate::built::{AsBuilt, built_evaluate, built_repeat, built_simulate};
+    use crate::built::{AsBuilt, built_evaluate, built_many, built_simulate};
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]

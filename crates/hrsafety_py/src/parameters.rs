@@ -267,6 +267,11 @@ impl Scenario {
     fn point_mass(&self) -> (f64, f64, f64, f64) {
         crate::python_law::point_mass(&self.0)
     }
+
+    /// The same scenario with another seed.
+    fn reseeded(&self, seed: u64) -> Self {
+        Self(self.0.clone().reseeded(seed))
+    }
 }
 
 /// Critical and active radius of an obstacle for a robot.

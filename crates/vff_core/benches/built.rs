@@ -10,7 +10,7 @@ use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::wheels::{differential_wheels, holonomic_wheels};
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
 use vff_core::run::AnyLaw;
-use vff_core::run::built::{Built, repeat_built};
+use vff_core::run::built::{Built, simulate_built};
 use vff_core::world::obstacle::{Limits, Obstacle};
 use vff_core::world::scenario::{Rules, Scenario};
 
@@ -62,8 +62,8 @@ fn runs(criterion: &mut Criterion) {
             wheels,
             ..Built::default()
         };
-        let run = || repeat_built(scenario, &law(), &built, &[0], Some(1), &|| false, &|_| ());
-        let milliseconds = (1000.0 * run().unwrap()[0].0.end_time).round();
+        let run = || simulate_built(scenario, &law(), &built, &|| false);
+        let milliseconds = (1000.0 * run().unwrap().0.end_time).round();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
         group.throughput(Throughput::Elements(milliseconds as u64));
         group.bench_function(name, |bencher| bencher.iter(|| black_box(run().unwrap())));

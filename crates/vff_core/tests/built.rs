@@ -10,7 +10,10 @@ use vff_core::laws::pairwise::Pairwise;
 use vff_core::robots::DifferentialDriveRobot;
 use vff_core::robots::differential::{Nonlinear, Tracking, VirtualTorque};
 use vff_core::robots::wheels::{Slip, differential_wheels, holonomic_wheels};
-use vff_core::run::built::{Built, Steered, repeat_built, simulate_built};
+use vff_core::run::built::{
+    Built, ManyOptions, Steered, evaluate_built, run_many_built, simulate_built,
+};
+use vff_core::run::metrics::Weights;
 use vff_core::run::{AnyLaw, Options, Outcome, simulate};
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::sensing::{Estimator, PositionError, Vision};
@@ -220,28 +223,43 @@ fn threads_change_no_bit() {
         wheels: Some(differential_wheels().to_vec()),
         ..Built::default()
     };
-    let seeds: Vec<u64> = (0..7).collect();
+    let seeds = 0..7;
+    let episodes: Vec<Scenario> = seeds
+        .map(|seed| scenario.clone().reseeded(seed))
+        .chain([chapter_7(1, 0.0)])
+        .collect();
+    let weights = Weights {
+        arrival_time: 0.5,
+        avoidance: 0.3,
+        energy_saving: 0.2,
+    };
+    let laws = laws();
     let runs = |threads| {
-        repeat_built(
-            &scenario,
-            &field(),
-            &built,
-            &seeds,
-            Some(threads),
-            &never,
-            &|_| {},
-        )
-        .unwrap()
+        let options = ManyOptions {
+            weights,
+            histories: true,
+            threads: Some(threads),
+        };
+        run_many_built(&episodes, &laws, &built, &options, &never, &|_| {}).unwrap()
     };
     let one = runs(1);
     // Bits by what is printed: NaN, where nothing is, equals nothing.
     assert_eq!(format!("{one:?}"), format!("{:?}", runs(2)));
     assert_eq!(format!("{one:?}"), format!("{:?}", runs(5)));
-    assert_ne!(one[0].0.min_distance, one[1].0.min_distance);
-    let alone = simulate_built(&scenario.reseeded(3), &field(), &built, &never)
-        .unwrap()
-        .0;
-    assert_eq!(format!("{alone:?}"), format!("{:?}", one[3].0));
+    assert_ne!(one.table.energy[0], one.table.energy[1]);
+    for (law, episode) in [(0, 3), (1, 7)] {
+        let row = law * episodes.len() + episode;
+        let (score, alone, _) =
+            evaluate_built(&episodes[episode], &laws[law], &built, weights, &never).unwrap();
+        assert_eq!(one.table.energy[row], alone.0.energy);
+        assert_eq!(one.table.outcome[row], alone.0.outcome);
+        assert_eq!(one.table.performance_total[row], score.total);
+        assert_eq!(
+            format!("{:?}", one.contact[row]),
+            format!("{:?}", alone.0.contact)
+        );
+        assert_eq!(*one.histories[row].time.last().unwrap(), alone.0.end_time);
+    }
 }
 
 proptest! {

@@ -57,7 +57,7 @@ class Scored:
         The law with these gains.
     value : float
         Objective in its own unit: not turned around where small is good.
-    scores : BatchSummary
+    scores : RunTable
         One run for each scenario, with its own seed where there is noise.
     runs : tuple of Trajectory
         The same runs through the scenarios whose paths are drawn.
@@ -66,7 +66,7 @@ class Scored:
     name: str
     law: nav.Law
     value: float
-    scores: nav.BatchSummary
+    scores: nav.RunTable
     runs: tuple[nav.Trajectory, ...]
 
 

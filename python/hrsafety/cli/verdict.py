@@ -57,7 +57,7 @@ def failures_of(text: str | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def counted(runs: nav.BatchSummary | nav.Trajectory) -> Counts:
+def counted(runs: nav.RunTable | nav.Trajectory) -> Counts:
     """Return in how many runs each failure happened."""
     outcome = np.asarray(runs.outcome)
     masks = {

@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 from hrsafety import errors
 from hrsafety._namespace import names_below
-from hrsafety.navigation import built, gains, laws, metrics, robots, sensing, tracking
-from hrsafety.navigation.arena import ArenaResult, arena
-from hrsafety.navigation.batch import BatchSummary, simulate_batch
+from hrsafety.navigation import gains, laws, metrics, robots, sensing, tracking
+from hrsafety.navigation.batch import simulate_batch
+from hrsafety.navigation.compare import Comparison, compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
 from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
@@ -20,20 +20,21 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.laws.situation import Situation
+from hrsafety.navigation.many import simulate_many
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.run import Run
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.simulation import evaluate, simulate
 from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = [
-    "ArenaResult",
-    "BatchSummary",
     "BorensteinKoren",
+    "Comparison",
     "DifferentialDriveRobot",
     "Disc",
     "FieldDStar",
@@ -55,13 +56,14 @@ __all__ = [
     "Rectangle",
     "Regions",
     "Run",
+    "RunTable",
     "Scenario",
     "Situation",
     "Trajectory",
     "VelocityObstacle",
     "VirtualForceField",
     "VirtualImpedanceLaw",
-    "arena",
+    "compare",
     "evaluate",
     "force_terms",
     "gain_sensitivity",
@@ -75,10 +77,9 @@ __all__ = [
     "sensing",
     "simulate",
     "simulate_batch",
+    "simulate_many",
     "tracking",
 ]
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_below(
-        __name__, __all__, [gains, laws, metrics, robots, sensing, tracking, built, errors]
-    )
+    __getattr__, __dir__ = names_below(__name__, __all__, [gains, laws, metrics, robots, sensing, tracking, errors])

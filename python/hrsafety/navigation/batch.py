@@ -1,9 +1,8 @@
-"""Many runs in one call, over all cores and vector lanes."""
+"""Gain sets of one law in many scenarios, over all cores and vector lanes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -12,126 +11,15 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, flag, instance, number, numbers, sequence, thread_count
 from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.run_table import RunTable, table_of_batch
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
-from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table
 
-__all__ = ["BatchSummary", "simulate_batch"]
-
-# More would only exhaust the system before it says no.
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class BatchSummary(Table):
-    """Summary columns of a batch, one row for each (gains, scenario).
-
-    Rows run over the scenarios fastest: row = gain_index * number of scenarios +
-    scenario_index.
-
-    Attributes
-    ----------
-    gain_index, scenario_index : ndarray of int, shape (rows,)
-        Which gain set and which scenario.
-    gain_names : tuple of str
-        Names of the gains of the law, in their order.
-    gains : ndarray, shape (rows, g)
-        K_1, K_3, K_5, b of the row.
-    outcome : ndarray of str, shape (rows,)
-        ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``.
-    end_time : ndarray, shape (rows,)
-        When the run ended, in s.
-    arrival_time : ndarray, shape (rows,)
-        In s; NaN without arrival.
-    energy, path_length : ndarray, shape (rows,)
-        In J and m.
-    min_distance : ndarray, shape (rows, obstacles)
-        Least distance to each obstacle in m; infinite if it was never present, NaN beyond the
-        obstacles of the row's scenario.
-    min_clearance : ndarray, shape (rows,)
-        Least distance of the surfaces over all obstacles, in m; infinite without any.
-    entered_active : ndarray of int, shape (rows,)
-        Number of obstacles whose active region the robot entered.
-    contacts_moving, contacts_standing : ndarray of int, shape (rows,)
-        Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
-        contact), and while it stood.
-    performance_total : ndarray, shape (rows,)
-        H; 0 after a contact or without arrival.
-    performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (rows,)
-        H_T, H_D, H_E.
-    descent_share : ndarray, shape (rows,)
-        Share of the control periods, begun and ended outside every critical region, over
-        which the Lyapunov function did not grow; NaN unless asked for.
-    force_evaluations : ndarray of int, shape (rows,)
-        Number of control periods.
-    """
-
-    gain_names: tuple[str, ...]
-    gain_index: npt.NDArray[np.int64]
-    scenario_index: npt.NDArray[np.int64]
-    gains: Array
-    outcome: npt.NDArray[np.str_]
-    end_time: Array
-    arrival_time: Array
-    energy: Array
-    path_length: Array
-    min_distance: Array
-    min_clearance: Array
-    entered_active: npt.NDArray[np.int64]
-    contacts_moving: npt.NDArray[np.int64]
-    contacts_standing: npt.NDArray[np.int64]
-    performance_total: Array
-    performance_arrival_time: Array
-    performance_avoidance: Array
-    performance_energy_saving: Array
-    descent_share: Array
-    force_evaluations: npt.NDArray[np.int64]
-    _ran: tuple[tuple[Scenario, ...], Law] | None = field(default=None, repr=False)
-
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
-        if self._ran is None:
-            return ()
-        scenes, law = self._ran
-        return run_warnings.of_runs(scenes, [f"scenarios[{k}]" for k in range(len(scenes))], [law])
-
-    def __len__(self) -> int:
-        """Return the number of rows."""
-        return len(self.outcome)
-
-    def columns(self) -> Columns:
-        """Return one-dimensional columns by name, ready for a data frame.
-
-        Returns
-        -------
-        dict of str to ndarray
-            Gains and distances are split into one column each.
-
-        Examples
-        --------
-        >>> from hrsafety import navigation as nav, scenarios
-        >>> table = nav.simulate_batch([scenarios.configuration("c1")], nav.VirtualForceField()).columns()
-        >>> round(float(table["min_distance_0"][0]), 3)
-        0.536
-        """
-        table: Columns = {}
-        for entry in fields(self):
-            values = getattr(self, entry.name)
-            if entry.name in ("gain_names", "_ran"):
-                continue
-            if entry.name == "gains":
-                table |= {name: values[:, i] for i, name in enumerate(self.gain_names)}
-            elif values.ndim == 2:
-                table |= {f"{entry.name}_{i}": values[:, i] for i in range(values.shape[1])}
-            else:
-                table[entry.name] = values
-        return table
+__all__ = ["check_scenarios", "check_threads", "gain_sets", "simulate_batch"]
 
 
 def simulate_batch(
@@ -148,8 +36,11 @@ def simulate_batch(
     threads: int | None = None,
     lanes: int | None = None,
     progress: Callable[[int, int], object] | None = None,
-) -> BatchSummary:
+) -> RunTable:
     """Run every gain set in every scenario: one call, all cores, same bits on any machine.
+
+    `simulate_many` without its names and seeds, for one law and point masses, in the order in which
+    searches score gain sets: the scenarios fastest.
 
     Parameters
     ----------
@@ -177,8 +68,8 @@ def simulate_batch(
 
     Returns
     -------
-    BatchSummary
-        One row for each (gains, scenario).
+    RunTable
+        One row for each (gains, scenario): row = gain_index * number of scenarios + scenario_index.
 
     Raises
     ------
@@ -210,7 +101,7 @@ def simulate_batch(
     columns = _hrsafety.simulate_batch(
         [scenario._native for scenario in scenes],
         law._native,
-        _gain_sets(law, gains),
+        gain_sets(law, gains),
         check_weights(weights),
         integrator=integrator,
         step=number("step", step),
@@ -221,9 +112,7 @@ def simulate_batch(
         lanes=lanes,
         progress=callback("progress", progress),
     )
-    if not law.GAIN_NAMES:
-        columns["gains"] = columns["gains"][:, :0]
-    return BatchSummary(gain_names=law.GAIN_NAMES, _ran=(tuple(scenes), law), **columns)
+    return table_of_batch(scenes, law, columns)  # type: ignore[arg-type]  # a mapping of arrays
 
 
 def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
@@ -232,7 +121,7 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
     for index, scenario in enumerate(scenes):
         instance(f"scenarios[{index}]", scenario, Scenario)
         if not isinstance(scenario.robot, HolonomicRobot):
-            rule = "be a HolonomicRobot, since batches move point masses; `simulate` and `repeat` run the other kind"
+            rule = "be a HolonomicRobot, since batches move point masses; `simulate_many` runs the other kind"
             raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)
     if not scenes:
         raise InvalidParameterError("scenarios", "hold at least one scenario", Shown("an empty list"))
@@ -244,8 +133,28 @@ def check_threads(threads: int | None) -> None:
     thread_count(threads)
 
 
-def _gain_sets(law: Law, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
-    """Return the gain sets as a contiguous array, one a row."""
+def gain_sets(law: Law, gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> Array:
+    """Return the gain sets as a contiguous array, one a row.
+
+    Parameters
+    ----------
+    law : Law
+        Whose gains.
+    gains : array_like, mapping or None
+        As for `simulate_batch`.
+
+    Returns
+    -------
+    ndarray, shape (n, g)
+        Gains in the order of ``GAIN_NAMES``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a name is unknown or a value is no number.
+    ShapeError
+        If there is not a column for each gain.
+    """
     if not law.GAIN_NAMES:
         if gains is not None:
             raise InvalidParameterError("gains", "be None for a law without gains", gains)

@@ -11,7 +11,6 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, checked_seed, flag, instance, number, pair
 from hrsafety.errors import InvalidParameterError, SimulationError
-from hrsafety.navigation.built import BuiltTrajectory
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
 from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -26,9 +25,8 @@ class Run:
     """A run that is advanced from outside, one control period at a time.
 
     Every `step` decides, moves the robot until the next sample and measures there. Stepped to the
-    end by its law, a run has the same bits as `simulate`, or `simulate_built` where it is given how the
-    robot is built; the force is always held for a control period and the motion that of
-    ``"semi_implicit_euler"``.
+    end by its law, a run has the same bits as `simulate`; the force is always held for a control
+    period and the motion that of ``"semi_implicit_euler"``.
 
     Parameters
     ----------
@@ -126,13 +124,11 @@ class Run:
     def trajectory(self) -> Trajectory:
         """The run so far, with outcome ``"running"`` while it is under way.
 
-        A `BuiltTrajectory` where `simulate_built` is what it compares with. In a run without a law,
-        its law is one by the name of ``"commands"``.
+        In a run without a law, its law is one by the name of ``"commands"``.
         """
         fields = self._native.recorded(motors=self._built)
-        kind = BuiltTrajectory if self._built else Trajectory
         law = _COMMANDS if self._law is None else self._law
-        return kind(scenario=self._scenario, law=law, **fields)
+        return Trajectory(scenario=self._scenario, law=law, **fields)
 
     def observe(self) -> Situation:
         """Return what the controller sees now, measured once a control period.

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import flag, instance, number
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation import built
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import Performance, check_weights
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator, Trajectory, without_obstacles
 
-__all__ = ["evaluate", "simulate"]
+__all__ = ["as_built", "evaluate", "simulate"]
 
 
 def simulate(
     scenario: Scenario,
     law: AnyLaw,
     *,
+    built: AsBuilt | None = None,
     integrator: Integrator = "semi_implicit_euler",
     step: float = 0.01,
     hold: bool = True,
@@ -28,12 +30,18 @@ def simulate(
 ) -> Trajectory:
     """Run one robot from start to goal.
 
+    A holonomic robot moves as a point mass; a two-wheel robot follows the point mass that the law drives.
+
     Parameters
     ----------
     scenario : Scenario
-        Robot, start, goal, obstacles.
+        Robot, start, goal, obstacles, measurement.
     law : Law, callable or object
         What drives the robot; see `PythonLaw` for laws of your own.
+    built : AsBuilt or None
+        How the robot is built: wheels with controllers, cameras, the tracking of a two-wheel robot.
+        ``None``: ideal wheels and what the scenario measures, as ``AsBuilt()`` says, whose run of a
+        holonomic robot is the same bit for bit.
     integrator : {"semi_implicit_euler", "rk4"}
         Velocity first and position with the new velocity, or Runge-Kutta of order 4 with the
         speed limit in every stage.
@@ -42,36 +50,50 @@ def simulate(
     hold : bool
         Whether the force is computed once a control period and held, as a sampled controller
         does; otherwise at every step (``"rk4"``: at every stage). With ``hold`` the step must
-        divide the control period. A measurement needs ``hold``.
+        divide the control period. A measurement needs ``hold``, and so do a two-wheel robot and
+        ``built``, which also need ``"semi_implicit_euler"``.
     stop_on_contact : bool
         Whether the run ends at the first contact.
 
     Returns
     -------
     Trajectory
-        The run; a `BuiltTrajectory` for a `DifferentialDriveRobot`, which moves by
-        semi-implicit Euler with a held force, as `simulate_built` does.
+        The run.
 
     Raises
     ------
     InvalidParameterError
-        If the step is not positive and finite or does not divide the control period, or a
-        word is unknown.
+        If the step is not positive and finite or does not divide the control period, a word is
+        unknown, or an option does not suit the robot.
     SimulationError
         If the state became non-finite.
 
     Examples
     --------
+    >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, scenarios
     >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
     >>> run.outcome, round(run.arrival_time, 2), round(float(run.min_distance[0]), 3)
     ('arrived', 6.63, 0.536)
+    >>> two_wheels = replace(scenarios.configuration("n1"), robot=nav.DifferentialDriveRobot())
+    >>> run = nav.simulate(
+    ...     two_wheels, nav.VirtualForceField(), built=nav.robots.AsBuilt(wheels=nav.robots.DIFFERENTIAL_WHEELS)
+    ... )
+    >>> run.outcome, run.wheel_speed.shape[1]
+    ('arrived', 2)
     """
     instance("scenario", scenario, Scenario)
     law = as_law(law)
-    if isinstance(scenario.robot, DifferentialDriveRobot):
-        _check_held(integrator, hold)
-        return built.simulate_built(scenario, law, step=step, stop_on_contact=stop_on_contact)
+    robot = as_built([scenario], built, integrator, hold=hold)
+    if robot is not None:
+        columns = _hrsafety.built_simulate(
+            scenario._native,
+            law._native,
+            robot._native,
+            step=number("step", step),
+            stop_on_contact=flag("stop_on_contact", stop_on_contact),
+        )
+        return Trajectory(scenario=scenario, law=law, **columns)
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
@@ -88,6 +110,7 @@ def evaluate(
     law: AnyLaw,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     *,
+    built: AsBuilt | None = None,
     integrator: Integrator = "semi_implicit_euler",
     step: float = 0.01,
     hold: bool = True,
@@ -96,17 +119,18 @@ def evaluate(
 
     ``H = k (w_T T*/T + w_D mean_i min(d_s,i / d_s,i*, 1) + w_E L*/L)`` with k = 0 after a
     contact or without arrival, ``d_s = d - rho_r - rho_obs`` and
-    ``d_s* = r_2 - rho_r - rho_obs``. T* and L* come from the same law without obstacles.
+    ``d_s* = r_2 - rho_r - rho_obs``. T* and L* come from the same robot and law without
+    obstacles and without errors of measurement.
 
     Parameters
     ----------
     scenario : Scenario
-        Robot, start, goal, obstacles.
+        Robot, start, goal, obstacles, measurement.
     law : Law, callable or object
         What drives the robot; see `PythonLaw` for laws of your own.
     weights : sequence of float
         Weights of time, distance and energy; not negative, sum 1.
-    integrator, step, hold
+    built, integrator, step, hold
         As for `simulate`.
 
     Returns
@@ -129,9 +153,17 @@ def evaluate(
     """
     instance("scenario", scenario, Scenario)
     law = as_law(law)
-    if isinstance(scenario.robot, DifferentialDriveRobot):
-        _check_held(integrator, hold)
-        return built.evaluate_built(scenario, law, weights, step=step)
+    robot = as_built([scenario], built, integrator, hold=hold)
+    if robot is not None:
+        parts, real, ideal = _hrsafety.built_evaluate(
+            scenario._native, law._native, robot._native, check_weights(weights), step=number("step", step)
+        )
+        free = replace(without_obstacles(scenario), measurement=None, seed=0)
+        return Performance(
+            **parts,
+            trajectory=Trajectory(scenario=scenario, law=law, **real),
+            nominal=Trajectory(scenario=free, law=law, **ideal),
+        )
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)
     )
@@ -142,9 +174,36 @@ def evaluate(
     )
 
 
-def _check_held(integrator: Integrator, hold: bool) -> None:
-    """Refuse what a two-wheel robot cannot do."""
+def as_built(
+    scenarios: Sequence[Scenario], built: AsBuilt | None, integrator: Integrator, *, hold: bool
+) -> AsBuilt | None:
+    """Return how robots are built that are not plain point masses; ``None`` for point masses.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        Whose robots.
+    built : AsBuilt or None
+        What the caller gave.
+    integrator, hold
+        As for `simulate`; robots as built move by semi-implicit Euler under a held force.
+
+    Returns
+    -------
+    AsBuilt or None
+        ``AsBuilt()`` for two-wheel robots without a description of their own.
+
+    Raises
+    ------
+    InvalidParameterError
+        If ``built`` is of another kind, or the options do not suit such robots.
+    """
+    if built is None and not any(isinstance(each.robot, DifferentialDriveRobot) for each in scenarios):
+        return None
+    robot = AsBuilt() if built is None else instance("built", built, AsBuilt)
+    whose = "a DifferentialDriveRobot" if built is None else "a robot as built"
     if flag("hold", hold) is False:
-        raise InvalidParameterError("hold", "be True for a DifferentialDriveRobot", hold)
+        raise InvalidParameterError("hold", f"be True for {whose}", hold)
     if integrator != "semi_implicit_euler":
-        raise InvalidParameterError("integrator", 'be "semi_implicit_euler" for a DifferentialDriveRobot', integrator)
+        raise InvalidParameterError("integrator", f'be "semi_implicit_euler" for {whose}', integrator)
+    return robot

@@ -21,11 +21,13 @@ Integrator = Literal["semi_implicit_euler", "rk4"]
 Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Trajectory(Table):
     """One run of a robot: n instants, m obstacles, w wheels.
 
-    The rows are the motion steps and, last, the instant of arrival (linear inside its step).
+    The rows are the motion steps and, last, the instant of arrival (linear inside its step). The last
+    four columns are known of two-wheel robots and of robots as built; otherwise they are ``None``, and
+    the table does not have them.
 
     Attributes
     ----------
@@ -40,9 +42,9 @@ class Trajectory(Table):
     force : ndarray, shape (n, 2)
         Force as commanded, in N; from this row to the next.
     heading : ndarray, shape (n,)
-        Heading in rad.
+        Heading in rad; of a two-wheel robot whole turns count.
     wheel_current : ndarray, shape (n, w)
-        Motor currents in A over the step that ends at the row; zero in the first row.
+        Mean motor currents in A over the step that ends at the row; zero in the first row.
     obstacle_position : ndarray, shape (n, m, 2)
         True obstacle positions in m (centroid for rectangles); NaN while absent.
     distance : ndarray, shape (n, m)
@@ -54,7 +56,7 @@ class Trajectory(Table):
     arrival_time : float
         First entry into the tolerance circle, in s; NaN without arrival.
     energy : float
-        Electrical loss of the motors, in J.
+        Electrical loss of the motors, in J; with wheels that have controllers, of their currents.
     min_distance, min_clearance : ndarray, shape (m,)
         Least distance d, and least distance between the surfaces, in m; infinite for an
         obstacle that was never present.
@@ -67,6 +69,14 @@ class Trajectory(Table):
     lyapunov : ndarray, shape (n,)
         Lyapunov function V at the force samples, held between them, in N^2; NaN inside a
         critical region.
+    wheel_speed : ndarray of shape (n, w), or None
+        Wheel speeds in rad/s.
+    energy_used : ndarray of shape (n,), or None
+        Electrical loss up to each row, in J.
+    reference_position : ndarray of shape (n, 2), or None
+        Position of the point mass that the law drives, in m.
+    seen_position : ndarray of shape (n, 2), or None
+        Position of the robot as the law knows it since the last sample, in m.
     """
 
     scenario: Scenario
@@ -89,6 +99,10 @@ class Trajectory(Table):
     path_length: float
     stabilizing: Array
     lyapunov: Array
+    wheel_speed: Array | None = None
+    energy_used: Array | None = None
+    reference_position: Array | None = None
+    seen_position: Array | None = None
 
     @property
     def contacts_moving(self) -> int:
@@ -106,7 +120,8 @@ class Trajectory(Table):
         Returns
         -------
         dict of str to ndarray
-            Units are in the names; obstacles and wheels are numbered.
+            Units are in the names; obstacles and wheels are numbered. What only robots as built know
+            stands last.
 
         Examples
         --------
@@ -114,6 +129,9 @@ class Trajectory(Table):
         >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
         >>> list(run.columns())[:5]
         ['t_s', 'x_m', 'y_m', 'vx_m_per_s', 'vy_m_per_s']
+        >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField(), built=nav.robots.AsBuilt())
+        >>> list(run.columns())[-4:]
+        ['reference_x_m', 'reference_y_m', 'seen_x_m', 'seen_y_m']
         """
         found = {"t_s": self.time, **plane("{}", self.position, "m"), **plane("v{}", self.velocity, "m/s")}
         found |= {**plane("force_{}", self.force, "N"), "heading_rad": self.heading}
@@ -121,7 +139,15 @@ class Trajectory(Table):
         for index in range(self.distance.shape[1]):
             found |= plane(f"obstacle_{index}_{{}}", self.obstacle_position[:, index], "m")
             found[f"distance_{index}_m"] = self.distance[:, index]
-        return found | plane("stabilizing_{}", self.stabilizing, "N") | {"lyapunov_N2": self.lyapunov}
+        found |= {**plane("stabilizing_{}", self.stabilizing, "N"), "lyapunov_N2": self.lyapunov}
+        if self.wheel_speed is not None:
+            found |= each("wheel_{}_speed", self.wheel_speed, "rad/s")
+        if self.energy_used is not None:
+            found["energy_used_J"] = self.energy_used
+        for name in ("reference", "seen"):
+            places = getattr(self, f"{name}_position")
+            found |= {} if places is None else plane(f"{name}_{{}}", places, "m")
+        return found
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:

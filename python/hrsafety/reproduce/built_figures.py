@@ -87,7 +87,7 @@ def _spread(name: str) -> Iterator[Drawing]:
     paths, distances, words = _SPREAD[name]
     runs = repeated(name)
     scenario = scene(name)
-    exact = nav.built.simulate_built(scenario, LAW, nav.robots.AsBuilt(wheels=as_built(scenario).wheels))
+    exact = nav.simulate(scenario, LAW, built=nav.robots.AsBuilt(wheels=as_built(scenario).wheels))
     where = (
         f"{SEEDS} runs of configuration {name[1]} with {words} as built and a camera with a mean error of 4 mm; dashed "
         "is the run without errors of measurement. Where robot, obstacle and goal lie on one line, the errors decide "

@@ -68,10 +68,10 @@ def as_built(scenario: nav.Scenario) -> nav.robots.AsBuilt:
 
 
 @functools.cache
-def repeated(name: str, seeds: int = SEEDS) -> nav.metrics.Repeated:
+def repeated(name: str, seeds: int = SEEDS) -> nav.RunTable:
     """Return noisy runs of a configuration with the robot as built."""
     scenario = scene(name)
-    return nav.metrics.repeat(scenario, LAW, seeds=seeds, built=as_built(scenario))
+    return nav.simulate_many(scenario, LAW, seeds=seeds, built=as_built(scenario), paths=True)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -96,8 +96,8 @@ class Experiment:
 def experiment(table: str) -> Experiment:
     """Return the noisy runs in the place of the experiment of a table."""
     runs = repeated(EXPERIMENTS[table])
-    scenario = runs.scenario
-    free = nav.built.evaluate_built(scenario, LAW, built=as_built(scenario)).nominal
+    (scenario,) = runs.scenarios
+    free = nav.evaluate(scenario, LAW, built=as_built(scenario)).nominal
     arrived = runs.outcome == "arrived"
     time, energy = float(np.median(runs.arrival_time[arrived])), float(np.median(runs.energy[arrived]))
     distances = _by_kind(scenario, np.median(runs.min_distance[arrived], axis=0))

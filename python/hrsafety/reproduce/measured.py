@@ -92,7 +92,7 @@ def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list
     return runs
 
 
-def _row(summary: nav.BatchSummary, index: int, scenario: nav.Scenario) -> Measured:
+def _row(summary: nav.RunTable, index: int, scenario: nav.Scenario) -> Measured:
     time = float(summary.arrival_time[index])
     energy = float(summary.energy[index])
     values = {"T_arrive": time, "L_energy": energy, "H": float(summary.performance_total[index])}

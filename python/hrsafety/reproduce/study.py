@@ -184,7 +184,7 @@ def _run(experiment: _Experiment) -> dict[Key, Outcomes]:
     return {key: runs[key] for key in (Key(experiment.name, *names) for names in ordered)}
 
 
-def _outcomes(summary: nav.BatchSummary, rows: slice) -> Outcomes:
+def _outcomes(summary: nav.RunTable, rows: slice) -> Outcomes:
     return Outcomes(
         outcome=summary.outcome[rows],
         moving=summary.contacts_moving[rows] > 0,

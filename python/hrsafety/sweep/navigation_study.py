@@ -228,9 +228,9 @@ class NavigationStudy(Study):
                 hold=self.hold,
                 stop_on_contact=self.stop_on_contact,
                 threads=threads,
-            ).columns()
+            )
             for name, values in found.items():
-                values[part.rows] = table[name].reshape(-1, each)[part.order]
+                values[part.rows] = _values(table, name).reshape(-1, each)[part.order]
         return {name: values.reshape(-1) for name, values in found.items()}
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
@@ -279,6 +279,13 @@ class _Batch(NamedTuple):
     law: nav.Law
     gains: dict[str, Array] | None
     order: npt.NDArray[np.int64] | slice
+
+
+def _values(table: nav.RunTable, name: str) -> npt.NDArray[Any]:
+    """Return a column of a table of runs by its name in a sweep."""
+    what, _, obstacle = name.rpartition("_")
+    found: npt.NDArray[Any] = table.min_distance[:, int(obstacle)] if what == "min_distance" else getattr(table, name)
+    return found
 
 
 def _computed(column: Column) -> np.dtype[Any]:

@@ -68,3 +68,24 @@ pub struct RunSummary {
     /// Number of samples of the force.
     pub force_evaluations: u64,
 }
+
+impl RunSummary {
+    /// The same in the numbers that every scenario has.
+    #[must_use]
+    pub fn totals(&self) -> RunTotals {
+        let mut contacts = [0, 0];
+        for touch in self.contact.iter().flatten() {
+            contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+        }
+        RunTotals {
+            outcome: self.outcome,
+            end_time: self.end_time,
+            arrival_time: self.arrival_time.unwrap_or(f64::NAN),
+            energy: self.energy,
+            path_length: self.path_length,
+            contacts,
+            descent_share: self.descent_share,
+            force_evaluations: self.force_evaluations,
+        }
+    }
+}

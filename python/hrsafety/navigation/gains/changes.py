@@ -10,9 +10,10 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, vector
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
+from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns, Table
@@ -234,7 +235,7 @@ def _collect(
     weights: Sequence[float],
     percent: Array,
     gains: Array,
-    table: BatchSummary,
+    table: RunTable,
 ) -> GainSensitivity:
     """Return the rows of a batch, of which the first gain set is that of the law, by gain and change."""
     own, shape = len(scenes), (*gains.shape[:2], len(scenes))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from hrsafety._arguments import Array, word
-from hrsafety.navigation.batch import BatchSummary
+from hrsafety.navigation.run_table import RunTable
 
 __all__ = ["METRICS", "METRIC_UNITS", "Metric", "check_metric", "is_maximized", "metric_values"]
 
@@ -46,7 +46,7 @@ def is_maximized(metric: str) -> bool:
     return METRICS[metric][1]
 
 
-def metric_values(table: BatchSummary, metric: str) -> Array:
+def metric_values(table: RunTable, metric: str) -> Array:
     """Return a metric of every row of a batch, in its own unit."""
     values: Array = getattr(table, METRICS[metric][0])
     return values

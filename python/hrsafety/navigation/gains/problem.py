@@ -11,10 +11,11 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, numbers
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.batch import BatchSummary
 from hrsafety.navigation.gains.confidence import student_quantile
 from hrsafety.navigation.gains.settings import GainConstraint, Judge, SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.run_table import RunTable, table_of_batch
+from hrsafety.navigation.scenario import Scenario
 
 __all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
 
@@ -41,12 +42,16 @@ class Scorer:
     Parameters
     ----------
     objectives, constraints : mapping of str to callable
-        Each takes a `BatchSummary` of n gain sets and returns n numbers; the key names it in
+        Each takes a `RunTable` of n gain sets and returns n numbers; the key names it in
         errors.
     factor : float or None
         As `lower_bound_factor`.
-    gain_names : tuple of str
-        Names of the gains of the law.
+    scenarios : sequence of Scenario
+        Where the gain sets are run.
+    law : Law
+        Whose gains are searched.
+    seeds : sequence of int
+        Noise seeds, one for each batch; none if there is one batch with the scenarios' own.
     """
 
     def __init__(
@@ -54,16 +59,24 @@ class Scorer:
         objectives: Mapping[str, Judge],
         constraints: Mapping[str, Judge],
         factor: float | None,
-        gain_names: tuple[str, ...],
+        scenarios: Sequence[Scenario],
+        law: Law,
+        seeds: Sequence[int],
     ) -> None:
         self.objectives = objectives
         self.constraints = constraints
         self.factor = factor
-        self.gain_names = gain_names
+        self.scenarios = scenarios
+        self.law = law
+        self.seeds = seeds
 
     def __call__(self, tables: Sequence[Mapping[str, Any]]) -> tuple[Array, Array]:
         """Return values (n, objectives) and margins (n, constraints) of the batches of all seeds."""
-        batches = [BatchSummary(gain_names=self.gain_names, **columns) for columns in tables]
+        seeds: Sequence[int | None] = self.seeds or [None]
+        batches = [
+            table_of_batch(self.scenarios, self.law, columns, seed=seed)
+            for columns, seed in zip(tables, seeds, strict=True)
+        ]
         rows = int(batches[0].gain_index[-1]) + 1
         values, margins = np.empty((rows, len(self.objectives))), np.empty((rows, len(self.constraints)))
         for index, (name, objective) in enumerate(self.objectives.items()):
@@ -81,7 +94,7 @@ class Scorer:
         return np.where(np.isnan(mean), -np.inf, mean)
 
 
-def judged(name: str, judge: Judge, batches: Sequence[BatchSummary], rows: int) -> Array:
+def judged(name: str, judge: Judge, batches: Sequence[RunTable], rows: int) -> Array:
     """Return what a callable says of the batch of each seed, (seeds, n)."""
     found = []
     for batch in batches:
@@ -121,7 +134,7 @@ def gain_problem(
     }
     if settings.method != "front" and objectives:
         objectives = {"objective": next(iter(objectives.values()))}
-    called = Scorer(objectives, constraints, factor, settings.law.GAIN_NAMES)
+    called = Scorer(objectives, constraints, factor, settings.scenarios, settings.law, seeds)
     return _hrsafety.GainProblem(
         scenarios=[scenario._native for scenario in settings.scenarios],
         law=settings.law._native,

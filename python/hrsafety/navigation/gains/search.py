@@ -105,12 +105,12 @@ def optimize_gains(
         ``"performance_arrival_time"``, ``"performance_avoidance"``,
         ``"performance_energy_saving"``; or what is maximized with its sign changed,
         ``"arrival_time"``, ``"energy"``, ``"path_length"``; the mean over the scenarios. For
-        ``"min_clearance"`` it is the least over them. A callable takes the `BatchSummary` of n
+        ``"min_clearance"`` it is the least over them. A callable takes the `RunTable` of n
         gain sets in all scenarios and returns n values; its runs end at the first contact.
     weights : sequence of float
         Weights of time, distance and energy in H.
     constraints : sequence of GainConstraint or callable
-        What has to hold; a callable takes the `BatchSummary` of n gain sets and returns n
+        What has to hold; a callable takes the `RunTable` of n gain sets and returns n
         margins, negative where it does not hold. A gain set that misses constraints by less
         is better than one that misses them by more, whatever the objective. One that is missed
         by no more than 1e-6 of its unit counts as kept.

@@ -23,12 +23,13 @@ from hrsafety._arguments import (
 )
 from hrsafety._bounds import MOST_LOCAL_STARTS, MOST_POINTS, MOST_REFINEMENTS, MOST_SEEDS
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation.batch import BatchSummary, check_scenarios
+from hrsafety.navigation.batch import check_scenarios
 from hrsafety.navigation.gains.metrics import METRICS, check_metric
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.planners import RapidlyExploringRandomTree
 from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.performance import check_weights
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 
@@ -36,7 +37,7 @@ __all__ = ["Constraint", "GainConstraint", "Method", "Objective", "Robustness", 
 
 Method = Literal["grid", "differential_evolution", "cma_es", "front"]
 Robustness = Literal["mean", "lower_bound"]
-Judge = Callable[[BatchSummary], npt.ArrayLike]
+Judge = Callable[[RunTable], npt.ArrayLike]
 Objective = str | Judge
 Bounds = Mapping[str, tuple[float, float]] | npt.ArrayLike
 Grid = Mapping[str, int] | Sequence[int]

@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, numbers, positive
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation.batch import BatchSummary, check_scenarios, simulate_batch
+from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.gains.metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 
@@ -159,7 +160,7 @@ def gain_gradient(
     return _slopes(law, metric_name, widths, one_sided, found)
 
 
-def _values(table: BatchSummary, metric: str) -> Array:
+def _values(table: RunTable, metric: str) -> Array:
     """Return the metric of each row; NaN after a contact or without arrival."""
     return np.where(table.outcome == "arrived", metric_values(table, metric), np.nan)
 

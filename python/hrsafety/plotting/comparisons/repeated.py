@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.repeated import Band, Repeated
+from hrsafety.navigation.bands import Band
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
@@ -28,16 +29,31 @@ EXACT_LOOK: style.Properties = {"color": "black", "linewidth": 1.6, "linestyle":
 LEGEND_COLUMNS = 4
 
 
-def _checked(repeated: Repeated, exact: Trajectory | None) -> None:
-    if not isinstance(repeated, Repeated):
-        raise InvalidParameterError("repeated", "be a Repeated", Shown(type(repeated).__name__))
+class _Kept(NamedTuple):
+    """What was kept of runs with paths, see `RunTable`."""
+
+    time: inputs.Array
+    position: inputs.Array
+    contact_time: inputs.Array
+
+
+def _checked(runs: RunTable, exact: Trajectory | None) -> _Kept:
+    """Return what was kept of the runs of one law in one scenario."""
+    if not isinstance(runs, RunTable):
+        raise InvalidParameterError("runs", "be a RunTable", Shown(type(runs).__name__))
+    single = len(runs.scenarios) == len(runs.laws) == 1
+    if runs.time is None or runs.position is None or runs.contact_time is None or not single:
+        found = f"{len(runs.laws)} laws in {len(runs.scenarios)} scenarios"
+        remedy = "`simulate_many(..., paths=True)` keeps them, `select` picks a law and a scenario"
+        raise InvalidParameterError("runs", "be of one law in one scenario, with paths", Shown(found), remedy)
     if exact is not None:
         inputs.checked_trajectory("exact", exact)
+    return _Kept(runs.time, runs.position, runs.contact_time)
 
 
 @style.styled
 def repeated_paths(
-    repeated: Repeated, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
+    runs: RunTable, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
 ) -> Figure:
     """Draw the paths of repeated runs from above, the band in which most of them lie and its median.
 
@@ -46,8 +62,8 @@ def repeated_paths(
 
     Parameters
     ----------
-    repeated : Repeated
-        The runs.
+    runs : RunTable
+        Runs of one law in one scenario, with their paths.
     exact : Trajectory or None
         A run to compare them with, for example without errors.
     share : float
@@ -72,15 +88,15 @@ def repeated_paths(
     >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> noisy = replace(scenarios.configuration("c1"), measurement=nav.Measurement(of="robot"))
-    >>> runs = nav.metrics.repeat(noisy, nav.VirtualForceField(), seeds=20)
+    >>> runs = nav.simulate_many(noisy, nav.VirtualForceField(), seeds=20, paths=True)
     >>> plotting.repeated_paths(runs).axes[0].get_xlabel()
     'x (m)'
     """
-    _checked(repeated, exact)
-    band = repeated.path_band(share)
-    scenario = repeated.scenario
+    kept = _checked(runs, exact)
+    band = runs.path_band(share)
+    scenario = runs.scenarios[0]
     still = [obstacle for obstacle in scenario.obstacles if not shapes.is_mobile(obstacle)]
-    places = repeated.position[np.isfinite(repeated.position[..., 0])]
+    places = kept.position[np.isfinite(kept.position[..., 0])]
     regions = [
         shapes.region(obstacle, shapes.center(obstacle), shapes.region_radii(obstacle)[0]).get_extents().get_points()
         for obstacle in still
@@ -91,7 +107,7 @@ def repeated_paths(
     for obstacle, look in zip(scenario.obstacles, looks, strict=True):
         if not shapes.is_mobile(obstacle):
             shapes.add_obstacle(axes, obstacle, shapes.center(obstacle), look.color, regions=True)
-    _draw_paths(axes, repeated, band, share)
+    _draw_paths(axes, (runs.scenarios[0], kept), band, share)
     if exact is not None:
         floor.line(axes, exact.position, zorder=5.0, label="compared with", **EXACT_LOOK)
     shapes.add_start_and_goal(axes, scenario)
@@ -106,12 +122,13 @@ def _standing_handles(scenario: Scenario) -> list[Artist]:
     return shapes.obstacle_handles(obstacles, regions=bool(standing), shown=standing)
 
 
-def _draw_paths(axes: Axes, repeated: Repeated, band: Band, share: float) -> None:
+def _draw_paths(axes: Axes, scene: tuple[Scenario, _Kept], band: Band, share: float) -> None:
     """Draw some paths, the band of all and the first contacts."""
-    for row in range(min(len(repeated), MOST_PATHS)):
-        label = f"{min(len(repeated), MOST_PATHS)} of {len(repeated)} paths" if row == 0 else None
-        floor.line(axes, repeated.position[row], zorder=3.0, label=label, **PATH_LOOK)
-    start, goal = np.asarray(repeated.scenario.start), np.asarray(repeated.scenario.goal)
+    scenario, kept = scene
+    for row in range(min(len(kept.time), MOST_PATHS)):
+        label = f"{min(len(kept.time), MOST_PATHS)} of {len(kept.time)} paths" if row == 0 else None
+        floor.line(axes, kept.position[row], zorder=3.0, label=label, **PATH_LOOK)
+    start, goal = np.asarray(scenario.start), np.asarray(scenario.goal)
     along = (goal - start) / np.hypot(*(goal - start))
     across = np.array([-along[1], along[0]])
     there = band.runs > 0
@@ -124,21 +141,17 @@ def _draw_paths(axes: Axes, repeated: Repeated, band: Band, share: float) -> Non
         *edge.T, color=style.RUN_COLORS[0], alpha=BAND_ALPHA, linewidth=0.0, label=f"{100 * share:.0f} % of the runs"
     )
     floor.line(axes, middle, zorder=4.0, color=style.RUN_COLORS[0], linewidth=2.0, label="median")
-    touched = np.nanmin(
-        np.where(np.isnan(repeated.contact_time), np.inf, repeated.contact_time), axis=1, initial=np.inf
-    )
-    rows = [
-        (run, int(np.nanargmin(np.abs(repeated.time[run] - touched[run])))) for run in np.flatnonzero(touched < np.inf)
-    ]
+    touched = np.nanmin(np.where(np.isnan(kept.contact_time), np.inf, kept.contact_time), axis=1, initial=np.inf)
+    rows = [(run, int(np.nanargmin(np.abs(kept.time[run] - touched[run])))) for run in np.flatnonzero(touched < np.inf)]
     if rows:
-        crosses = np.array([repeated.position[run, row] for run, row in rows])
+        crosses = np.array([kept.position[run, row] for run, row in rows])
         look: style.Properties = {"marker": "X", "color": style.CONTACT_COLOR, "markersize": 7, "linestyle": "none"}
         axes.plot(*crosses.T, label=f"first contact, {len(rows)} runs", zorder=6.0, **look)
 
 
 @style.styled
 def repeated_distances(
-    repeated: Repeated, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
+    runs: RunTable, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
 ) -> Figure:
     """Draw the distances to the goal and to every obstacle over time as bands with their medians.
 
@@ -147,8 +160,8 @@ def repeated_distances(
 
     Parameters
     ----------
-    repeated : Repeated
-        The runs.
+    runs : RunTable
+        Runs of one law in one scenario, with their paths.
     exact : Trajectory or None
         A run to compare them with, dashed.
     share : float
@@ -173,12 +186,12 @@ def repeated_distances(
     >>> from dataclasses import replace
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> noisy = replace(scenarios.configuration("c2"), measurement=nav.Measurement())
-    >>> runs = nav.metrics.repeat(noisy, nav.VirtualForceField(side_hysteresis=3.0), seeds=20)
+    >>> runs = nav.simulate_many(noisy, nav.VirtualForceField(side_hysteresis=3.0), seeds=20, paths=True)
     >>> [axes.get_ylabel() for axes in plotting.repeated_distances(runs).axes]
     ['e (m)', 'd, person (m)']
     """
-    _checked(repeated, exact)
-    obstacles = repeated.scenario.obstacles
+    _checked(runs, exact)
+    obstacles = runs.scenarios[0].obstacles
     figure = style.new_figure(0.7 + 2.1 * (1 + len(obstacles)), title=title)
     panels = figure.subplots(1 + len(obstacles), 1, sharex=True, squeeze=False)[:, 0]
     to_goal = None
@@ -187,8 +200,8 @@ def repeated_distances(
     looks = [shapes.Look("e", style.RUN_COLORS[0])]
     looks += [shapes.Look(f"d, {look.name}", look.color) for look in shapes.looks(obstacles)]
     for index, (axes, look) in enumerate(zip(panels, looks, strict=True)):
-        band = repeated.goal_band(share) if index == 0 else repeated.distance_band(index - 1, share)
-        most = 2 * band.runs >= len(repeated)
+        band = runs.goal_band(share) if index == 0 else runs.distance_band(index - 1, share)
+        most = 2 * band.runs >= len(runs)
         low, high = band.low[most], band.high[most]
         words = f"{100 * share:.0f} % of the runs"
         axes.fill_between(
@@ -206,6 +219,6 @@ def repeated_distances(
         axes.set_ylim(bottom=0.0)
         axes.legend(**style.LEGEND_BESIDE)
     panels[-1].set_xlabel("time (s)")
-    panels[-1].set_xlim(0.0, float(repeated.end_time.max()))
+    panels[-1].set_xlim(0.0, float(runs.end_time.max()))
     figure.align_ylabels()
     return figure

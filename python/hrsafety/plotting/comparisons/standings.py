@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.arena import ArenaResult
+from hrsafety.navigation.compare import Comparison
 from hrsafety.plotting import style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
@@ -25,7 +25,7 @@ ROW_HEIGHT = 0.42
 
 
 @style.styled
-def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Figure:
+def plot_arena_standings(result: Comparison, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
     Beside the share of the episodes with a contact, a hollow mark is the share of those in which
@@ -33,8 +33,8 @@ def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Fi
 
     Parameters
     ----------
-    result : ArenaResult
-        What `hrsafety.navigation.arena` returned.
+    result : Comparison
+        What `hrsafety.navigation.compare` returned.
     title : str or None
         Title of the figure.
 
@@ -46,7 +46,7 @@ def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Fi
     Raises
     ------
     InvalidParameterError
-        If the result is not an ArenaResult.
+        If the result is not a Comparison.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -55,12 +55,12 @@ def plot_arena_standings(result: ArenaResult, *, title: str | None = None) -> Fi
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
     >>> episodes = [scenarios.random_traffic(3, seed=seed) for seed in range(10)]
-    >>> figure = plotting.plot_arena_standings(nav.arena(laws, episodes))
+    >>> figure = plotting.plot_arena_standings(nav.compare(episodes, laws))
     >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     ['field', 'Masoud']
     """
-    if not isinstance(result, ArenaResult):
-        raise InvalidParameterError("result", "be an ArenaResult", Shown(type(result).__name__))
+    if not isinstance(result, Comparison):
+        raise InvalidParameterError("result", "be a Comparison", Shown(type(result).__name__))
     standings = result.standings()
     figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
     left, right = figure.subplots(1, 2, sharey=True)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.batch import BatchSummary
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ BAR_HEIGHT = 0.62
 
 @style.styled
 def clearances(
-    clearances: Mapping[str, BatchSummary | npt.ArrayLike],
+    clearances: Mapping[str, RunTable | npt.ArrayLike],
     *,
     title: str | None = None,
 ) -> Figure:
@@ -48,7 +48,7 @@ def clearances(
 
     Parameters
     ----------
-    clearances : mapping of str to BatchSummary or array_like, shape (n,)
+    clearances : mapping of str to RunTable or array_like, shape (n,)
         Least distance of the surfaces in each run in m, by the name of the group.
     title : str or None
         Title of the figure.
@@ -115,7 +115,7 @@ def _checked_groups(argument: str, groups: object) -> list[tuple[str, object]]:
 def _checked_clearances(name: str, values: object) -> Array:
     """Return the sorted clearances of one group."""
     argument = f"clearances[{name!r}]"
-    raw = values.min_clearance if isinstance(values, BatchSummary) else values
+    raw = values.min_clearance if isinstance(values, RunTable) else values
     try:
         array: Array = np.asarray(raw, dtype=np.float64)
     except (TypeError, ValueError):
@@ -138,7 +138,7 @@ def _steps(values: Array, end: float) -> tuple[Array, Array]:
 
 @style.styled
 def outcomes(
-    outcomes: Mapping[str, BatchSummary | Sequence[str] | npt.NDArray[np.str_]],
+    outcomes: Mapping[str, RunTable | Sequence[str] | npt.NDArray[np.str_]],
     *,
     contacts_moving: Mapping[str, npt.ArrayLike] | None = None,
     contacts_standing: Mapping[str, npt.ArrayLike] | None = None,
@@ -148,11 +148,11 @@ def outcomes(
 
     With counts of contacts, runs with a contact are split: those in which the robot was
     moving at the first contact with anybody, and those in which it always stood. Counts of a
-    BatchSummary are used by themselves.
+    RunTable are used by themselves.
 
     Parameters
     ----------
-    outcomes : mapping of str to BatchSummary or sequence of str, shape (n,)
+    outcomes : mapping of str to RunTable or sequence of str, shape (n,)
         Outcome of each run (``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``), by
         the name of the group.
     contacts_moving, contacts_standing : mapping of str to array_like, shape (n,), or None
@@ -201,7 +201,7 @@ def outcomes(
 def _checked_outcomes(name: str, values: object) -> npt.NDArray[np.str_]:
     """Return the outcomes of one group."""
     argument = f"outcomes[{name!r}]"
-    words = np.asarray(values.outcome if isinstance(values, BatchSummary) else values)
+    words = np.asarray(values.outcome if isinstance(values, RunTable) else values)
     if words.ndim != 1:
         raise ShapeError(argument, "(n,)", words.shape)
     known = {"arrived", "collided", "timed_out", "stopped"}
@@ -221,7 +221,7 @@ def _checked_contacts(
 ) -> tuple[Counts, Counts] | None:
     """Return the number of contacts of each run of a group, moving and standing, if known."""
     if moving is None or standing is None:
-        return (values.contacts_moving, values.contacts_standing) if isinstance(values, BatchSummary) else None
+        return (values.contacts_moving, values.contacts_standing) if isinstance(values, RunTable) else None
     found = []
     for argument, counts in (("contacts_moving", moving), ("contacts_standing", standing)):
         if name not in counts:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.navigation.built import BuiltTrajectory
 from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def energy(
 
 def accumulated_loss(run: Trajectory) -> inputs.Array:
     """Return the loss in the windings since the begin of a run in J, shape (n,)."""
-    if isinstance(run, BuiltTrajectory):
+    if run.energy_used is not None:
         return run.energy_used
     power = run.scenario.robot.winding_resistance * (run.wheel_current**2).sum(axis=1)
     loss: inputs.Array = np.concatenate([[0.0], np.cumsum(power[1:] * np.diff(run.time))])

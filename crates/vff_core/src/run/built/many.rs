@@ -1,4 +1,4 @@
-//! The same scenario with many seeds.
+//! Many runs: laws in scenarios, over all cores.
 
 use std::sync::Arc;
 
@@ -11,7 +11,10 @@ use crate::run::built::history::Listener;
 use crate::run::built::run::clock_of;
 use crate::run::episode::Episode;
 use crate::run::group::AnyLaw;
-use crate::run::outcome::RunSummary;
+use crate::run::metrics::{Nominal, Weights, score};
+use crate::run::nominal::Ways;
+use crate::run::outcome::{Contact, RunSummary};
+use crate::run::table::{BatchTable, Cell, Strip};
 use crate::world::geometry::Body;
 use crate::world::scenario::Scenario;
 use numeric::threads::{on_threads, try_map};
@@ -50,6 +53,11 @@ impl Sampled {
     }
 }
 
+/// Keeps nothing.
+struct Deaf;
+
+impl Listener for Deaf {}
+
 impl Listener for Sampled {
     fn row(&mut self, time: f64, reading: &Reading, _energy: f64, bodies: &[Body]) {
         let position = reading.robot.position;
@@ -72,39 +80,160 @@ impl Listener for Sampled {
     }
 }
 
-/// Runs a scenario with each seed; results stand in the order of the seeds.
+/// Options of many runs, beside those of [`Built`].
+#[derive(Clone, Copy, Debug)]
+pub struct ManyOptions {
+    /// Weights of the criterion.
+    pub weights: Weights,
+    /// Keep what happened once every control period.
+    pub histories: bool,
+    /// Number of threads; all cores when `None`.
+    pub threads: Option<usize>,
+}
+
+/// Many runs; row `l * scenarios + s` is law `l` in scenario `s`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ManyRuns {
+    /// Columns of the runs.
+    pub table: BatchTable,
+    /// First contacts of each run with its obstacles.
+    pub contact: Vec<Vec<Option<Contact>>>,
+    /// What was kept of each run; empty unless asked for.
+    pub histories: Vec<Histories>,
+}
+
+/// Runs robots as built in every scenario under every law, and scores each run against the run of
+/// its law without obstacles and without errors of measurement.
 ///
 /// # Errors
-/// There is no seed, an option is out of range, the law cannot work in the scenario, a state became
-/// non-finite, or the caller asked to stop.
-pub fn repeat_built(
-    scenario: &Scenario,
-    law: &AnyLaw,
+/// There is no scenario or no law, an option is out of range, a law cannot work in a scenario, a state
+/// became non-finite, or the caller asked to stop.
+pub fn run_many_built(
+    scenarios: &[Scenario],
+    laws: &[AnyLaw],
     built: &Built,
-    seeds: &[u64],
-    threads: Option<usize>,
+    options: &ManyOptions,
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<(RunSummary, Histories)>> {
-    if seeds.is_empty() {
-        let none = Given::Found("an empty list".into());
-        let rule = "hold at least one seed";
-        return Err(Failure::invalid("seeds", rule, none));
+) -> Result<ManyRuns> {
+    check(scenarios, laws, built)?;
+    let many = Many {
+        scenarios,
+        laws,
+        built,
+        options,
+        interrupted,
+    };
+    on_threads(options.threads, || many.run(progress))
+}
+
+fn check(scenarios: &[Scenario], laws: &[AnyLaw], built: &Built) -> Result<()> {
+    let empty = || Given::Found("an empty list".into());
+    if scenarios.is_empty() {
+        let rule = "hold at least one scenario";
+        return Err(Failure::invalid("scenarios", rule, empty()));
     }
-    let every = clock_of(scenario, built)?.steps_per_sample;
-    let one = |index: usize| {
-        let scenario = Arc::new(scenario.clone().reseeded(seeds[index]));
+    if laws.is_empty() {
+        return Err(Failure::invalid("laws", "hold at least one law", empty()));
+    }
+    for (index, scenario) in scenarios.iter().enumerate() {
+        built
+            .suiting(scenario)
+            .and_then(|built| clock_of(scenario, built))
+            .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
+    }
+    Ok(())
+}
+
+struct Many<'a> {
+    scenarios: &'a [Scenario],
+    laws: &'a [AnyLaw],
+    built: &'a Built,
+    options: &'a ManyOptions,
+    interrupted: Interrupted<'a>,
+}
+
+impl Many<'_> {
+    fn run(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<ManyRuns> {
+        let (count, ways) = (self.scenarios.len(), Ways::new(self.scenarios));
+        let ideal = self.built.seeing_all();
+        let along = ways.scenarios.len();
+        let nominal = try_map(self.laws.len() * along, |index| {
+            let way = &ways.scenarios[index % along];
+            self.one(way, index / along, &ideal, Deaf)
+                .map(|(run, _)| Nominal {
+                    arrival_time: run.arrival_time.unwrap_or(f64::NAN),
+                    energy: run.energy,
+                })
+                .map_err(|error| error.of_run(|_| index / along * count))
+        })?;
+        let runs = try_map(self.laws.len() * count, |row| {
+            let kept = self
+                .kept(&self.scenarios[row % count], row / count)
+                .map_err(|error| error.of_run(|_| row))?;
+            progress(1);
+            Ok(kept)
+        })?;
+        let free = |row: usize| nominal[row / count * along + ways.of(row % count)];
+        Ok(self.gathered(runs, &free))
+    }
+
+    fn kept(&self, scenario: &Scenario, law: usize) -> Result<(RunSummary, Histories)> {
+        if !self.options.histories {
+            let (summary, _) = self.one(scenario, law, self.built, Deaf)?;
+            return Ok((summary, Histories::default()));
+        }
         let sampled = Sampled {
             kept: Histories::default(),
-            every,
+            every: clock_of(scenario, self.built)?.steps_per_sample,
             next: 0,
             last: None,
         };
-        let (summary, sampled) = Episode::heard(scenario, Some(law), built, |_, _| sampled)
-            .and_then(|episode| episode.run(interrupted))
-            .map_err(|error| error.of_run(|_| index))?;
-        progress(1);
+        let (summary, sampled) = self.one(scenario, law, self.built, sampled)?;
         Ok((summary, sampled.finish()))
-    };
-    on_threads(threads, || try_map(seeds.len(), one))
+    }
+
+    fn one<L: Listener>(
+        &self,
+        scenario: &Scenario,
+        law: usize,
+        built: &Built,
+        listener: L,
+    ) -> Result<(RunSummary, L)> {
+        let scenario = Arc::new(scenario.clone());
+        Episode::heard(scenario, Some(&self.laws[law]), built, |_, _| listener)?
+            .run(self.interrupted)
+    }
+
+    fn gathered(
+        &self,
+        runs: Vec<(RunSummary, Histories)>,
+        free: &dyn Fn(usize) -> Nominal,
+    ) -> ManyRuns {
+        let count = self.scenarios.len();
+        let room = |scenario: &Scenario| Strip::new(self.laws.len(), scenario.obstacle_count());
+        let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
+        let (mut contact, mut histories) = (Vec::new(), Vec::new());
+        for (row, (summary, history)) in runs.into_iter().enumerate() {
+            let (scenario, law) = (&self.scenarios[row % count], row / count);
+            let (totals, own) = (summary.totals(), &summary.min_distance);
+            let weights = self.options.weights;
+            let distances = own.iter().copied();
+            let strip = &mut strips[row % count];
+            strip.cells[law] = Cell {
+                run: totals,
+                performance: score(scenario, (&totals).into(), distances, free(row), weights),
+            };
+            strip.distances[law * own.len()..(law + 1) * own.len()].copy_from_slice(own);
+            contact.push(summary.contact);
+            if self.options.histories {
+                histories.push(history);
+            }
+        }
+        ManyRuns {
+            table: BatchTable::gather(self.scenarios, &strips),
+            contact,
+            histories,
+        }
+    }
 }

@@ -12,7 +12,7 @@ pub(super) mod sight;
 
 pub use crate::robots::drives::{PoseFusion, Steered};
 pub use history::BuiltTrajectory;
-pub use many::{Histories, repeat_built};
+pub use many::{Histories, ManyOptions, ManyRuns, run_many_built};
 pub(super) use run::{clock_of, robot_of};
 pub use run::{evaluate_built, simulate_built};
 

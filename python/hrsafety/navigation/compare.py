@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal, get_args
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, callback, checked_seed, count, instance, sequence, word
+from hrsafety._arguments import Array, count, instance, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
-from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import simulate_batch
-from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.laws.python_law import AnyLaw, as_law
-from hrsafety.navigation.run_warnings import of_runs
+from hrsafety.navigation.laws.python_law import AnyLaw
+from hrsafety.navigation.many import Progress, Seeds, simulate_many
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table, each, with_units
+from hrsafety.tables import Columns, Table
 
-__all__ = ["ArenaResult", "Metric", "Standing", "arena", "step_cost"]
+__all__ = ["Comparison", "Metric", "Standing", "compare", "step_cost"]
 
 Metric = Literal["arrival_time", "min_clearance", "energy", "path_length", "performance_total"]
 METRICS: tuple[str, ...] = get_args(Metric)
@@ -59,20 +59,20 @@ class Standing:
     performance_total: Mean
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ArenaResult(Table):
-    """Runs of several laws in the same episodes: rows are laws, columns episodes.
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Comparison(Table):
+    """Runs of several laws in the same episodes, a scenario and a seed each: rows are laws, columns episodes.
 
     Attributes
     ----------
-    laws : tuple of str
-        Names of the laws.
+    runs : RunTable
+        All runs, one a row, as `simulate_many` returned them.
+    laws, scenario_names : tuple of str
+        Names of the laws and of the scenarios.
     scenario : ndarray of int, shape (episodes,)
         Index of each episode's scenario.
     seed : ndarray of int, shape (episodes,)
         Seed of each episode.
-    scenario_names : tuple of str
-        Names of the scenarios.
     outcome : ndarray of str, shape (laws, episodes)
         ``"arrived"``, ``"collided"``, ``"timed_out"`` or ``"stopped"``.
     arrival_time, energy, path_length, min_clearance : ndarray, shape (laws, episodes)
@@ -85,30 +85,80 @@ class ArenaResult(Table):
         H.
     """
 
-    laws: tuple[str, ...]
-    scenario: npt.NDArray[np.int64]
-    seed: npt.NDArray[np.uint64]
-    scenario_names: tuple[str, ...]
-    outcome: npt.NDArray[np.str_]
-    arrival_time: Array
-    energy: Array
-    path_length: Array
-    min_clearance: Array
-    min_distance: Array
-    moving_contacts: npt.NDArray[np.int64]
-    performance_total: Array
-    _ran: tuple[tuple[Scenario, ...], tuple[Law, ...]] | None = field(default=None, repr=False)
+    runs: RunTable
+
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """Names of the laws."""
+        return self.runs.law_names
+
+    @property
+    def scenario_names(self) -> tuple[str, ...]:
+        """Names of the scenarios."""
+        return self.runs.scenario_names
+
+    @property
+    def scenario(self) -> npt.NDArray[np.int64]:
+        """Index of each episode's scenario."""
+        first: npt.NDArray[np.int64] = self._by_law(self.runs.scenario_index)[0]
+        return first
+
+    @property
+    def seed(self) -> npt.NDArray[np.uint64]:
+        """Seed of each episode."""
+        first: npt.NDArray[np.uint64] = self._by_law(self.runs.seed)[0]
+        return first
+
+    @property
+    def outcome(self) -> npt.NDArray[np.str_]:
+        """How each run ended."""
+        return self._by_law(self.runs.outcome)
+
+    @property
+    def arrival_time(self) -> Array:
+        """First entry into the tolerance circle in s."""
+        return self._by_law(self.runs.arrival_time)
+
+    @property
+    def energy(self) -> Array:
+        """Electrical loss in J."""
+        return self._by_law(self.runs.energy)
+
+    @property
+    def path_length(self) -> Array:
+        """Path length in m."""
+        return self._by_law(self.runs.path_length)
+
+    @property
+    def min_clearance(self) -> Array:
+        """Least distance of the surfaces in m."""
+        return self._by_law(self.runs.min_clearance)
+
+    @property
+    def min_distance(self) -> Array:
+        """Least distance to each obstacle in m."""
+        return self._by_law(self.runs.min_distance)
+
+    @property
+    def moving_contacts(self) -> npt.NDArray[np.int64]:
+        """Number of obstacles touched while the robot was moving."""
+        return self._by_law(self.runs.contacts_moving)
+
+    @property
+    def performance_total(self) -> Array:
+        """Criterion H."""
+        return self._by_law(self.runs.performance_total)
+
+    def _by_law(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        return values.reshape(len(self.laws), -1, *values.shape[1:])
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why episodes may not mean what they seem to: the first warning of each kind, and how many follow."""
-        if self._ran is None:
-            return ()
-        scenes, laws = self._ran
-        return of_runs(scenes, [f"scenarios[{name!r}]" for name in self.scenario_names], laws)
+        return self.runs.warnings
 
     def columns(self) -> Columns:
-        """Return one-dimensional columns by name, a row for each law and episode.
+        """Return the columns of the runs by name, a row for each law and episode.
 
         Returns
         -------
@@ -119,18 +169,10 @@ class ArenaResult(Table):
         --------
         >>> from hrsafety import navigation as nav, scenarios
         >>> laws = {"field": nav.VirtualForceField(), "no detour": nav.VirtualForceField(detour_gain=0.0)}
-        >>> nav.arena(laws, {"c1": scenarios.configuration("c1")}).columns()["law"].tolist()
+        >>> nav.compare({"c1": scenarios.configuration("c1")}, laws).columns()["law"].tolist()
         ['field', 'no detour']
         """
-        laws, episodes = self.outcome.shape
-        names = np.array(self.scenario_names)[self.scenario]
-        found: Columns = {"law": np.repeat(np.array(self.laws), episodes), "scenario": np.tile(names, laws)}
-        found |= {"seed": np.tile(self.seed, laws), "outcome": self.outcome.ravel()}
-        units = {"arrival_time": "s", "energy": "J", "path_length": "m", "min_clearance": "m"}
-        units |= {"moving_contacts": "", "performance_total": ""}
-        found |= {name: values.ravel() for name, values in with_units(self, units).items()}
-        obstacles = self.min_distance.shape[2]
-        return found | each("min_distance_{}", self.min_distance.reshape(-1, obstacles), "m")
+        return self.runs.columns()
 
     def standing(self, law: str) -> Standing:
         """Return what one law did over all episodes.
@@ -228,109 +270,77 @@ class ArenaResult(Table):
         return self.laws.index(law)
 
 
-def arena(
-    laws: Mapping[str, AnyLaw],
-    scenarios: Mapping[str, Scenario] | Sequence[Scenario],
+def compare(
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
     *,
-    seeds: Sequence[int] | None = None,
+    seeds: Seeds | None = None,
+    built: AsBuilt | None = None,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     integrator: Integrator = "semi_implicit_euler",
     step: float = 0.01,
     hold: bool = True,
+    stop_on_contact: bool = False,
     threads: int | None = None,
-    progress: Callable[[int, int], object] | None = None,
-) -> ArenaResult:
-    """Run every law in every scenario with every seed.
+    progress: Progress | None = None,
+) -> Comparison:
+    """Run every law in the same scenarios with the same seeds, and compare them episode by episode.
 
     Parameters
     ----------
-    laws : mapping of str to law
-        The laws by the names under which they appear, those of the package and laws of your own
-        (`PythonLaw`).
-    scenarios : mapping of str to Scenario, or sequence of Scenario
+    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
         Where; without names they are numbered.
-    seeds : sequence of int or None
-        Seeds for noise and for planners that draw; each scenario is run with each of them.
-        ``None``: with the scenario's own.
-    weights, integrator, step, hold
-        As for `simulate_batch`.
+    laws : law, sequence of laws, or mapping of str to law
+        The laws, by the names under which they appear, those of the package and laws of your own
+        (`PythonLaw`); without names they are called by their class.
+    seeds : int, iterable of int, or None
+        Seeds for noise and for planners that draw, or their number; each scenario is run with each of
+        them, with its own when ``None``.
+    built, weights, integrator, step, hold, stop_on_contact
+        As for `simulate_many`.
     threads : int or None
         Number of threads; all cores when ``None``. Never changes a bit of the result.
     progress : callable or None
-        Called with (laws done, laws in all).
+        Called with (runs done, runs in all) about ten times a second.
 
     Returns
     -------
-    ArenaResult
-        Every run, comparable episode by episode.
+    Comparison
+        Every run; shares with intervals, and differences of the same episodes.
 
     Raises
     ------
     InvalidParameterError
         If there is no law, no scenario or no seed, or one is not valid.
+    SimulationError
+        If the state of a run became non-finite.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C.
 
     Examples
     --------
     >>> from hrsafety import navigation as nav, scenarios
-    >>> result = nav.arena(
-    ...     {"field": nav.VirtualForceField(), "without detour": nav.VirtualForceField(detour_gain=0.0)},
+    >>> result = nav.compare(
     ...     {"c1": scenarios.configuration("c1")},
+    ...     {"field": nav.VirtualForceField(), "without detour": nav.VirtualForceField(detour_gain=0.0)},
     ... )
     >>> result.outcome[:, 0].tolist()
     ['arrived', 'arrived']
     """
-    if not isinstance(laws, Mapping) or not laws:
-        raise InvalidParameterError("laws", "be a mapping of names to laws that is not empty", laws)
-    for name in laws:
-        instance("laws", name, str)
-    wrapped = {name: as_law(law, f"laws[{name!r}]") for name, law in laws.items()}
-    callback("progress", progress)
-    names, episodes, index = _episodes(scenarios, seeds)
-    tables = []
-    for done, law in enumerate(wrapped.values(), start=1):
-        tables.append(
-            simulate_batch(episodes, law, weights=weights, integrator=integrator, step=step, hold=hold, threads=threads)
-        )
-        if progress is not None:
-            progress(done, len(laws))
-    return ArenaResult(
-        laws=tuple(laws),
-        scenario=index,
-        seed=np.array([episode.seed for episode in episodes], dtype=np.uint64),
-        scenario_names=names,
-        outcome=np.stack([table.outcome for table in tables]),
-        arrival_time=np.stack([table.arrival_time for table in tables]),
-        energy=np.stack([table.energy for table in tables]),
-        path_length=np.stack([table.path_length for table in tables]),
-        min_clearance=np.stack([table.min_clearance for table in tables]),
-        min_distance=np.stack([table.min_distance for table in tables]),
-        moving_contacts=np.stack([table.contacts_moving for table in tables]),
-        performance_total=np.stack([table.performance_total for table in tables]),
-        _ran=(tuple(episodes[k] for k in np.unique(index, return_index=True)[1]), tuple(wrapped.values())),
+    runs = simulate_many(
+        scenarios,
+        laws,
+        seeds=seeds,
+        built=built,
+        weights=weights,
+        integrator=integrator,
+        step=step,
+        hold=hold,
+        stop_on_contact=stop_on_contact,
+        threads=threads,
+        progress=progress,
     )
-
-
-def _episodes(
-    scenarios: Mapping[str, Scenario] | Sequence[Scenario], seeds: Sequence[int] | None
-) -> tuple[tuple[str, ...], list[Scenario], npt.NDArray[np.int64]]:
-    """Return names, every scenario with every seed, and which scenario each of them is."""
-    if isinstance(scenarios, Mapping):
-        named = dict(scenarios)
-    else:
-        listed = sequence("scenarios", "be a mapping of names to scenarios or a sequence of Scenario", scenarios)
-        named = {str(k): each for k, each in enumerate(listed)}
-    if not named:
-        raise InvalidParameterError("scenarios", "hold at least one scenario", scenarios)
-    for name, scenario in named.items():
-        instance(f"scenarios[{name!r}]", scenario, Scenario)
-    if seeds is None:
-        return tuple(named), list(named.values()), np.arange(len(named))
-    given = sequence("seeds", "be a sequence of integers or None", seeds)
-    drawn = [checked_seed(f"seeds[{k}]", seed) for k, seed in enumerate(given)]
-    if not drawn:
-        raise InvalidParameterError("seeds", "hold at least one seed, or be None", seeds)
-    episodes = [replace(scenario, seed=seed) for scenario in named.values() for seed in drawn]
-    return tuple(named), episodes, np.repeat(np.arange(len(named)), len(drawn))
+    return Comparison(runs=runs)
 
 
 def step_cost(law: AnyLaw, scenario: Scenario, *, repeats: int = 5) -> float:

@@ -1,0 +1,359 @@
+"""Many runs in one call: laws in scenarios with seeds and gains."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, callback, checked_seed, count, flag, instance, number, sequence, thread_count
+from hrsafety._bounds import MOST_SEEDS, MOST_TABLE_ROWS
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.batch import gain_sets
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
+from hrsafety.navigation.performance import check_weights
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.simulation import as_built
+from hrsafety.navigation.trajectory import Integrator
+from hrsafety.tables import Columns
+
+__all__ = ["Progress", "Seeds", "checked_seeds", "named_laws", "named_scenarios", "simulate_many"]
+
+Seeds = int | Iterable[int]
+Progress = Callable[[int, int], object]
+
+
+def simulate_many(
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    *,
+    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
+    seeds: Seeds | None = None,
+    built: AsBuilt | None = None,
+    paths: bool = False,
+    weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
+    integrator: Integrator = "semi_implicit_euler",
+    step: float = 0.01,
+    hold: bool = True,
+    stop_on_contact: bool = False,
+    descent: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> RunTable:
+    """Run every law in every scenario with every seed and every gain set, on all cores.
+
+    Each run has the bits of `simulate` and `evaluate`, on any number of threads. Point masses run side
+    by side in vector lanes; two-wheel robots, robots as built and runs whose paths are kept run one by
+    one on each core.
+
+    Parameters
+    ----------
+    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
+        Where; without names they are numbered.
+    laws : law, sequence of laws, or mapping of str to law
+        What drives the robot, laws of the package and laws of your own (`PythonLaw`), which run on one
+        thread; without names they are called by their class, those of one class numbered.
+    gains : array_like of shape (n, g), mapping, or None
+        Gain sets in the order of ``GAIN_NAMES`` of the laws, or arrays by these names that broadcast,
+        the missing ones taken from each law. ``None``: the gains of each law.
+    seeds : int, iterable of int, or None
+        Seeds of the measurement and of planners that draw, or their number: then 0, 1, 2 and so on.
+        Each scenario is run with each of them; with its own when ``None``.
+    built : AsBuilt or None
+        How the robots are built, as for `simulate`.
+    paths : bool
+        Whether the path of every run is kept, once a control period: ``time``, ``position``,
+        ``distance`` and first contacts, from which bands are made.
+    weights : sequence of float
+        Weights of time, distance and energy in H.
+    integrator, step, hold, stop_on_contact
+        As for `simulate`.
+    descent : bool
+        Whether ``descent_share`` is computed; costs time. For point masses only.
+    threads : int or None
+        Number of threads, up to 1024; all cores when ``None``.
+    progress : callable or None
+        Called with (runs done, runs in all) about ten times a second.
+
+    Returns
+    -------
+    RunTable
+        One row for each (law, scenario, seed, gains) in this order, the gains fastest.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no scenario, law, seed or gain set, one is not valid, the laws differ in the names
+        of the gains that are given, there would be more than ten million rows, or an option is out of
+        range.
+    ShapeError
+        If gains does not have a column for each gain.
+    SimulationError
+        If the state of a run became non-finite.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> noisy = replace(scenarios.configuration("c1"), measurement=nav.Measurement(of="robot"))
+    >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
+    >>> runs = nav.simulate_many({"c1": noisy}, laws, seeds=20)
+    >>> len(runs), runs.select(law="field").success.runs
+    (40, 20)
+    """
+    places, drivers = named_scenarios(scenarios), named_laws(laws)
+    sets = _sets(drivers, gains)
+    drawn = None if seeds is None else checked_seeds(seeds)
+    study = _Study(places, drivers, sets, drawn)
+    robot = as_built(list(places.values()), built, integrator, hold=hold)
+    # Only the loop of single runs keeps paths; a point mass has the same bits there.
+    if flag("paths", paths) and robot is None:
+        robot = as_built(list(places.values()), AsBuilt(), integrator, hold=hold)
+    if flag("descent", descent) and robot is not None:
+        raise InvalidParameterError("descent", "be False for robots as built and runs with paths", descent)
+    options: dict[str, object] = {"step": number("step", step), "threads": thread_count(threads)}
+    options |= {"stop_on_contact": flag("stop_on_contact", stop_on_contact)}
+    if robot is None:
+        options |= {"integrator": integrator, "hold": flag("hold", hold), "descent": descent, "lanes": None}
+    else:
+        options |= {"built": robot._native, "histories": paths}
+    return study.run(check_weights(weights), options, callback("progress", progress))
+
+
+@dataclass(frozen=True, slots=True)
+class _Study:
+    """What runs where."""
+
+    scenarios: Mapping[str, Scenario]
+    laws: Mapping[str, Law]
+    sets: Sequence[Array]
+    seeds: list[int] | None
+
+    def __post_init__(self) -> None:
+        """Refuse a table that would not fit into memory."""
+        rows = len(self.scenarios) * len(self.seeds or [0]) * sum(map(len, self.sets))
+        if rows > MOST_TABLE_ROWS:
+            rule = f"hold at most {MOST_TABLE_ROWS} runs with their scenarios, seeds and gain sets"
+            remedy = "split the call, or run a sweep, which writes to files"
+            raise InvalidParameterError("laws", rule, Shown(f"{rows} runs"), remedy)
+
+    def run(
+        self, weights: tuple[float, float, float], options: dict[str, object], progress: Progress | None
+    ) -> RunTable:
+        own = [[scenario.seed] if self.seeds is None else self.seeds for scenario in self.scenarios.values()]
+        natives = [
+            scenario._native.reseeded(seed)
+            for scenario, seeds in zip(self.scenarios.values(), own, strict=True)
+            for seed in seeds
+        ]
+        total, done, parts = len(natives) * sum(map(len, self.sets)), 0, []
+        for law, sets in zip(self.laws.values(), self.sets, strict=True):
+            heard = None if progress is None else _shifted(progress, done, total)
+            try:
+                columns = _columns(natives, law, sets, weights, {**options, "progress": heard})
+            except InvalidParameterError as error:
+                raise self._naming_scenarios(error) from None
+            parts.append(_gains_fastest(columns))
+            done += len(natives) * len(sets)
+        return self._table(parts, np.array(list(itertools.chain(*own)), dtype=np.uint64))
+
+    def _naming_scenarios(self, error: InvalidParameterError) -> InvalidParameterError:
+        """Return an error that names the scenario instead of the episode, which is a scenario with a seed."""
+        found = re.match(r"scenarios\[(\d+)\]", error.argument)
+        if found is None or self.seeds is None:
+            return error
+        name = f"scenarios[{int(found[1]) // len(self.seeds)}]{error.argument[found.end() :]}"
+        return InvalidParameterError(name, error.requirement, error.value, error.remedy)
+
+    def _table(self, parts: list[Columns], seeds: npt.NDArray[np.uint64]) -> RunTable:
+        """Return the columns of all laws, one below the other, with what each row is."""
+        names = list(dict.fromkeys(name for law in self.laws.values() for name in law.GAIN_NAMES))
+        for law, part in zip(self.laws.values(), parts, strict=True):
+            wide = np.full((len(part["outcome"]), len(names)), np.nan)
+            wide[:, [names.index(name) for name in law.GAIN_NAMES]] = part["gains"][:, : len(law.GAIN_NAMES)]
+            part["gains"] = wide
+        # Runs of one law may last longer than those of another: their histories are padded.
+        for name in {"time", "position", "distance"} & set(parts[0]):
+            longest = max(part[name].shape[1] for part in parts)
+            for part in parts:
+                part[name] = _padded(part[name], longest)
+        rows = [len(part["outcome"]) for part in parts]
+        episode = np.concatenate([part.pop("scenario_index") for part in parts])
+        columns = {
+            name: parts[0][name] if len(parts) == 1 else np.concatenate([part[name] for part in parts])
+            for name in parts[0]
+        }
+        return RunTable(
+            law_names=tuple(self.laws),
+            scenario_names=tuple(self.scenarios),
+            laws=tuple(self.laws.values()),
+            scenarios=tuple(self.scenarios.values()),
+            gain_names=tuple(names),
+            law_index=np.repeat(np.arange(len(rows)), rows),
+            scenario_index=episode // (len(seeds) // len(self.scenarios)),
+            seed=seeds[episode],
+            **columns,
+        )
+
+
+def _columns(
+    natives: Sequence[_hrsafety.Scenario],
+    law: Law,
+    sets: Array,
+    weights: tuple[float, float, float],
+    options: dict[str, object],
+) -> Columns:
+    """Return the columns of one law, the scenarios fastest."""
+    if "built" not in options:
+        return dict(_hrsafety.simulate_batch(natives, law._native, sets, weights, **options))  # type: ignore[arg-type]
+    built = options.pop("built")
+    own = [_with_gains(law, row) for row in sets] if law.GAIN_NAMES else [law]
+    natively = [each._native for each in own]
+    return _hrsafety.built_many(natives, natively, sets, built, weights, **options)  # type: ignore[arg-type]
+
+
+def _with_gains(law: Law, gains: Array) -> Law:
+    """Return the law with other gains, given in the order of ``GAIN_NAMES``."""
+    return law.replaced(**dict(zip(law.GAIN_NAMES, gains.tolist(), strict=True)))
+
+
+def _gains_fastest(columns: Columns) -> Columns:
+    """Return columns whose scenarios vary fastest with the gains fastest."""
+    rows, sets = len(columns["gain_index"]), int(columns["gain_index"][-1]) + 1
+    if sets == 1:
+        return columns
+    order = np.arange(rows).reshape(sets, -1).T.ravel()
+    return {name: values[order] for name, values in columns.items()}
+
+
+def _padded(values: Array, longest: int) -> Array:
+    """Return histories with so many instants, NaN after the last."""
+    missing = [(0, 0), (0, longest - values.shape[1]), *[(0, 0)] * (values.ndim - 2)]
+    return np.pad(values, missing, constant_values=np.nan)
+
+
+def _shifted(progress: Progress, before: int, total: int) -> Progress:
+    """Return a progress callback that counts the runs of the laws before."""
+    return lambda done, _: progress(before + done, total)
+
+
+# ---- what is given ----------------------------------------------------------------------------------
+
+
+def named_scenarios(scenarios: object) -> dict[str, Scenario]:
+    """Return the scenarios by name, at least one.
+
+    Parameters
+    ----------
+    scenarios : Scenario, sequence or mapping
+        As for `simulate_many`.
+
+    Returns
+    -------
+    dict of str to Scenario
+        Without names they are numbered.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is none, or one is of another kind.
+    """
+    rule = "be a Scenario, a sequence of them or a mapping of names to them"
+    given = _listed("scenarios", rule, [scenarios] if isinstance(scenarios, Scenario) else scenarios)
+    return {key: instance(f"scenarios[{shown}]", each, Scenario) for key, shown, each in given}
+
+
+def named_laws(laws: object) -> dict[str, Law]:
+    """Return the laws by name, at least one.
+
+    Parameters
+    ----------
+    laws : Law, sequence or mapping
+        As for `simulate_many`.
+
+    Returns
+    -------
+    dict of str to Law
+        Without names they are called by their class, from the second of a class on with a number.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is none, or one is of another kind.
+    """
+    single = isinstance(laws, Law) or callable(laws) or hasattr(laws, "command") or hasattr(laws, "velocity")
+    given = _listed("laws", "be a law, a sequence of laws or a mapping of names to laws", [laws] if single else laws)
+    found = [(key, as_law(each, "laws" if single else f"laws[{shown}]")) for key, shown, each in given]
+    if isinstance(laws, Mapping):
+        return dict(found)
+    named: dict[str, Law] = {}
+    kinds: dict[str, int] = {}
+    for _, law in found:
+        kind = law.name if isinstance(law, PythonLaw) and law.name else type(law).__name__
+        kinds[kind] = kinds.get(kind, 0) + 1
+        named[kind if kinds[kind] == 1 else f"{kind} {kinds[kind]}"] = law
+    return named
+
+
+def _listed(argument: str, rule: str, given: object) -> list[tuple[str, str, object]]:
+    """Return name, what an error calls it, and value of everything in a sequence or a mapping."""
+    if isinstance(given, Mapping):
+        words = {instance(f"names of {argument}", name, str): each for name, each in given.items()}
+        found = [(name, repr(name), each) for name, each in words.items()]
+    else:
+        found = [(str(index), str(index), each) for index, each in enumerate(sequence(argument, rule, given))]
+    if not found:
+        raise InvalidParameterError(argument, "hold at least one", Shown("none"))
+    return found
+
+
+def checked_seeds(seeds: Seeds) -> list[int]:
+    """Return the seeds as a list of integers, at least one.
+
+    Parameters
+    ----------
+    seeds : int or iterable of int
+        The seeds, or their number.
+
+    Returns
+    -------
+    list of int
+        The seeds.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is none, there are too many, or one is not an integer from 0 to 2**64 - 1.
+    """
+    if isinstance(seeds, (int, np.integer)):
+        return list(range(count("seeds", seeds, most=MOST_SEEDS)))
+    rule = "be a positive integer or hold integers from 0 to 2**64 - 1"
+    # A range may be longer than memory.
+    given = sequence("seeds", rule, itertools.islice(seeds, MOST_SEEDS + 1) if isinstance(seeds, range) else seeds)
+    if len(given) > MOST_SEEDS:
+        raise InvalidParameterError("seeds", f"hold at most {MOST_SEEDS} seeds", Shown("more"))
+    checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]
+    if not checked:
+        raise InvalidParameterError("seeds", "hold at least one seed", Shown("an empty list"))
+    return checked
+
+
+def _sets(laws: Mapping[str, Law], gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> list[Array]:
+    """Return the gain sets of each law."""
+    kinds = {law.GAIN_NAMES: name for name, law in laws.items()}
+    if gains is not None and len(kinds) > 1:
+        (one, first), (other, second) = list(kinds.items())[:2]
+        found = f'{", ".join(one)} of "{first}" and {", ".join(other)} of "{second}"'
+        remedy = "run the laws one by one, or give laws with other gains"
+        raise InvalidParameterError("gains", "be None for laws with gains of different names", Shown(found), remedy)
+    return [gain_sets(law, gains) for law in laws.values()]

@@ -1,0 +1,201 @@
+"""Many runs in one call: order of the rows, bits of the single runs, seeds, gains, paths, what is refused."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from api.spoiled import names
+from hrsafety import InvalidParameterError, ShapeError, scenarios
+from hrsafety import navigation as nav
+
+NOISE = nav.Measurement(of="both")
+PLACES = {name: replace(scenarios.configuration(name), measurement=NOISE, seed=9) for name in ("c1", "c4")}
+FIELDS = {"full": nav.VirtualForceField(), "off": nav.VirtualForceField(stabilizing="off")}
+GAINS = {"attractive_gain": [2.0, 3.0, 4.0], "gain_ratio": 0.3}
+SEEDS = (4, 2**64 - 1)
+C1 = PLACES["c1"]
+LAW = nav.VirtualForceField()
+TWO_WHEELS = replace(scenarios.configuration("n1"), robot=nav.DifferentialDriveRobot())
+
+
+def assert_same_run(runs: nav.RunTable, row: int, single: nav.Performance) -> None:
+    run, obstacles = single.trajectory, len(single.trajectory.min_distance)
+    assert runs.outcome[row] == run.outcome
+    assert runs.end_time[row] == run.time[-1]
+    np.testing.assert_array_equal(runs.arrival_time[row], run.arrival_time)
+    assert (runs.energy[row], runs.path_length[row]) == (run.energy, run.path_length)
+    assert runs.min_distance[row, :obstacles].tobytes() == run.min_distance.tobytes()
+    assert runs.min_clearance[row] == run.min_clearance.min()
+    assert runs.contacts_moving[row] + runs.contacts_standing[row] == np.isfinite(run.contact_time).sum()
+    parts = (runs.performance_arrival_time, runs.performance_avoidance, runs.performance_energy_saving)
+    assert runs.performance_total[row] == single.total
+    assert [part[row] for part in parts] == [single.arrival_time, single.avoidance, single.energy_saving]
+
+
+# ---- order and bits ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("paths", [False, True])
+def test_rows_are_laws_scenarios_seeds_gains_and_have_the_bits_of_single_runs(paths: bool) -> None:
+    runs = nav.simulate_many(PLACES, FIELDS, gains=GAINS, seeds=SEEDS, paths=paths)
+    expected = list(itertools.product(FIELDS, PLACES, SEEDS, range(3)))
+    assert len(runs) == len(expected)
+    for row, (law, place, seed, index) in enumerate(expected):
+        assert (runs.law[row], runs.scenario[row], runs.seed[row], runs.gain_index[row]) == (law, place, seed, index)
+        attraction = GAINS["attractive_gain"][index]  # type: ignore[index]  # a list
+        assert runs.gains[row].tolist() == [attraction, LAW.repulsive_gain, LAW.detour_gain, 0.3]
+        driver = FIELDS[law].replaced(attractive_gain=attraction, gain_ratio=0.3)
+        assert_same_run(runs, row, nav.evaluate(replace(PLACES[place], seed=seed), driver))
+
+
+def test_one_law_has_the_bits_of_the_batch() -> None:
+    sets = np.array([[2.0, 20.0, 17.0, 0.25], [3.0, 21.0, 17.0, 0.3], [4.0, 20.0, 10.0, 0.25]])
+    batch = nav.simulate_batch(list(PLACES.values()), LAW, sets, descent=True)
+    runs = nav.simulate_many(list(PLACES.values()), LAW, gains=sets, descent=True)
+    assert runs.scenario_index.tolist() == [0, 0, 0, 1, 1, 1]
+    for name in ("seed", "gains", "outcome", "min_distance", "performance_total", "descent_share", "gain_index"):
+        one, other = getattr(batch, name), getattr(runs, name)
+        assert one.reshape(3, 2, -1).swapaxes(0, 1).tobytes() == other.reshape(2, 3, -1).tobytes(), name
+
+
+@pytest.mark.parametrize("built", [None, nav.robots.AsBuilt(wheels=nav.robots.DIFFERENTIAL_WHEELS)])
+def test_two_wheel_robots_have_the_bits_of_single_runs(built: nav.robots.AsBuilt | None) -> None:
+    laws: dict[str, nav.Law] = {"field": LAW, "Masoud": nav.Masoud()}
+    noisy = replace(TWO_WHEELS, measurement=NOISE)
+    for threads in (1, 3):
+        runs = nav.simulate_many(noisy, laws, seeds=2, built=built, threads=threads)
+        assert runs.law.tolist() == ["field", "field", "Masoud", "Masoud"]
+        for row, (law, seed) in enumerate(itertools.product(laws, range(2))):
+            single = nav.evaluate(replace(noisy, seed=seed), laws[law], built=built)
+            assert_same_run(runs, row, single)
+            assert runs.contact_time is not None
+            assert runs.contact_time[row].tobytes() == single.trajectory.contact_time.tobytes()
+        assert np.isnan(runs.gains[2:, 3]).all()  # Masoud has no gain of this name
+
+
+def test_point_masses_and_two_wheel_robots_share_a_table() -> None:
+    runs = nav.simulate_many({"point": C1, "wheels": TWO_WHEELS}, LAW)
+    assert_same_run(runs, 0, nav.evaluate(C1, LAW))
+    assert_same_run(runs, 1, nav.evaluate(TWO_WHEELS, LAW))
+
+
+def test_paths_are_those_of_single_runs_and_end_with_them() -> None:
+    places = [C1, scenarios.configuration("multiple_obstacles")]
+    runs = nav.simulate_many(places, [LAW, nav.VirtualForceField(attractive_gain=1.0)], paths=True)
+    assert runs.law_names == ("VirtualForceField", "VirtualForceField 2")
+    assert runs.time is not None
+    assert runs.position is not None
+    assert runs.distance is not None
+    for row in range(4):
+        single = nav.simulate(runs.scenarios[runs.scenario_index[row]], runs.laws[runs.law_index[row]])
+        inside = np.isfinite(runs.time[row])
+        assert runs.time[row][inside][-1] == single.time[-1]
+        kept = np.searchsorted(single.time, runs.time[row][inside])
+        assert runs.position[row][inside].tobytes() == single.position[kept].tobytes()
+        obstacles = single.distance.shape[1]
+        np.testing.assert_array_equal(runs.distance[row][inside, :obstacles], single.distance[kept])
+        assert np.isnan(runs.distance[row][:, obstacles:]).all()
+    with pytest.raises(InvalidParameterError, match=r"scenarios must be one for bands, got 2; select"):
+        runs.goal_band()
+    alone = runs.select(law="VirtualForceField", scenario="1")
+    assert alone.goal_band().low[0] > 0.0
+    assert alone.select(law="VirtualForceField").time is not None
+    with pytest.raises(InvalidParameterError, match="paths must be kept for bands"):
+        nav.simulate_many(C1, LAW).path_band()
+
+
+def test_seeds_are_those_of_the_scenarios_unless_given() -> None:
+    assert nav.simulate_many(PLACES, LAW).seed.tolist() == [9, 9]
+    assert nav.simulate_many(PLACES, LAW, seeds=3).seed.tolist() == [0, 1, 2] * 2
+    assert nav.simulate_many(C1, LAW, seeds=iter([5, 3])).seed.tolist() == [5, 3]
+
+
+def test_table_starts_with_what_each_row_is() -> None:
+    runs = nav.simulate_many(PLACES, FIELDS, gains=GAINS, seeds=2)
+    columns = list(runs.columns())
+    assert columns[:4] == ["law", "scenario", "seed", "attractive_gain_N_per_m"]
+    assert columns.index("outcome") == 7
+    assert {"arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total"} <= set(columns)
+    shown = repr(runs).splitlines()
+    assert shown[0] == f"RunTable: 24 rows, {len(columns)} columns; here the first 5 and 8"
+    assert len(shown) == 7
+    assert shown[2].split()[:3] == ["full", "c1", "0"]
+    assert runs._repr_html_().count("<tr>") == 6
+
+
+def test_names_are_shown_as_text_in_pages() -> None:
+    page = nav.simulate_many({"<b>": C1}, LAW)._repr_html_()
+    assert "&lt;b&gt;" in page
+    assert "<b>" not in page
+
+
+def test_progress_counts_to_the_end_over_all_laws() -> None:
+    heard: list[tuple[int, int]] = []
+    nav.simulate_many(PLACES, FIELDS, gains=GAINS, progress=lambda *call: heard.append(call))
+    assert heard[-1] == (12, 12)
+    assert heard == sorted(heard)
+
+
+# ---- what is refused --------------------------------------------------------------------------
+
+BAD_CALLS: list[tuple[dict[str, Any], str]] = [
+    ({"scenarios": []}, "scenarios"),
+    ({"scenarios": "c1"}, "scenarios"),
+    ({"scenarios": [C1, None]}, "scenarios[1]"),
+    ({"scenarios": {"a": LAW}}, "scenarios['a']"),
+    ({"scenarios": {1: C1}}, "names of scenarios"),
+    ({"laws": C1}, "laws"),
+    ({"laws": [LAW, C1]}, "laws[1]"),
+    ({"gains": {"unknown": [1.0]}}, "gains"),
+    ({"gains": [[-1.0, 20.0, 17.0, 0.25]]}, "gains[0].attractive_gain"),
+    ({"gains": [[3.0, 20.0, 17.0, 0.25]], "laws": [LAW, nav.Masoud()]}, "gains"),
+    ({"seeds": 0}, "seeds"),
+    ({"seeds": [-1]}, "seeds[0]"),
+    ({"seeds": "12"}, "seeds"),
+    ({"paths": 1}, "paths"),
+    ({"paths": True, "descent": True}, "descent"),
+    ({"paths": True, "integrator": "rk4"}, "integrator"),
+    ({"built": nav.robots.AsBuilt(), "hold": False}, "hold"),
+    ({"built": "wheels"}, "built"),
+    ({"step": "fast"}, "step"),
+    ({"threads": 0}, "threads"),
+    ({"weights": (1, 1, 1)}, "weights"),
+    ({"progress": 1}, "progress"),
+]
+
+
+@pytest.mark.parametrize(("change", "argument"), BAD_CALLS)
+def test_bad_call_is_refused_by_name(change: dict[str, Any], argument: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.simulate_many(**({"scenarios": C1, "laws": LAW} | change))
+    assert names(caught.value) == argument
+
+
+def test_gains_without_a_column_each_are_refused() -> None:
+    with pytest.raises(ShapeError):
+        nav.simulate_many(C1, LAW, gains=[[1.0, 2.0]])
+
+
+def test_laws_with_other_gains_say_which() -> None:
+    with pytest.raises(InvalidParameterError, match=r'gain_ratio of "VirtualForceField" and .* of "Masoud"'):
+        nav.simulate_many(C1, [LAW, nav.Masoud()], gains={"attractive_gain": [1.0]})
+
+
+@pytest.mark.parametrize("options", [{}, {"paths": True}])
+def test_errors_name_the_scenario_and_not_the_episode(options: dict[str, Any]) -> None:
+    odd = replace(C1, control_period=0.05)
+    with pytest.raises(InvalidParameterError) as caught:
+        nav.simulate_many([C1, odd], LAW, seeds=3, step=0.02, **options)
+    assert caught.value.argument == "scenarios[1].step"
+
+
+def test_tables_beyond_memory_are_refused_before_they_are_made() -> None:
+    sets = np.tile([3.0, 20.0, 17.0, 0.25], (1000, 1))
+    with pytest.raises(InvalidParameterError, match="20000000 runs; split the call") as caught:
+        nav.simulate_many([C1, C1], LAW, gains=sets, seeds=10_000)
+    assert "at most 10000000 runs" in caught.value.requirement
