@@ -1159,6 +1159,7 @@ class Follower:
         fix_noise: bool,
         mirrored_fixes: bool,
         velocity_rule: str,
+        integration: str,
         step: float,
     ) -> Self: ...
 

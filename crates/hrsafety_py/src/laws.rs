@@ -11,13 +11,13 @@ use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::laws::registry::{Arguments, law_named};
 use vff_core::run::AnyLaw;
 
+use vff_core::laws::impedance::ImpedanceFamily;
 use vff_core::laws::impedance::attraction::Attraction;
 use vff_core::laws::impedance::law::{Form, Impedance};
 
 use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;
 use crate::python_law::PythonLaw;
-use crate::reactive::arena::ImpedanceFamily;
 
 /// A law of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]

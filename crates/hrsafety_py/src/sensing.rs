@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::{
-    self, Estimate, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, VisionSensor,
+    self, CameraPose, Estimate, Lens, LinearizedCamera, PARAMETERS, PositionError, Track,
+    VisionSensor,
 };
 
 use crate::arrays::Fields;
@@ -52,7 +53,7 @@ impl Camera {
             pixel_size,
             image_size,
         };
-        let pose = Pose::from_rows(rotation, translation);
+        let pose = CameraPose::from_rows(rotation, translation);
         Ok(Self(sensing::Camera::new(lens, pose)?))
     }
 

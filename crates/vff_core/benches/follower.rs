@@ -5,8 +5,12 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use numeric::parallel::Work;
 use vff_core::laws::impedance::Form;
-use vff_core::run::follower::{Layouts, Outcome, Setting, Settings, run_batch, touching_layouts};
-use vff_core::sensing::sonar::{Beam, Pose, Rectangle, Shape};
+use vff_core::run::follower::{
+    FollowerOutcome, Layouts, Setting, Settings, run_batch, touching_layouts,
+};
+use vff_core::sensing::sonar::Beam;
+use vff_core::world::frame::Frame;
+use vff_core::world::shape::PlacedShape;
 
 const RUNS: usize = 200;
 
@@ -44,7 +48,7 @@ fn runs(criterion: &mut Criterion) {
             let settings = settings(setting, form);
             let seeds = touching_layouts(&settings, &layouts, 0, RUNS, one_thread()).unwrap();
             group.bench_function(law, |bencher| {
-                bencher.iter(|| -> Vec<Outcome> {
+                bencher.iter(|| -> Vec<FollowerOutcome> {
                     run_batch(black_box(&settings), &layouts, &seeds, one_thread()).unwrap()
                 });
             });
@@ -55,8 +59,8 @@ fn runs(criterion: &mut Criterion) {
 
 fn beams(criterion: &mut Criterion) {
     let beam = Beam::new(30.0_f64.to_radians(), 13).unwrap();
-    let pose = Pose::at([0.2, 0.0], 0.1);
-    let shapes = [Shape::Rectangle(Rectangle::upright([2.0, 0.3], [0.8, 0.5]))];
+    let pose = Frame::at([0.2, 0.0], 0.1);
+    let shapes = [PlacedShape::upright([2.0, 0.3], [0.8, 0.5])];
     let mut group = criterion.benchmark_group("beam");
     group.bench_function("two rays", |bencher| {
         bencher.iter(|| beam.nearest(black_box(&pose), &shapes, 3.0));

@@ -47,7 +47,7 @@ fn at_rest(_time: f64) -> Vec<Body> {
     let table = Shape::Rectangle {
         half_length: 0.7,
         half_width: 0.3,
-        axis: [1.0, 0.0],
+        axis: [1.0, 0.0].into(),
     };
     vec![
         body(table, [2.3, 0.0], [0.0; 2]),

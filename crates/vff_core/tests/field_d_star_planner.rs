@@ -43,7 +43,7 @@ fn cells_are_blocked_where_an_obstacle_reaches_in() {
             Shape::Rectangle {
                 half_length: draws.between(0.1, 1.0),
                 half_width: draws.between(0.1, 0.5),
-                axis: [heading.cos(), heading.sin()],
+                axis: [heading.cos(), heading.sin()].into(),
             }
         };
         let place = [draws.between(-1.0, 2.5), draws.between(-1.7, 1.0)];
@@ -370,7 +370,7 @@ proptest! {
         let shape = if kind == 0 {
             Shape::Disc { radius: 0.3 }
         } else {
-            Shape::Rectangle { half_length: 0.5, half_width: 0.2, axis: [0.6, 0.8] }
+            Shape::Rectangle { half_length: 0.5, half_width: 0.2, axis: [0.6, 0.8].into() }
         };
         let n = &numbers;
         let odd = body(shape, [n[0], n[1]], [n[2], n[3]]);

@@ -2,14 +2,19 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use nalgebra::Vector2;
 use numeric::parallel::Work;
 use vff_core::error::Failure;
 use vff_core::laws::impedance::{BankOptions, Form, Rotation};
+use vff_core::robots::differential::VelocityDrive;
 use vff_core::run::follower::{
-    Drive, FixNoise, Follower, Layouts, Leader, Mover, Scene, Setting, Settings, record, run_batch,
+    FixNoise, Follower, FollowerScene, Layouts, Leader, Setting, Settings, record, run_batch,
     touching_layouts,
 };
-use vff_core::sensing::sonar::{Pose, Rectangle, Shape};
+use vff_core::world::frame::Frame;
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::shape::PlacedShape;
 
 const LAYOUTS: usize = 150;
 
@@ -58,22 +63,25 @@ fn deviations_are_those_of_the_table_and_bilinear_between() {
 
 #[test]
 fn wheels_turn_toward_the_virtual_velocity_and_keep_their_limit() {
-    let drive = Drive::default();
-    assert_eq!(drive.wheels([0.5, 0.0]), [0.5, 0.5]);
-    let [left, right] = drive.wheels([0.0, 0.3]);
+    let drive = VelocityDrive::default();
+    assert_eq!(drive.wheels(Vector2::new(0.5, 0.0)), [0.5, 0.5]);
+    let [left, right] = drive.wheels(Vector2::new(0.0, 0.3));
     assert!(left < 0.0 && (left + right).abs() < 1e-12 && right <= 0.72);
     let turning = 4.0 * std::f64::consts::FRAC_PI_2 * 0.205;
     assert!((right - turning.min(0.72)).abs() < 1e-12);
     // Behind: it turns on the spot and never goes back.
-    let [left, right] = drive.wheels([-0.3, 0.01]);
+    let [left, right] = drive.wheels(Vector2::new(-0.3, 0.01));
     assert!(left + right >= -1e-12);
-    assert_eq!(drive.wheels([0.01, 0.01])[0], drive.wheels([0.01, 0.01])[1]);
+    assert_eq!(
+        drive.wheels(Vector2::new(0.01, 0.01))[0],
+        drive.wheels(Vector2::new(0.01, 0.01))[1]
+    );
 }
 
 #[test]
 fn a_circle_closes() {
-    let drive = Drive::default();
-    let mut pose = Pose::at([0.0, 0.0], 0.4);
+    let drive = VelocityDrive::default();
+    let mut pose = Frame::at([0.0, 0.0], 0.4);
     let steps = 10_000;
     // Once around: the wheels differ by omega times their distance.
     let step = 1e-3;
@@ -82,15 +90,15 @@ fn a_circle_closes() {
     for _ in 0..steps {
         pose = drive.moved(&pose, wheels, step);
     }
-    assert!(pose.position[0].hypot(pose.position[1]) < 1e-9);
-    assert!((pose.direction[1].atan2(pose.direction[0]) - 0.4).abs() < 1e-9);
+    assert!(pose.position.norm() < 1e-9);
+    assert!((pose.angle() - 0.4).abs() < 1e-9);
 }
 
 #[test]
 fn it_follows_a_leader_at_its_standoff() {
     let mut settings = Settings::default();
     settings.fixes.noise = FixNoise::none();
-    let scene = Layouts::of(Setting::Tracking).scene(0);
+    let scene = Layouts::of(Setting::Tracking).scene(0).unwrap();
     let follower = Follower::new(&settings).unwrap();
     let (outcome, rows) = record(&follower, &scene, 0, &|| false).unwrap();
     assert!(outcome.contact.is_none());
@@ -98,7 +106,7 @@ fn it_follows_a_leader_at_its_standoff() {
     // It overshoots its standoff and does not go back.
     assert!((0.4..1.0).contains(&outcome.source_distance));
     assert_eq!(rows.time.len(), 1041);
-    assert!(rows.position.iter().all(|[_, y]| y.abs() < 1e-12));
+    assert!(rows.position.iter().all(|place| place.y.abs() < 1e-12));
     let fastest = rows
         .wheel_speed
         .iter()
@@ -117,10 +125,11 @@ fn mirrored_layout_gives_the_mirrored_run() {
     settings.bank.pairing.share = 0.0;
     let follower = Follower::new(&settings).unwrap();
     let run = |side: f64| {
-        let body = Rectangle::upright([2.0, 0.35 * side], [0.5, 0.6]);
-        let scene = Scene {
+        let place = [2.0, 0.35 * side];
+        let body = PlacedShape::upright(place, [0.5, 0.6]);
+        let scene = FollowerScene {
             leader: Leader::going([1.2, 0.0], [6.0, 0.0], 0.3).unwrap(),
-            obstacles: vec![Mover::standing(Shape::Rectangle(body))],
+            obstacles: vec![Obstacle::seen(body, Motion::at_rest(place)).unwrap()],
             duration: 15.0,
         };
         record(&follower, &scene, 0, &|| false).unwrap()
@@ -130,7 +139,7 @@ fn mirrored_layout_gives_the_mirrored_run() {
     for (here, there) in rows.position.iter().zip(&mirrored.position) {
         assert!((here[0] - there[0]).abs() < 1e-6 && (here[1] + there[1]).abs() < 1e-6);
     }
-    assert!(rows.position.iter().any(|[_, y]| y.abs() > 0.05));
+    assert!(rows.position.iter().any(|place| place.y.abs() > 0.05));
 }
 
 #[test]
@@ -142,7 +151,8 @@ fn a_record_is_the_run_and_a_batch_is_its_runs() {
     let three = run_batch(&settings, &layouts, &seeds, quiet(3)).unwrap();
     assert_eq!(one, three);
     for (seed, outcome) in seeds.iter().zip(&one).take(20) {
-        let (recorded, rows) = record(&follower, &layouts.scene(*seed), *seed, &|| false).unwrap();
+        let (recorded, rows) =
+            record(&follower, &layouts.scene(*seed).unwrap(), *seed, &|| false).unwrap();
         assert_eq!(recorded, *outcome);
         let least = rows.clearance.iter().copied().fold(f64::INFINITY, f64::min);
         assert!((least - outcome.least_clearance).abs() < 1e-12);

@@ -1,12 +1,13 @@
 //! Laws, collision vectors, and what the printed forms do instead.
 
+use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::laws::impedance::bank::BankLayout;
 use vff_core::laws::impedance::collision::{Pairing, pair_echoes};
 use vff_core::laws::impedance::{
     Bank, BankOptions, Form, Impedance, Rate, RateFilter, Rotation, Speed, clamped_foot, foot,
 };
-use vff_core::sensing::sonar::Pose;
+use vff_core::world::frame::Frame;
 
 /// Rounding of forces of some 10 N.
 const EXACT: f64 = 1e-12;
@@ -24,14 +25,15 @@ proptest! {
         one in prop::array::uniform2(-2.0_f64..2.0),
         other in prop::array::uniform2(-2.0_f64..2.0),
     ) {
-        let along: [f64; 2] = [other[0] - one[0], other[1] - one[1]];
+        let (one, other) = (Vector2::from(one), Vector2::from(other));
+        let along = other - one;
         prop_assume!(along[0].hypot(along[1]) > 1e-3);
         let on_line = foot(one, other);
         prop_assert!((on_line[0] * along[0] + on_line[1] * along[1]).abs() < 1e-9);
         let nearest = clamped_foot(one, other);
         for share in 0..=100 {
             let t = f64::from(share) / 100.0;
-            let point = [one[0] + t * along[0], one[1] + t * along[1]];
+            let point = one + along * t;
             prop_assert!(nearest[0].hypot(nearest[1]) <= point[0].hypot(point[1]) + 1e-12);
         }
         // The corrected components of (14), V the slope of the line.
@@ -55,11 +57,11 @@ proptest! {
         prop_assume!(f64::hypot(x, y) > 1e-3);
         for form in [Form::Conventional, Form::Active] {
             let prepared = law(form).prepared();
-            let force = prepared.force([x, y], speed);
+            let force = prepared.force(Vector2::new(x, y), speed);
             prop_assert!(force[0] * x + force[1] * y <= 0.0);
             prop_assert!((force[0] * y - force[1] * x).abs() < EXACT * 100.0);
-            let turned = Pose::at([0.0, 0.0], angle);
-            let same = prepared.force(turned.outward([x, y]), speed);
+            let turned = Frame::at([0.0, 0.0], angle);
+            let same = prepared.force(turned.outward(Vector2::new(x, y)), speed);
             let expected = turned.outward(force);
             prop_assert!((same[0] - expected[0]).abs() < 1e-10);
             prop_assert!((same[1] - expected[1]).abs() < 1e-10);
@@ -69,11 +71,12 @@ proptest! {
 
 #[test]
 fn a_foot_of_one_point_is_that_point() {
-    assert_eq!(foot([1.0, 2.0], [1.0, 2.0]), [1.0, 2.0]);
-    assert_eq!(clamped_foot([1.0, 2.0], [1.0, 2.0]), [1.0, 2.0]);
+    let at = Vector2::new;
+    assert_eq!(foot(at(1.0, 2.0), at(1.0, 2.0)), at(1.0, 2.0));
+    assert_eq!(clamped_foot(at(1.0, 2.0), at(1.0, 2.0)), at(1.0, 2.0));
     // Vertical and horizontal lines are as good as any other.
-    assert_eq!(foot([1.0, -3.0], [1.0, 5.0]), [1.0, 0.0]);
-    assert_eq!(clamped_foot([1.0, 2.0], [1.0, 5.0]), [1.0, 2.0]);
+    assert_eq!(foot(at(1.0, -3.0), at(1.0, 5.0)), at(1.0, 0.0));
+    assert_eq!(clamped_foot(at(1.0, 2.0), at(1.0, 5.0)), at(1.0, 2.0));
 }
 
 #[test]
@@ -134,7 +137,7 @@ fn bad_references_are_refused() {
 
 #[test]
 fn echoes_are_paired_from_the_right() {
-    let points = [[1.0, -0.2], [1.0, 0.0], [1.0, 0.2]];
+    let points = [-0.2, 0.0, 0.2].map(|y| Vector2::new(1.0, y));
     let pairing = Pairing::default();
     let cases = |readings: [f64; 3]| {
         pair_echoes(&points, &readings, &pairing).map(|found| found.map(|each| each.case))
@@ -145,7 +148,7 @@ fn echoes_are_paired_from_the_right() {
     assert_eq!(cases([1.0, none, 1.0]), [Some(0), None, Some(2)]);
     assert_eq!(cases([none; 3]), [None; 3]);
     // 0.5 m + 0.6 r apart is too far.
-    let wide = [[1.0, -1.2], [1.0, 0.0], [1.0, 0.2]];
+    let wide = [-1.2, 0.0, 0.2].map(|y| Vector2::new(1.0, y));
     let found = pair_echoes(&wide, &[1.0; 3], &pairing).map(|each| each.map(|each| each.case));
     assert_eq!(found, [Some(4), Some(0), None]);
 }
@@ -155,54 +158,63 @@ fn rate_is_filtered_skips_jumps_and_starts_anew_with_the_case() {
     let filter = RateFilter::default();
     let timing = (0.025, filter.weight(0.025));
     let mut rate = Rate::default();
-    assert_eq!(rate.update(&filter, (1, [1.0, 0.0]), timing), 0.0);
+    assert_eq!(
+        rate.update(&filter, (1, Vector2::new(1.0, 0.0)), timing),
+        0.0
+    );
     let expected = 0.2 * timing.1;
-    let found = rate.update(&filter, (1, [0.995, 0.0]), timing);
+    let found = rate.update(&filter, (1, Vector2::new(0.995, 0.0)), timing);
     assert!((found - expected).abs() < EXACT);
     // 0.2 m in 25 ms is 8 m/s.
-    let skipped = rate.update(&filter, (1, [0.795, 0.0]), timing);
+    let skipped = rate.update(&filter, (1, Vector2::new(0.795, 0.0)), timing);
     assert_eq!(skipped, found);
-    assert_eq!(rate.update(&filter, (3, [0.79, 0.0]), timing), 0.0);
+    assert_eq!(
+        rate.update(&filter, (3, Vector2::new(0.79, 0.0)), timing),
+        0.0
+    );
     // What goes away has no closing speed, but a norm.
     let mut norm = Rate::default();
     let unsigned = RateFilter {
         speed: Speed::Norm,
         ..filter
     };
-    norm.update(&unsigned, (1, [1.0, 0.0]), timing);
-    let away = norm.update(&unsigned, (1, [1.0, 0.01]), timing);
+    norm.update(&unsigned, (1, Vector2::new(1.0, 0.0)), timing);
+    let away = norm.update(&unsigned, (1, Vector2::new(1.0, 0.01)), timing);
     assert!((away - 0.4 * timing.1).abs() < EXACT);
     let mut closing = Rate::default();
-    closing.update(&filter, (1, [1.0, 0.0]), timing);
-    assert_eq!(closing.update(&filter, (1, [1.01, 0.0]), timing), 0.0);
+    closing.update(&filter, (1, Vector2::new(1.0, 0.0)), timing);
+    assert_eq!(
+        closing.update(&filter, (1, Vector2::new(1.01, 0.0)), timing),
+        0.0
+    );
 }
 
-fn force(options: &BankOptions, heading: f64, place: [f64; 2]) -> [f64; 2] {
-    let mount = |side: f64| Pose::at([0.0, 0.15 * side], 0.5 * side);
+fn force(options: &BankOptions, heading: f64, place: [f64; 2]) -> Vector2<f64> {
+    let mount = |side: f64| Frame::at([0.0, 0.15 * side], 0.5 * side);
     let layout = BankLayout {
         mounts: [-1.0, 0.0, 1.0].map(mount),
     };
     let prepared = law(Form::Active).prepared();
-    let pose = Pose::at(place, heading);
+    let pose = Frame::at(place, heading);
     let readings = [f64::INFINITY, 0.5, f64::INFINITY];
     Bank::default().force(&layout, &readings, &pose, &prepared, options, (0.025, 0.15))
 }
 
 #[test]
 fn speed_is_forgotten_when_the_vector_is_lost_for_a_sample() {
-    let mount = |side: f64| Pose::at([0.0, 0.15 * side], 0.5 * side);
+    let mount = |side: f64| Frame::at([0.0, 0.15 * side], 0.5 * side);
     let layout = BankLayout {
         mounts: [-1.0, 0.0, 1.0].map(mount),
     };
     let prepared = law(Form::Conventional).prepared();
-    let pose = Pose::at([0.0, 0.0], 0.0);
+    let pose = Frame::at([0.0, 0.0], 0.0);
     let none = f64::INFINITY;
     let last = |outlives_gaps: bool| {
         let mut options = BankOptions::default();
         options.rate.outlives_gaps = outlives_gaps;
         let timing = (0.025, options.rate.weight(0.025));
         let mut bank = Bank::default();
-        let mut force = [0.0; 2];
+        let mut force = Vector2::zeros();
         for reading in [0.6, 0.55, 0.5, none, 0.5] {
             let readings = [none, reading, none];
             force = bank.force(&layout, &readings, &pose, &prepared, &options, timing);
@@ -248,10 +260,11 @@ fn printed_rotation_pushes_to_the_wrong_side_and_printed_translation_knows_the_o
 #[test]
 fn ideal_sensing_adds_one_force_for_each_obstacle() {
     let prepared = law(Form::Active).prepared();
-    let points = [([1.0, 0.0], [-0.3, 0.2]), ([0.0, 2.0], [0.0, 0.5])];
+    let at = Vector2::new;
+    let points = [(at(1.0, 0.0), at(-0.3, 0.2)), (at(0.0, 2.0), at(0.0, 0.5))];
     let sum = prepared.force_of_points(points);
-    let first = prepared.force([1.0, 0.0], 0.3);
-    let second = prepared.force([0.0, 2.0], 0.0);
-    assert_eq!(sum, [first[0] + second[0], first[1] + second[1]]);
-    assert_eq!(prepared.force_of_points([]), [0.0, 0.0]);
+    let first = prepared.force(at(1.0, 0.0), 0.3);
+    let second = prepared.force(at(0.0, 2.0), 0.0);
+    assert_eq!(sum, first + second);
+    assert_eq!(prepared.force_of_points([]), Vector2::zeros());
 }

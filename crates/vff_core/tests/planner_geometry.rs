@@ -27,7 +27,7 @@ prop_compose! {
         x in 0.8..4.0f64, turn in 0.0..6.3f64, disc in any::<bool>(), heading in 0.0..3.2f64,
         half in (0.1..1.0f64, 0.1..1.0f64), radius in 0.1..0.5f64,
     ) -> Outline {
-        let axis = [heading.cos(), heading.sin()];
+        let axis = [heading.cos(), heading.sin()].into();
         let shape = if disc {
             Shape::Disc { radius }
         } else {
@@ -96,7 +96,7 @@ fn face_in_front_may_be_nearer_than_the_legs_from_behind_a_rectangle() {
         Shape::Rectangle {
             half_length: 0.667_448_402_2,
             half_width: 0.555_848_490_9,
-            axis: [0.0, 1.0],
+            axis: [0.0, 1.0].into(),
         },
     );
     check_nearest_edge(&outline, vector(-0.311_734_05, 0.841_756_79), 1.978_643_17);

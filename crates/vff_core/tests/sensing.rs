@@ -5,8 +5,8 @@ use vff_core::sensing::camera::distorted_ratio;
 use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::vision::Frame;
 use vff_core::sensing::{
-    Camera, Estimator, Lens, LinearizedCamera, PARAMETERS, Pose, PositionError, Track, Vision,
-    VisionSensor,
+    Camera, CameraPose, Estimator, Lens, LinearizedCamera, PARAMETERS, PositionError, Track,
+    Vision, VisionSensor,
 };
 
 /// A camera 3 m above the floor that looks straight down; x to the right, y down the picture.
@@ -20,7 +20,7 @@ fn overhead(radial_distortion: f64) -> Camera {
         image_size: [1024, 768],
     };
     let rows = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
-    let pose = Pose::from_rows(rows, [-1.0, 0.5, 3.0]);
+    let pose = CameraPose::from_rows(rows, [-1.0, 0.5, 3.0]);
     Camera::new(lens, pose).expect("a camera")
 }
 

@@ -5,10 +5,10 @@ use numeric::random::Stream;
 use vff_core::error::Failure;
 use vff_core::run::skirt::ring::PUBLISHED_WHEEL_GAP;
 use vff_core::run::skirt::{
-    Action, Motion, Policy, Ring, Rule, Scene, SceneOptions, Skirt, SkirtOptions, TestPlan,
-    TestRow, robot, test_batch,
+    Action, DiscScene, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan,
+    TestRow, Travel, robot, test_batch,
 };
-use vff_core::sensing::sonar::Disc;
+use vff_core::world::shape::PlacedShape;
 
 const OPTIONS: SkirtOptions = SkirtOptions {
     safe_distance: 0.666,
@@ -22,7 +22,7 @@ const OPTIONS: SkirtOptions = SkirtOptions {
     firing_period: 0.02,
 };
 
-const MOTION: Motion = Motion {
+const MOTION: Travel = Travel {
     speed: 0.3,
     acceleration: 0.6,
     spin_rate: 0.5,
@@ -42,7 +42,7 @@ fn plan(layouts: usize) -> TestPlan {
     TestPlan {
         layouts,
         repeats: 5,
-        scene: SceneOptions::default(),
+        scene: DiscSceneOptions::default(),
         motion: MOTION,
         seed: 0,
     }
@@ -149,12 +149,9 @@ fn a_batch_stops_when_asked() {
     assert_eq!(stopped, Err(Failure::Interrupted));
 }
 
-fn alone(center: [f64; 2], seen: bool) -> Scene {
-    Scene {
-        discs: vec![Disc {
-            center,
-            radius: 0.2,
-        }],
+fn alone(center: [f64; 2], seen: bool) -> DiscScene {
+    DiscScene {
+        discs: vec![PlacedShape::disc(center, 0.2)],
         seen: vec![seen],
     }
 }
@@ -191,12 +188,9 @@ fn a_disc_below_the_sensors_is_hit() {
 fn a_robot_walled_in_spins_and_stands() {
     let around = |index: usize| {
         let angle = std::f64::consts::TAU * index as f64 / 9.0;
-        Disc {
-            center: [0.8 * angle.cos(), 0.8 * angle.sin()],
-            radius: 0.27,
-        }
+        PlacedShape::disc([0.8 * angle.cos(), 0.8 * angle.sin()], 0.27)
     };
-    let scene = Scene {
+    let scene = DiscScene {
         discs: (0..9).map(around).collect(),
         seen: vec![true; 9],
     };

@@ -1,12 +1,13 @@
 //! Rays and beams against geometry worked out another way.
 
+use nalgebra::Vector2;
 use numeric::random::Stream;
 use proptest::prelude::*;
 use vff_core::run::follower::Sensors;
 use vff_core::sensing::sonar::ranging::Normals;
-use vff_core::sensing::sonar::{
-    Beam, Disc, Firing, Pose, Ranging, Rectangle, Shape, SonarArray, Wall, speed_of_sound,
-};
+use vff_core::sensing::sonar::{Beam, Firing, Ranging, SonarArray, speed_of_sound};
+use vff_core::world::frame::Frame;
+use vff_core::world::shape::{PlacedShape, Shape};
 
 /// Rounding of distances of a few meters.
 const EXACT: f64 = 1e-9;
@@ -14,43 +15,34 @@ const EXACT: f64 = 1e-9;
 const MARCH: f64 = 1e-3;
 
 /// Whether a point is in a shape, from its definition; walls have no inside.
-fn inside(shape: &Shape, point: [f64; 2]) -> bool {
-    match shape {
-        Shape::Rectangle(shape) => {
-            let d = [point[0] - shape.center[0], point[1] - shape.center[1]];
-            let along = d[0] * shape.axis[0] + d[1] * shape.axis[1];
-            let across = d[1] * shape.axis[0] - d[0] * shape.axis[1];
-            along.abs() <= shape.half_size[0] && across.abs() <= shape.half_size[1]
+fn inside(placed: &PlacedShape, point: Vector2<f64>) -> bool {
+    let d = point - placed.center;
+    match placed.shape {
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
+            let along = d.x * axis.x + d.y * axis.y;
+            let across = d.y * axis.x - d.x * axis.y;
+            half_width > 0.0 && along.abs() <= half_length && across.abs() <= half_width
         }
-        Shape::Disc(shape) => {
-            (point[0] - shape.center[0]).hypot(point[1] - shape.center[1]) <= shape.radius
-        }
-        Shape::Wall(_) => false,
+        Shape::Disc { radius } => d.x.hypot(d.y) <= radius,
     }
 }
 
-fn solid() -> impl Strategy<Value = Shape> {
+fn solid() -> impl Strategy<Value = PlacedShape> {
     let place = || (-3.0..3.0, -3.0..3.0);
     prop_oneof![
-        (place(), (0.05..1.0, 0.05..1.0), 0.0..6.3).prop_map(|((x, y), (w, h), angle)| {
-            Shape::Rectangle(Rectangle::turned([x, y], [w, h], angle))
-        }),
-        (place(), 0.05..1.0).prop_map(|((x, y), radius)| {
-            Shape::Disc(Disc {
-                center: [x, y],
-                radius,
-            })
-        }),
+        (place(), (0.05..1.0, 0.05..1.0), 0.0..6.3)
+            .prop_map(|((x, y), (w, h), angle)| PlacedShape::turned([x, y], [w, h], angle)),
+        (place(), 0.05..1.0).prop_map(|((x, y), radius)| PlacedShape::disc([x, y], radius)),
     ]
 }
 
-fn any_shape() -> impl Strategy<Value = Shape> {
-    let wall = (-3.0..3.0, -3.0..3.0, -3.0..3.0, -3.0..3.0).prop_map(|(a, b, c, d)| {
-        Shape::Wall(Wall {
-            start: [a, b],
-            end: [c, d],
-        })
-    });
+fn any_shape() -> impl Strategy<Value = PlacedShape> {
+    let wall = (-3.0..3.0, -3.0..3.0, -3.0..3.0, -3.0..3.0)
+        .prop_map(|(a, b, c, d)| PlacedShape::wall([a, b], [c, d]));
     prop_oneof![2 => solid(), 1 => wall]
 }
 
@@ -58,13 +50,12 @@ proptest! {
     /// Small steps along the ray enter the shape where the ray says, and nowhere before.
     #[test]
     fn ray_meets_a_solid_where_a_march_enters_it(shape in solid(), angle in 0.0..6.3) {
-        let pose = Pose::at([0.1, -0.2], angle);
+        let pose = Frame::at([0.1, -0.2], angle);
         let distance = shape.cast(pose.position, pose.direction);
         let mut entered = f64::INFINITY;
         for step in 0..6000 {
             let way = MARCH * f64::from(step);
-            let [x, y] = pose.direction;
-            if inside(&shape, [pose.position[0] + way * x, pose.position[1] + way * y]) {
+            if inside(&shape, pose.position + pose.direction * way) {
                 entered = way;
                 break;
             }
@@ -73,9 +64,8 @@ proptest! {
             prop_assert!((entered - distance) >= -EXACT && entered - distance <= MARCH + EXACT);
         } else if distance.is_finite() {
             // Shorter than a step inside the shape: only grazed.
-            let [x, y] = pose.direction;
-            let deep = distance + 2.0 * MARCH;
-            prop_assert!(distance > 5.9 || !inside(&shape, [0.1 + deep * x, -0.2 + deep * y]));
+            let deep = pose.position + pose.direction * (distance + 2.0 * MARCH);
+            prop_assert!(distance > 5.9 || !inside(&shape, deep));
         }
     }
 
@@ -86,15 +76,14 @@ proptest! {
         end in prop::array::uniform2(-3.0_f64..3.0),
         share in 0.01_f64..0.99,
     ) {
-        let shape = Shape::Wall(Wall { start, end });
+        let shape = PlacedShape::wall(start, end);
         let point = [start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])];
-        let pose = Pose::at([0.0, 0.0], point[1].atan2(point[0]));
+        let pose = Frame::at([0.0, 0.0], point[1].atan2(point[0]));
         let across = start[0] * end[1] - start[1] * end[0];
         prop_assume!(across.abs() > 1e-3);
         let distance = shape.cast(pose.position, pose.direction);
         prop_assert!((distance - point[0].hypot(point[1])).abs() < 1e-6);
-        let back = [-pose.direction[0], -pose.direction[1]];
-        prop_assert!(shape.cast(pose.position, back) == f64::INFINITY);
+        prop_assert!(shape.cast(pose.position, -pose.direction) == f64::INFINITY);
     }
 
     /// The two rays that are cast see what all rays see, bit for bit.
@@ -106,7 +95,7 @@ proptest! {
         rays in 1_usize..40,
         reach in 0.5..6.0,
     ) {
-        let pose = Pose::at([0.0, 0.0], angle);
+        let pose = Frame::at([0.0, 0.0], angle);
         let beam = Beam::new(width, rays).unwrap();
         let all = beam.every_ray(&pose, &shapes).into_iter().fold(f64::INFINITY, f64::min);
         let expected = if all <= reach { all } else { f64::INFINITY };
@@ -116,21 +105,21 @@ proptest! {
     /// Nothing of a shape is nearer than its nearest point, and that point is on it.
     #[test]
     fn nearest_point_is_nearest(shape in any_shape(), angle in 0.0..6.3) {
-        let to = shape.nearest([0.0, 0.0]);
-        let distance = to[0].hypot(to[1]);
-        prop_assert!(shape.cast([0.0, 0.0], Pose::at([0.0; 2], angle).direction) >= distance - EXACT);
+        let pose = Frame::at([0.0, 0.0], angle);
+        let to = shape.nearest(pose.position);
+        let distance = to.x.hypot(to.y);
+        prop_assert!(shape.cast(pose.position, pose.direction) >= distance - EXACT);
         prop_assert!(shape.distance(to) < EXACT);
     }
 
     /// A shape beyond a line has its nearest points of the other side on the line's far side.
     #[test]
     fn shape_beyond_a_line_is_not_cut_by_it(shape in any_shape(), angle in 0.0..6.3) {
-        let pose = Pose::at([0.0, 0.0], angle);
-        let normal = pose.outward([0.0, 1.0]);
-        if shape.beyond([0.0, 0.0], normal) {
-            let [x, y] = shape.nearest([0.0, 0.0]);
-            prop_assert!(x * normal[0] + y * normal[1] > -EXACT);
-            prop_assert!(shape.cast([0.0; 2], pose.direction) == f64::INFINITY);
+        let pose = Frame::at([0.0, 0.0], angle);
+        let normal = pose.outward(Vector2::y());
+        if shape.beyond(pose.position, normal) {
+            prop_assert!(shape.nearest(pose.position).dot(&normal) > -EXACT);
+            prop_assert!(shape.cast(pose.position, pose.direction) == f64::INFINITY);
         }
     }
 }
@@ -139,9 +128,9 @@ proptest! {
 fn rays_of_a_beam_are_mirrored_and_hold_the_axis() {
     let beam = Beam::new(30.0_f64.to_radians(), 13).unwrap();
     let rays = beam.rays();
-    assert_eq!(rays[6], [1.0, 0.0]);
+    assert_eq!(rays[6], Vector2::x());
     for (right, left) in rays.iter().zip(rays.iter().rev()) {
-        assert_eq!([right[0], -right[1]], *left);
+        assert_eq!(Vector2::new(right.x, -right.y), *left);
     }
     let outer = rays[0][1].atan2(rays[0][0]).to_degrees();
     assert!((outer + 15.0).abs() < EXACT);
@@ -149,7 +138,7 @@ fn rays_of_a_beam_are_mirrored_and_hold_the_axis() {
 }
 
 fn array(firing: Firing, noise: f64) -> SonarArray {
-    let mounts = [-1.0, 0.0, 1.0].map(|side| Pose::at([0.2, 0.15 * side], 0.5 * side));
+    let mounts = [-1.0, 0.0, 1.0].map(|side| Frame::at([0.2, 0.15 * side], 0.5 * side));
     let ranging = Ranging {
         noise,
         ..Ranging::default()
@@ -158,10 +147,10 @@ fn array(firing: Firing, noise: f64) -> SonarArray {
     SonarArray::new(mounts.to_vec(), beam, ranging, firing).unwrap()
 }
 
-fn measured(array: &SonarArray, shapes: &[Shape], steps: usize) -> Vec<Vec<f64>> {
+fn measured(array: &SonarArray, shapes: &[PlacedShape], steps: usize) -> Vec<Vec<f64>> {
     let mut normals = Normals::new(Stream::new(1, 0));
     let mut readings = vec![7.0; 3];
-    let body = Pose::at([0.0, 0.0], 0.0);
+    let body = Frame::at([0.0, 0.0], 0.0);
     let mut rows = Vec::new();
     for step in 0..steps {
         array.measure(&body, shapes, step, &mut readings, &mut normals);
@@ -172,10 +161,7 @@ fn measured(array: &SonarArray, shapes: &[Shape], steps: usize) -> Vec<Vec<f64>>
 
 #[test]
 fn one_sensor_a_step_in_turn() {
-    let wall = [Shape::Wall(Wall {
-        start: [1.2, -9.0],
-        end: [1.2, 9.0],
-    })];
+    let wall = [PlacedShape::wall([1.2, -9.0], [1.2, 9.0])];
     let rows = measured(&array(Firing::InTurn, 0.0), &wall, 3);
     assert!(rows[0][0] < 2.0 && rows[0][1] == 7.0 && rows[0][2] == 7.0);
     assert!(rows[1][1] == 1.0 && rows[1][2] == 7.0);
@@ -184,10 +170,7 @@ fn one_sensor_a_step_in_turn() {
 
 #[test]
 fn noise_has_its_standard_deviation() {
-    let wall = [Shape::Wall(Wall {
-        start: [1.2, -9.0],
-        end: [1.2, 9.0],
-    })];
+    let wall = [PlacedShape::wall([1.2, -9.0], [1.2, 9.0])];
     let rows = measured(&array(Firing::Together, 0.005), &wall, 4000);
     let deviations: Vec<f64> = rows.iter().map(|row| row[1] - 1.0).collect();
     let mean = deviations.iter().sum::<f64>() / 4000.0;
@@ -222,16 +205,13 @@ fn range_limits_and_temperature() {
 
 #[test]
 fn a_sensor_hears_its_neighbor_by_cross_talk_only() {
-    let disc = [Shape::Disc(Disc {
-        center: [1.0, 0.0],
-        radius: 0.05,
-    })];
+    let disc = [PlacedShape::disc([1.0, 0.0], 0.05)];
     let with = |firing| {
-        let mounts = vec![Pose::at([0.0, 0.0], 0.0), Pose::at([0.0, 0.5], 0.0)];
+        let mounts = vec![Frame::at([0.0, 0.0], 0.0), Frame::at([0.0, 0.5], 0.0)];
         let beam = Beam::new(std::f64::consts::FRAC_PI_2, 9001).unwrap();
         SonarArray::new(mounts, beam, Ranging::default(), firing).unwrap()
     };
-    let body = Pose::at([0.0, 0.0], 0.0);
+    let body = Frame::at([0.0, 0.0], 0.0);
     let quiet = with(Firing::Together);
     let crossed = with(Firing::TogetherWithCrossTalk);
     // The nearer sensor hears itself first, the other one the echo of the nearer one: half of the
@@ -259,8 +239,8 @@ fn a_sensor_hears_its_neighbor_by_cross_talk_only() {
     });
     for step in 0..200 {
         let x = 0.5 + 0.01 * f64::from(step);
-        let body = Pose::at([0.0, 0.0], 0.02 * f64::from(step));
-        let shape = [Shape::Rectangle(Rectangle::upright([x, 0.3], [0.4, 0.4]))];
+        let body = Frame::at([0.0, 0.0], 0.02 * f64::from(step));
+        let shape = [PlacedShape::upright([x, 0.3], [0.4, 0.4])];
         for sensor in 0..3 {
             let readings = [&alone, &together].map(|array| array.echo(&body, sensor, &shape));
             assert_eq!(readings[0], readings[1]);

@@ -80,7 +80,7 @@ proptest! {
         ends in ((-2.0..2.0f64, -2.0..2.0f64), (-2.0..2.0f64, -2.0..2.0f64)),
     ) {
         let shape = if kind == 2 {
-            let axis = [heading.cos(), heading.sin()];
+            let axis = [heading.cos(), heading.sin()].into();
             Shape::Rectangle { half_length: half.0, half_width: half.1, axis }
         } else {
             Shape::Disc { radius: half.0 }

@@ -270,7 +270,7 @@ proptest! {
         let shape = if kind == 0 {
             Shape::Disc { radius: 0.3 }
         } else {
-            Shape::Rectangle { half_length: 0.5, half_width: 0.2, axis: [0.6, 0.8] }
+            Shape::Rectangle { half_length: 0.5, half_width: 0.2, axis: [0.6, 0.8].into() }
         };
         let n = &numbers;
         let odd = body(shape, [n[0], n[1]], [n[2], n[3]]);

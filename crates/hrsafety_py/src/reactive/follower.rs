@@ -8,17 +8,21 @@ use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::lanes::Vector2;
 use vff_core::laws::impedance::collision::Pairing;
 use vff_core::laws::impedance::{
     Attraction, BankOptions, Form, Impedance, RateFilter, Rotation, Speed, clamped_foot,
     collision_point, foot, printed_foot,
 };
-use vff_core::run::follower::{Drive, FixNoise, Fixes, Settings, VelocityRule, scene};
+use vff_core::robots::differential::{Integration, VelocityDrive};
+use vff_core::run::follower::{FixNoise, Fixes, Settings, VelocityRule};
+use vff_core::world::frame::Frame;
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::Obstacle;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use echoes::{EchoShape, Sonar};
-use vff_core::sensing::sonar::Pose;
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -37,26 +41,23 @@ fn word<T: Copy>(
 }
 
 /// Pairs of a contiguous array of two columns.
-fn pairs(values: &[f64]) -> impl Iterator<Item = [f64; 2]> + '_ {
-    values.chunks_exact(2).map(|pair| [pair[0], pair[1]])
+fn pairs(values: &[f64]) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    values
+        .chunks_exact(2)
+        .map(|pair| Vector2::new(pair[0], pair[1]))
 }
 
 /// Obstacle that moves or stands.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Mover(pub scene::Mover);
+pub struct Mover(pub Obstacle);
 
 #[pymethods]
 impl Mover {
     #[new]
     #[pyo3(signature = (*, shape, velocity, start, stop))]
     fn new(shape: &EchoShape, velocity: [f64; 2], start: f64, stop: f64) -> CoreResult<Self> {
-        let mover = scene::Mover {
-            shape: shape.0,
-            velocity,
-            start,
-            stop,
-        };
-        Ok(Self(mover.checked()?))
+        let motion = Motion::between(shape.0.center.into(), velocity, [start, stop])?;
+        Ok(Self(Obstacle::seen(shape.0, motion)?))
     }
 }
 
@@ -157,10 +158,10 @@ pub fn collision_points<'py>(
     reading: Column<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let axes = pairs(sensor.as_slice()?).zip(angle.as_slice()?);
-    let poses = axes.map(|(place, angle)| Pose::at(place, *angle));
+    let poses = axes.map(|(place, angle)| Frame::at(place.into(), *angle));
     let both = poses.zip(reading.as_slice()?);
     let points: Vec<f64> = both
-        .flat_map(|(pose, reading)| collision_point(&pose, *reading))
+        .flat_map(|(pose, reading)| <[f64; 2]>::from(collision_point(&pose, *reading)))
         .collect();
     let fields = Fields::new(py);
     let count = points.len() / 2;
@@ -180,7 +181,9 @@ pub fn vectors_to_world<'py>(
     let rotation = rotation_of(rotation)?;
     let both = pairs(vector.as_slice()?).zip(heading.as_slice()?);
     let turned: Vec<f64> = both
-        .flat_map(|(vector, heading)| rotation.to_world(&Pose::at([0.0; 2], *heading), vector))
+        .flat_map(|(vector, heading)| {
+            <[f64; 2]>::from(rotation.to_world(&Frame::at([0.0; 2], *heading), vector))
+        })
         .collect();
     let fields = Fields::new(py);
     let count = turned.len() / 2;
@@ -207,7 +210,7 @@ pub fn attraction_forces<'py>(
     let attraction = attraction.checked().map_err(CoreError::from)?;
     let both = pairs(offset.as_slice()?).zip(pairs(velocity.as_slice()?));
     let forces: Vec<f64> = both
-        .flat_map(|(offset, velocity)| attraction.force(offset, velocity))
+        .flat_map(|(offset, velocity)| <[f64; 2]>::from(attraction.force(offset, velocity)))
         .collect();
     let fields = Fields::new(py);
     let count = forces.len() / 2;
@@ -237,7 +240,7 @@ pub fn impedance_forces<'py>(
 }
 
 /// Point of a line, or segment, between two points that counts as nearest to the origin.
-type Foot = fn([f64; 2], [f64; 2]) -> [f64; 2];
+type Foot = fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>;
 
 /// Feet of perpendiculars from the origin on the lines, or segments, between points.
 #[pyfunction]
@@ -257,7 +260,9 @@ pub fn collision_feet<'py>(
     let rule = "be one of \"segment\", \"line\", \"printed\"";
     let of = word("form", rule, form, &forms)?;
     let ends = pairs(one.as_slice()?).zip(pairs(other.as_slice()?));
-    let feet: Vec<f64> = ends.flat_map(|(one, other)| of(one, other)).collect();
+    let feet: Vec<f64> = ends
+        .flat_map(|(one, other)| <[f64; 2]>::from(of(one, other)))
+        .collect();
     let fields = Fields::new(py);
     let count = feet.len() / 2;
     fields.matrix("foot", feet, count, 2)?;
@@ -272,7 +277,7 @@ pub struct Follower(pub Settings);
 impl Follower {
     #[new]
     #[pyo3(signature = (*, sonar, drive, attraction, fix_interval, fix_noise, mirrored_fixes,
-        velocity_rule, step))]
+        velocity_rule, integration, step))]
     #[allow(clippy::too_many_arguments)] // keyword-only in Python
     fn new(
         sonar: &Sonar,
@@ -282,6 +287,7 @@ impl Follower {
         fix_noise: bool,
         mirrored_fixes: bool,
         velocity_rule: &str,
+        integration: &str,
         step: f64,
     ) -> CoreResult<Self> {
         let [
@@ -298,14 +304,22 @@ impl Follower {
             ("reset", VelocityRule::Reset),
         ];
         let rule = "be \"integrated\" or \"reset\"";
+        let forms = [("chord", Integration::Chord), ("arc", Integration::Arc)];
+        let integration = word(
+            "integration",
+            "be \"chord\" or \"arc\"",
+            integration,
+            &forms,
+        )?;
         let settings = Settings {
-            drive: Drive {
+            drive: VelocityDrive {
                 mass,
                 body_radius,
                 wheel_base,
                 wheel_speed,
                 heading_gain,
                 least_speed,
+                integration,
             },
             sensors: sonar.0.clone(),
             fixes: Fixes {

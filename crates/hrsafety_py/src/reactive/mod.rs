@@ -1,6 +1,5 @@
 //! Reactive avoidance: conversions only, everything is computed by the core.
 
-pub mod arena;
 pub mod follower;
 pub mod localization;
 pub mod skirt;

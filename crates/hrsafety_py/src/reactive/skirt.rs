@@ -5,13 +5,14 @@ use numeric::parallel::Work;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::robots::wheels::TriOmni;
 use vff_core::run::skirt::ring::{
     Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
 };
 use vff_core::run::skirt::states::TABLE_1;
 use vff_core::run::skirt::{
-    Action, Direction, Motion, Policy, Ring, Rule, SceneOptions, Skirt, SkirtOptions, TestPlan,
-    TriOmni, normal_distances, test_batch,
+    Action, Direction, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan, Travel,
+    normal_distances, test_batch,
 };
 
 use crate::arrays::Fields;
@@ -298,7 +299,7 @@ fn policy_of(word: &str) -> CoreResult<Policy> {
 
 /// How discs are laid out.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtScene(SceneOptions);
+pub struct SkirtScene(DiscSceneOptions);
 
 #[pymethods]
 impl SkirtScene {
@@ -316,7 +317,7 @@ impl SkirtScene {
         spacing: f64,
         unseen_share: f64,
     ) -> CoreResult<Self> {
-        let options = SceneOptions {
+        let options = DiscSceneOptions {
             obstacles,
             radius: disc_radius,
             course_distance,
@@ -333,14 +334,14 @@ impl SkirtScene {
 
 /// How the robot moves.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtMotion(Motion);
+pub struct SkirtMotion(Travel);
 
 #[pymethods]
 impl SkirtMotion {
     #[new]
     #[pyo3(signature = (*, speed, acceleration, spin_rate, duration))]
     fn new(speed: f64, acceleration: f64, spin_rate: f64, duration: f64) -> CoreResult<Self> {
-        let motion = Motion {
+        let motion = Travel {
             speed,
             acceleration,
             spin_rate,
@@ -428,11 +429,19 @@ pub fn skirt_run<'py>(
     let fields = Fields::new(py);
     record.fill(&fields)?;
     let discs = drawn.discs.len();
-    let centers = drawn.discs.iter().flat_map(|disc| disc.center).collect();
+    let centers = drawn
+        .discs
+        .iter()
+        .flat_map(|disc| [disc.center.x, disc.center.y])
+        .collect();
     fields.matrix("disc_center", centers, discs, 2)?;
     fields.vector(
         "disc_radius",
-        drawn.discs.iter().map(|disc| disc.radius).collect(),
+        drawn
+            .discs
+            .iter()
+            .map(|disc| disc.shape.inner_radius())
+            .collect(),
     )?;
     fields.vector("disc_seen", drawn.seen)?;
     fields.value("min_clearance", row.course.min_clearance)?;
@@ -455,11 +464,10 @@ struct Record {
 
 impl Record {
     fn push(&mut self, moment: &vff_core::run::skirt::robot::Moment<'_>) {
-        let [cos, sin] = moment.pose.direction;
         self.time.push(moment.time);
-        self.position.extend(moment.pose.position);
-        self.heading.push(sin.atan2(cos));
-        self.velocity.extend(moment.velocity);
+        self.position.extend(<[f64; 2]>::from(moment.pose.position));
+        self.heading.push(moment.pose.angle());
+        self.velocity.extend(<[f64; 2]>::from(moment.velocity));
         self.yaw_rate.push(moment.yaw_rate);
         self.readings.extend(moment.readings);
         self.action.push(action_word(moment.action));

@@ -72,14 +72,14 @@ impl Lens {
 
 /// Where the camera is: `x = R X + T` from the world to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct CameraPose {
     /// Rotation R.
     pub rotation: Matrix3<f64>,
     /// Translation T in m.
     pub translation: Vector3<f64>,
 }
 
-impl Pose {
+impl CameraPose {
     /// A pose whose rotation is given by its rows.
     #[must_use]
     pub fn from_rows(rotation: [[f64; 3]; 3], translation: [f64; 3]) -> Self {
@@ -131,7 +131,7 @@ impl Pose {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     lens: Lens,
-    pose: Pose,
+    pose: CameraPose,
 }
 
 impl Camera {
@@ -139,7 +139,7 @@ impl Camera {
     ///
     /// # Errors
     /// A value is not finite or not positive where it must be, or the rotation is not one.
-    pub fn new(lens: Lens, pose: Pose) -> Result<Self> {
+    pub fn new(lens: Lens, pose: CameraPose) -> Result<Self> {
         lens.check()?;
         pose.check()?;
         Ok(Self { lens, pose })
@@ -153,7 +153,7 @@ impl Camera {
 
     /// Where the camera is.
     #[must_use]
-    pub fn pose(&self) -> &Pose {
+    pub fn pose(&self) -> &CameraPose {
         &self.pose
     }
 

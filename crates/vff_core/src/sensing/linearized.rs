@@ -1,7 +1,7 @@
 //! Pixels of points and their derivatives with respect to the parameters of a camera.
 
 use crate::error::Result;
-use crate::sensing::camera::{Camera, Lens, Pose, distorted_ratio};
+use crate::sensing::camera::{Camera, Lens, CameraPose, distorted_ratio};
 use crate::sensing::rotation;
 use nalgebra::{Matrix3, Vector3};
 
@@ -33,7 +33,7 @@ impl LinearizedCamera {
             ..*base.lens()
         };
         let vector = Vector3::new(w1, w2, w3);
-        let pose = Pose {
+        let pose = CameraPose {
             rotation: rotation::turn(&vector) * base.pose().rotation,
             translation: Vector3::new(t1, t2, t3),
         };

@@ -10,7 +10,7 @@ pub mod sonar;
 pub mod sound;
 pub mod vision;
 
-pub use camera::{Camera, Lens, Pose};
+pub use camera::{Camera, CameraPose, Lens};
 pub use estimator::{Estimate, Estimator, Track};
 pub use linearized::{LinearizedCamera, PARAMETERS};
 pub use vision::{PositionError, Vision, VisionSensor};

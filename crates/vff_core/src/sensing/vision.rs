@@ -149,7 +149,7 @@ impl Vision {
 
 /// What one frame gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct Exposure {
     /// Time of the exposure in s.
     pub exposed: f64,
     /// Measured position in m; none for a lost frame.
@@ -174,7 +174,7 @@ pub struct VisionSensor {
     next_frame: u64,
     last: Option<(f64, [f64; 2])>,
     known: VecDeque<Knowledge>,
-    frames: Vec<Frame>,
+    frames: Vec<Exposure>,
 }
 
 impl VisionSensor {
@@ -205,7 +205,7 @@ impl VisionSensor {
 
     /// The frames that the last call of [`Self::sample`] or [`Self::absent`] exposed.
     #[must_use]
-    pub fn frames(&self) -> &[Frame] {
+    pub fn frames(&self) -> &[Exposure] {
         &self.frames
     }
 
@@ -291,7 +291,7 @@ impl VisionSensor {
 
     fn learn(&mut self, due: f64, measured: Option<[f64; 2]>) {
         self.next_frame += 1;
-        self.frames.push(Frame {
+        self.frames.push(Exposure {
             exposed: due,
             measured,
         });

@@ -2,7 +2,8 @@
 
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::world::motion::BodyState;
-use crate::world::obstacle::{Regions, Shape};
+use crate::world::obstacle::Regions;
+use crate::world::shape::{Shape, into_axes, out_of_axes};
 use numeric::angle::unsigned_angle;
 
 /// The robot and its goal are collinear with the obstacle when `pi - |Phi|` is below this, in
@@ -46,43 +47,12 @@ impl Body {
     #[inline(always)]
     pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R> {
         let from_center = position - Vector2::splat(self.state.position);
-        let vector = match self.shape {
-            Shape::Disc { .. } => from_center,
-            Shape::Rectangle {
-                half_length,
-                half_width,
-                axis,
-            } => {
-                let local = into_axes(from_center, axis);
-                let beyond = Vector2::new(
-                    local.x - clamped(local.x, half_length),
-                    local.y - clamped(local.y, half_width),
-                );
-                out_of_axes(beyond, axis)
-            }
-        };
+        let vector = self.shape.offset(from_center);
         Offset {
             vector,
             distance_squared: vector.dot(&vector),
         }
     }
-}
-
-#[inline(always)]
-fn clamped<R: Real>(value: R, limit: f64) -> R {
-    value.max(R::splat(-limit)).min(R::splat(limit))
-}
-
-#[inline(always)]
-fn into_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
-    let axis = Vector2::splat(axis);
-    Vector2::new(axis.dot(&vector), axis.perp(&vector))
-}
-
-#[inline(always)]
-fn out_of_axes<R: Real>(vector: Vector2<R>, axis: [f64; 2]) -> Vector2<R> {
-    let axis = Vector2::splat(axis);
-    axis * vector.x + axis.left_normal() * vector.y
 }
 
 /// Everything the forces of one obstacle depend on.
@@ -208,7 +178,7 @@ fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R
 pub fn separation<R: Real>(
     body: &Body,
     half: [f64; 2],
-    axis: [f64; 2],
+    axis: Vector2<f64>,
     position: Vector2<R>,
     goal: Vector2<R>,
 ) -> (R::Mask, R, R) {

@@ -1,7 +1,9 @@
-//! The world of a run: motions, shapes, obstacles with their regions, scenarios.
+//! The world of a run: frames, motions, shapes, obstacles with their regions, scenarios.
 
+pub mod frame;
 pub mod geometry;
 pub mod motion;
 pub mod obstacle;
 pub mod region;
 pub mod scenario;
+pub mod shape;

@@ -1,6 +1,6 @@
 //! How an obstacle moves: pieces of constant acceleration, or a recording.
 
-use crate::error::{Failure, Given, Result, finite_pair};
+use crate::error::{Failure, Given, Result, finite_pair, not_negative};
 
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
@@ -118,6 +118,55 @@ impl Motion {
             });
         }
         Ok(motion)
+    }
+
+    /// A body that stands, moves straight from one instant to another, and stands again; the last
+    /// instant may be infinite.
+    ///
+    /// # Errors
+    /// A value is not finite, the first instant is negative, or the last one is before it.
+    pub fn between(start: [f64; 2], velocity: [f64; 2], [from, until]: [f64; 2]) -> Result<Self> {
+        finite_pair("position", start)?;
+        finite_pair("velocity", velocity)?;
+        not_negative("start", from)?;
+        if until.is_nan() || until < from {
+            let rule = "not be before start";
+            return Err(Failure::invalid("stop", rule, Given::Number(until)));
+        }
+        let mut motion = Self::at_rest(start);
+        let moving = Piece {
+            start: from,
+            position: start,
+            velocity,
+            acceleration: [0.0; 2],
+        };
+        if until > from {
+            motion.pieces.push(moving);
+        }
+        if until > from && until.is_finite() {
+            let (position, _) = moving.at(until);
+            motion.pieces.push(Piece {
+                start: until,
+                position,
+                velocity: [0.0; 2],
+                ..moving
+            });
+        }
+        Ok(motion)
+    }
+
+    /// First piece in which the body moves: instants in s between which it does, and its velocity
+    /// at the first one in m/s.
+    #[must_use]
+    pub fn first_move(&self) -> Option<([f64; 2], [f64; 2])> {
+        let moves = |piece: &Piece| piece.velocity != [0.0; 2] || piece.acceleration != [0.0; 2];
+        let index = self.pieces.iter().position(moves)?;
+        let piece = &self.pieces[index];
+        let end = self
+            .pieces
+            .get(index + 1)
+            .map_or(f64::INFINITY, |next| next.start);
+        Some(([piece.start, end], piece.velocity))
     }
 
     /// Piecewise constant acceleration; after the last segment the velocity reached is kept.
@@ -343,6 +392,29 @@ mod tests {
         let mut cursor = 0;
         let end = walk.at(5.0, &mut cursor);
         assert_eq!((end.position, end.velocity), ([2.1, 2.5], [0.0, 1.0]));
+    }
+
+    #[test]
+    fn moves_between_two_instants_only() {
+        let walk = Motion::between([1.0, 2.0], [0.5, -0.25], [2.0, 6.0]).unwrap();
+        let mut cursor = 0;
+        let at = |time, cursor: &mut usize| {
+            let state = walk.at(time, cursor);
+            (state.position, state.velocity)
+        };
+        assert_eq!(at(1.0, &mut cursor), ([1.0, 2.0], [0.0, 0.0]));
+        assert_eq!(at(4.0, &mut cursor), ([2.0, 1.5], [0.5, -0.25]));
+        assert_eq!(at(9.0, &mut cursor), ([3.0, 1.0], [0.0, 0.0]));
+        assert_eq!(walk.first_move(), Some(([2.0, 6.0], [0.5, -0.25])));
+        let endless = Motion::between([0.0; 2], [1.0, 0.0], [0.0, f64::INFINITY]).unwrap();
+        assert_eq!(
+            endless.first_move(),
+            Some(([0.0, f64::INFINITY], [1.0, 0.0]))
+        );
+        let never = Motion::between([0.0; 2], [1.0, 0.0], [3.0, 3.0]).unwrap();
+        assert!(never.is_stationary() && never.first_move().is_none());
+        assert!(Motion::between([0.0; 2], [1.0, 0.0], [3.0, 2.0]).is_err());
+        assert!(Motion::between([0.0; 2], [1.0, 0.0], [-1.0, 2.0]).is_err());
     }
 
     #[test]

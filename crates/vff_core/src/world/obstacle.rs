@@ -1,37 +1,10 @@
 //! Obstacles: shape, motion and the radii of their regions.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative, positive};
 use crate::world::motion::Motion;
-
-/// Outline of an obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// A disc; distances are measured from its centre.
-    Disc {
-        /// Radius in m.
-        radius: f64,
-    },
-    /// A rectangle at rest; distances are measured from its contour.
-    Rectangle {
-        /// Half the side along the heading, in m.
-        half_length: f64,
-        /// Half the side across the heading, in m.
-        half_width: f64,
-        /// Unit vector of the heading.
-        axis: [f64; 2],
-    },
-}
-
-impl Shape {
-    /// Part of the distance `d` that lies inside the obstacle (`rho_obs`), in m.
-    #[must_use]
-    pub fn inner_radius(&self) -> f64 {
-        match self {
-            Self::Disc { radius } => *radius,
-            Self::Rectangle { .. } => 0.0,
-        }
-    }
-}
+pub use crate::world::shape::{PlacedShape, Shape};
 
 /// Radii of the regions of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +64,18 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
+    /// Any shape on a way of its own, without regions: what sensors see.
+    ///
+    /// # Errors
+    /// Names the value that is not allowed.
+    pub fn seen(placed: PlacedShape, motion: Motion) -> Result<Self> {
+        Ok(Self {
+            shape: placed.checked()?.shape,
+            motion,
+            limits: Limits::default(),
+        })
+    }
+
     /// A disc with any motion.
     ///
     /// # Errors
@@ -136,13 +121,8 @@ impl Obstacle {
             let rule = "be absent or zero for a rectangle, which does not move";
             return Err(Failure::invalid("max_speed", rule, Given::Number(speed)));
         }
-        let shape = Shape::Rectangle {
-            half_length: 0.5 * sides[0],
-            half_width: 0.5 * sides[1],
-            axis: [heading.cos(), heading.sin()],
-        };
         Ok(Self {
-            shape,
+            shape: Shape::turned(sides, heading),
             motion: Motion::at_rest(center),
             limits: limits.checked()?,
         })
@@ -156,25 +136,22 @@ impl Obstacle {
             .unwrap_or_else(|| self.motion.max_initial_speed())
     }
 
-    /// Distance `d` from the centre of a disc or the contour of a rectangle to a point, in m.
+    /// Distance `d` from the center of a disc or the contour of a rectangle to a point, in m.
     #[must_use]
     pub fn distance(&self, center: [f64; 2], point: [f64; 2]) -> f64 {
-        let offset = [point[0] - center[0], point[1] - center[1]];
-        match self.shape {
-            Shape::Disc { .. } => (offset[0] * offset[0] + offset[1] * offset[1]).sqrt(),
-            Shape::Rectangle {
-                half_length,
-                half_width,
-                axis,
-            } => {
-                let along = offset[0] * axis[0] + offset[1] * axis[1];
-                let across = offset[1] * axis[0] - offset[0] * axis[1];
-                let beyond = [
-                    along - along.clamp(-half_length, half_length),
-                    across - across.clamp(-half_width, half_width),
-                ];
-                (beyond[0] * beyond[0] + beyond[1] * beyond[1]).sqrt()
-            }
+        let offset = self
+            .shape
+            .offset(Vector2::from(point) - Vector2::from(center));
+        offset.dot(&offset).sqrt()
+    }
+
+    /// The shape where it is at an instant. `cursor` is that of [`Motion::at`].
+    #[inline]
+    #[must_use]
+    pub fn at(&self, time: f64, cursor: &mut usize) -> PlacedShape {
+        PlacedShape {
+            center: self.motion.at(time, cursor).position.into(),
+            shape: self.shape,
         }
     }
 }

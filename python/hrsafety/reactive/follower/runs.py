@@ -66,6 +66,9 @@ class Follower(Parameters):
         A source behind the microphones is taken for one in front.
     velocity_rule : str
         ``"integrated"``, or ``"reset"``: V starts every step from the velocity of the robot.
+    integration : str
+        ``"chord"``, as the source: the robot moves along the chord of the arc by the length of the arc;
+        or ``"arc"``: along the exact arc, as the two-wheel robot of `hrsafety.navigation` does.
     step : float
         Control period in s.
 
@@ -95,6 +98,7 @@ class Follower(Parameters):
     fix_noise: bool = True
     mirrored_fixes: bool = False
     velocity_rule: Literal["integrated", "reset"] = "integrated"
+    integration: Literal["chord", "arc"] = "chord"
     step: float = 0.025
     _native: _hrsafety.Follower = field(init=False, repr=False, compare=False)
 
@@ -111,6 +115,7 @@ class Follower(Parameters):
                 fix_noise=flag("fix_noise", self.fix_noise),
                 mirrored_fixes=flag("mirrored_fixes", self.mirrored_fixes),
                 velocity_rule=str(self.velocity_rule),
+                integration=str(self.integration),
                 step=values["step"],
             )
         )

@@ -5,7 +5,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::follower::Sensors;
 use vff_core::sensing::sonar::ranging::Normals;
-use vff_core::sensing::sonar::{self, Firing, Pose, Ranging, Rectangle, Shape};
+use vff_core::sensing::sonar::{self, Firing, Ranging};
+use vff_core::world::frame::Frame;
+use vff_core::world::shape::PlacedShape;
 
 use super::{Column, Rows, pairs, word};
 use crate::arrays::Fields;
@@ -16,36 +18,31 @@ const READINGS: u64 = 3;
 
 /// Shape that echoes.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct EchoShape(pub Shape);
+pub struct EchoShape(pub PlacedShape);
 
 #[pymethods]
 impl EchoShape {
     #[staticmethod]
     #[pyo3(signature = (*, center, size, angle))]
     fn rectangle(center: [f64; 2], size: [f64; 2], angle: f64) -> CoreResult<Self> {
-        let shape = if angle == 0.0 {
-            Rectangle::upright(center, size)
-        } else {
-            Rectangle::turned(center, size, angle)
-        };
-        Ok(Self(Shape::Rectangle(shape).checked()?))
+        Ok(Self(PlacedShape::rectangle(center, size, angle)?))
     }
 
     #[staticmethod]
     #[pyo3(signature = (*, center, radius))]
     fn disc(center: [f64; 2], radius: f64) -> CoreResult<Self> {
-        Ok(Self(Shape::Disc(sonar::Disc { center, radius }).checked()?))
+        Ok(Self(PlacedShape::disc(center, radius).checked()?))
     }
 
     #[staticmethod]
     #[pyo3(signature = (*, start, end))]
     fn wall(start: [f64; 2], end: [f64; 2]) -> CoreResult<Self> {
-        Ok(Self(Shape::Wall(sonar::Wall { start, end }).checked()?))
+        Ok(Self(PlacedShape::wall(start, end).checked()?))
     }
 }
 
 /// Shapes of a list.
-fn shapes_of(shapes: &[PyRef<'_, EchoShape>]) -> Vec<Shape> {
+fn shapes_of(shapes: &[PyRef<'_, EchoShape>]) -> Vec<PlacedShape> {
     shapes.iter().map(|shape| shape.0).collect()
 }
 
@@ -106,10 +103,12 @@ pub fn sonar_mounts<'py>(py: Python<'py>, sonar: &Sonar) -> PyResult<Bound<'py, 
     let array = sonar.0.array().map_err(CoreError::from)?;
     let mounts = array.mounts();
     let fields = Fields::new(py);
-    let places = mounts.iter().flat_map(|mount| mount.position).collect();
+    let places = mounts
+        .iter()
+        .flat_map(|mount| [mount.position.x, mount.position.y])
+        .collect();
     fields.matrix("position", places, mounts.len(), 2)?;
-    let angle = |mount: &Pose| mount.direction[1].atan2(mount.direction[0]);
-    fields.vector("axis", mounts.iter().map(angle).collect())?;
+    fields.vector("axis", mounts.iter().map(Frame::angle).collect())?;
     Ok(fields.finish())
 }
 
@@ -136,7 +135,7 @@ pub fn sonar_readings<'py>(
     let mut readings = vec![f64::INFINITY; count];
     let mut rows = Vec::new();
     for (step, pose) in poses.as_slice()?.chunks_exact(3).enumerate() {
-        let body = Pose::at([pose[0], pose[1]], pose[2]);
+        let body = Frame::at([pose[0], pose[1]], pose[2]);
         array.measure(&body, &shapes, step, &mut readings, &mut normals);
         rows.extend_from_slice(&readings);
     }
@@ -158,7 +157,7 @@ pub fn cast_rays<'py>(
     let shapes = shapes_of(&shapes);
     let rays = pairs(origins.as_slice()?).zip(angles.as_slice()?);
     let distance = rays.map(|(origin, angle)| {
-        let direction = Pose::at(origin, *angle).direction;
+        let direction = Frame::at(origin.into(), *angle).direction;
         let along = shapes.iter().map(|shape| shape.cast(origin, direction));
         along.fold(f64::INFINITY, f64::min)
     });

@@ -3,11 +3,13 @@
 use numeric::parallel::Work;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::lanes::Vector2;
 use vff_core::run::follower::{
-    Follower as Robot, Layouts, Leader, Mover as Obstacle, Outcome, Recording, Scene, Setting,
+    Follower as Robot, FollowerOutcome, FollowerRecord, FollowerScene, Layouts, Leader, Setting,
     record, run_batch, touching_layouts,
 };
-use vff_core::sensing::sonar::Shape;
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::shape::Shape;
 
 use super::{Follower, Mover, VirtualImpedance, word};
 use crate::arrays::Fields;
@@ -52,39 +54,44 @@ pub fn follower_layout<'py>(
     layouts: &FollowerLayouts,
     seed: u64,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = layouts.0.scene(seed);
-    let boxes: Vec<_> = scene
-        .obstacles
-        .iter()
-        .filter_map(|obstacle| match obstacle.shape {
-            Shape::Rectangle(shape) => Some((obstacle, shape)),
-            Shape::Disc(_) | Shape::Wall(_) => None,
-        })
-        .collect();
+    let scene = layouts.0.scene(seed).map_err(CoreError::from)?;
     let fields = Fields::new(py);
-    let rows = |numbers: Vec<[f64; 2]>| numbers.into_iter().flatten().collect::<Vec<f64>>();
-    let count = boxes.len();
-    let centers = rows(boxes.iter().map(|(_, shape)| shape.center).collect());
-    fields.matrix("center", centers, count, 2)?;
-    let sizes = boxes.iter().map(|(_, shape)| shape.half_size);
-    let sizes = sizes.map(|half| half.map(|side| 2.0 * side)).collect();
-    fields.matrix("size", rows(sizes), count, 2)?;
-    let velocities = rows(
-        boxes
-            .iter()
-            .map(|(obstacle, _)| obstacle.velocity)
-            .collect(),
-    );
-    fields.matrix("velocity", velocities, count, 2)?;
-    fields.vector("start", boxes.iter().map(|(each, _)| each.start).collect())?;
-    fields.vector("stop", boxes.iter().map(|(each, _)| each.stop).collect())?;
-    let leader = scene.leader;
-    fields.value("leader_start", leader.start)?;
-    fields.value("leader_end", leader.at(leader.duration))?;
-    let [x, y] = leader.velocity;
-    fields.value("leader_speed", x.hypot(y))?;
+    boxes(&fields, &scene.obstacles)?;
+    let motion = &scene.leader.motion;
+    let ([start, end], velocity) = motion.first_move().unwrap_or_default();
+    fields.value("leader_start", motion.at(start, &mut 0).position)?;
+    fields.value("leader_end", motion.at(end, &mut 0).position)?;
+    fields.value("leader_speed", velocity[0].hypot(velocity[1]))?;
     fields.value("duration", scene.duration)?;
     Ok(fields.finish())
+}
+
+/// Boxes of a layout: first places, sides, velocities, and when they move.
+fn boxes(fields: &Fields<'_>, obstacles: &[Obstacle]) -> PyResult<()> {
+    let (mut centers, mut sizes, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut starts, mut stops) = (Vec::new(), Vec::new());
+    for obstacle in obstacles {
+        let Shape::Rectangle {
+            half_length,
+            half_width,
+            ..
+        } = obstacle.shape
+        else {
+            continue;
+        };
+        let ([start, stop], velocity) = obstacle.motion.first_move().unwrap_or_default();
+        centers.extend(obstacle.motion.at(0.0, &mut 0).position);
+        sizes.extend([2.0 * half_length, 2.0 * half_width]);
+        velocities.extend(velocity);
+        starts.push(start);
+        stops.push(stop);
+    }
+    let count = starts.len();
+    fields.matrix("center", centers, count, 2)?;
+    fields.matrix("size", sizes, count, 2)?;
+    fields.matrix("velocity", velocities, count, 2)?;
+    fields.vector("start", starts)?;
+    fields.vector("stop", stops)
 }
 
 /// One run, sample by sample.
@@ -107,9 +114,9 @@ pub fn follower_record<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut leader =
         Leader::going(leader_start, leader_end, leader_speed).map_err(CoreError::from)?;
-    leader.visible = leader_size.map(|size| size.map(|side| 0.5 * side));
-    let obstacles: Vec<Obstacle> = obstacles.iter().map(|mover| mover.0).collect();
-    let scene = Scene {
+    leader.shape = leader_size.map(Shape::upright);
+    let obstacles: Vec<Obstacle> = obstacles.iter().map(|mover| mover.0.clone()).collect();
+    let scene = FollowerScene {
         leader,
         obstacles,
         duration,
@@ -127,33 +134,35 @@ pub fn follower_record<'py>(
 /// Samples of a run.
 fn samples(
     fields: &Fields<'_>,
-    recording: Recording,
+    recording: FollowerRecord,
     sensors: usize,
     obstacles: usize,
 ) -> PyResult<()> {
     let count = recording.time.len();
+    let flat = |rows: &[Vector2<f64>]| -> Vec<f64> {
+        rows.iter().flat_map(|row| [row.x, row.y]).collect()
+    };
     let pairs = [
-        ("position", recording.position),
-        ("virtual_velocity", recording.virtual_velocity),
-        ("wheel_speed", recording.wheel_speed),
-        ("target", recording.target),
-        ("source", recording.source),
-        ("attraction", recording.attraction),
-        ("repulsion", recording.repulsion),
+        ("position", &recording.position),
+        ("virtual_velocity", &recording.virtual_velocity),
+        ("target", &recording.target),
+        ("source", &recording.source),
+        ("attraction", &recording.attraction),
+        ("repulsion", &recording.repulsion),
     ];
     for (name, rows) in pairs {
-        fields.matrix(name, rows.into_iter().flatten().collect(), count, 2)?;
+        fields.matrix(name, flat(rows), count, 2)?;
     }
+    fields.matrix("wheel_speed", recording.wheel_speed.concat(), count, 2)?;
+    fields.cube("shift", flat(&recording.shifts), [count, obstacles, 2])?;
     fields.vector("time", recording.time)?;
     fields.vector("heading", recording.heading)?;
     fields.matrix("readings", recording.readings, count, sensors)?;
-    fields.matrix("clearance", recording.clearance, count, obstacles)?;
-    let shifts = recording.shifts.into_iter().flatten().collect();
-    fields.cube("shift", shifts, [count, obstacles, 2])
+    fields.matrix("clearance", recording.clearance, count, obstacles)
 }
 
 /// End of a run.
-fn summary(fields: &Fields<'_>, outcome: &Outcome) -> PyResult<()> {
+fn summary(fields: &Fields<'_>, outcome: &FollowerOutcome) -> PyResult<()> {
     let contact = outcome.contact;
     fields.value("contact_obstacle", contact.map(|touch| touch.obstacle))?;
     fields.value("contact_bearing", contact.map(|touch| touch.bearing))?;
@@ -211,10 +220,11 @@ pub fn follower_batch<'py>(
         run_batch(&settings, layouts, &seeds, work)
     })?;
     let fields = Fields::new(py);
-    let column = |get: &dyn Fn(&Outcome) -> f64| outcomes.iter().map(get).collect::<Vec<f64>>();
+    let column =
+        |get: &dyn Fn(&FollowerOutcome) -> f64| outcomes.iter().map(get).collect::<Vec<f64>>();
     let collided = outcomes.iter().map(|outcome| outcome.contact.is_some());
     fields.vector("collided", collided.collect::<Vec<bool>>())?;
-    let touched = |outcome: &Outcome| {
+    let touched = |outcome: &FollowerOutcome| {
         let index = outcome.contact.map(|touch| i64::try_from(touch.obstacle));
         index.and_then(Result::ok).unwrap_or(-1)
     };
@@ -222,7 +232,7 @@ pub fn follower_batch<'py>(
         "contact_obstacle",
         outcomes.iter().map(touched).collect::<Vec<i64>>(),
     )?;
-    let bearing = |each: &Outcome| each.contact.map_or(f64::NAN, |touch| touch.bearing);
+    let bearing = |each: &FollowerOutcome| each.contact.map_or(f64::NAN, |touch| touch.bearing);
     fields.vector("contact_bearing", column(&bearing))?;
     fields.vector("end_time", column(&|each| each.end_time))?;
     fields.vector("source_distance", column(&|each| each.source_distance))?;

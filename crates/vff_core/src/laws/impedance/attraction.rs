@@ -1,5 +1,7 @@
 //! Attraction to a point before the source.
 
+use nalgebra::Vector2;
+
 use crate::error::{Result, not_negative};
 
 /// Spring and damper to the target: `F_m = K_r (X_r - X_s) - D_r V`, (18).
@@ -45,10 +47,7 @@ impl Attraction {
     /// Force in N toward a target at an offset in m, for a velocity in m/s.
     #[inline]
     #[must_use]
-    pub fn force(&self, offset: [f64; 2], velocity: [f64; 2]) -> [f64; 2] {
-        [
-            self.stiffness * offset[0] - self.damping * velocity[0],
-            self.stiffness * offset[1] - self.damping * velocity[1],
-        ]
+    pub fn force(&self, offset: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64> {
+        offset * self.stiffness - velocity * self.damping
     }
 }

@@ -1,10 +1,12 @@
 //! Three sensors side by side: from readings to the repulsive force.
 
+use nalgebra::Vector2;
+
 use crate::error::Result;
 use crate::laws::impedance::collision::{Pairing, collision_point, pair_echoes};
 use crate::laws::impedance::law::Prepared;
 use crate::laws::impedance::rate::{Rate, RateFilter};
-use crate::sensing::sonar::Pose;
+use crate::world::frame::Frame;
 
 /// How a collision vector is turned from the robot into the world, (15).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,7 +22,7 @@ impl Rotation {
     /// A vector of the robot in the directions of the world.
     #[inline]
     #[must_use]
-    pub fn to_world(self, pose: &Pose, vector: [f64; 2]) -> [f64; 2] {
+    pub fn to_world(self, pose: &Frame, vector: Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::ByHeading => pose.outward(vector),
             Self::Printed => pose.inward(vector),
@@ -67,14 +69,14 @@ pub struct Bank {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BankLayout {
     /// Sensors relative to `P_0`.
-    pub mounts: [Pose; 3],
+    pub mounts: [Frame; 3],
 }
 
 impl BankLayout {
     /// Points of the echoes, `P_i = S_i + r_i (cos, sin)`, (11) and (13).
     #[inline]
     #[must_use]
-    pub fn points(&self, readings: &[f64; 3]) -> [[f64; 2]; 3] {
+    pub fn points(&self, readings: &[f64; 3]) -> [Vector2<f64>; 3] {
         std::array::from_fn(|index| collision_point(&self.mounts[index], readings[index]))
     }
 }
@@ -87,12 +89,12 @@ impl Bank {
         &mut self,
         layout: &BankLayout,
         readings: &[f64; 3],
-        pose: &Pose,
+        pose: &Frame,
         law: &Prepared,
         options: &BankOptions,
         timing: (f64, f64),
-    ) -> [f64; 2] {
-        let mut sum = [0.0, 0.0];
+    ) -> Vector2<f64> {
+        let mut sum = Vector2::zeros();
         let points = layout.points(readings);
         let collisions = pair_echoes(&points, readings, &options.pairing);
         for (rate, collision) in self.rates.iter_mut().zip(collisions) {
@@ -104,13 +106,11 @@ impl Bank {
             };
             let mut vector = options.rotation.to_world(pose, collision.vector);
             if let Some(place) = options.translated_by {
-                vector[0] += pose.position[0] + place[0];
-                vector[1] += pose.position[1] + place[1];
+                vector += pose.position + Vector2::from(place);
             }
             let sample = (collision.case, vector);
             let speed = rate.update(&options.rate, sample, timing);
-            let force = law.force(vector, speed);
-            sum = [sum[0] + force[0], sum[1] + force[1]];
+            sum += law.force(vector, speed);
         }
         sum
     }

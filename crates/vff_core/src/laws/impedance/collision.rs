@@ -1,57 +1,54 @@
 //! Collision vectors from the echoes of one or two sensors.
 
+use nalgebra::Vector2;
+
 use crate::error::{Result, not_negative};
-use crate::sensing::sonar::Pose;
+use crate::world::frame::Frame;
 
 /// Point of an echo, `P_i = S_i + r_i (cos th_i, sin th_i)`, (11) and (13): where a sensor stands,
 /// and its reading in m along its axis.
 #[inline]
 #[must_use]
-pub fn collision_point(sensor: &Pose, reading: f64) -> [f64; 2] {
-    [
-        sensor.position[0] + reading * sensor.direction[0],
-        sensor.position[1] + reading * sensor.direction[1],
-    ]
+pub fn collision_point(sensor: &Frame, reading: f64) -> Vector2<f64> {
+    sensor.position + sensor.direction * reading
 }
 
 /// Foot by the components of (14) as printed, `V` the slope of the line: the sign of `x_i` in the
 /// second one is wrong, so that the vector is not perpendicular; NaN for lines along an axis. Kept to
 /// be shown beside [`foot`].
 #[must_use]
-pub fn printed_foot(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    let slope = (other[1] - one[1]) / (other[0] - one[0]);
+pub fn printed_foot(one: Vector2<f64>, other: Vector2<f64>) -> Vector2<f64> {
+    let slope = (other.y - one.y) / (other.x - one.x);
     let scale = slope + 1.0 / slope;
-    [
-        (slope * one[0] - one[1]) / scale,
-        (one[0] + one[1] / slope) / scale,
-    ]
+    Vector2::new(
+        (slope * one.x - one.y) / scale,
+        (one.x + one.y / slope) / scale,
+    )
 }
 
 /// Foot of the perpendicular from the origin on the line through two points, (14) as a vector:
 /// `P - (P.d) d` with the unit vector `d` of the line; the first point if both are one.
 #[inline]
 #[must_use]
-pub fn foot(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    let along = [other[0] - one[0], other[1] - one[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
+pub fn foot(one: Vector2<f64>, other: Vector2<f64>) -> Vector2<f64> {
+    let along = other - one;
+    let square = along.dot(&along);
     if square == 0.0 {
         return one;
     }
-    let share = -(one[0] * along[0] + one[1] * along[1]) / square;
-    [one[0] + share * along[0], one[1] + share * along[1]]
+    one + along * (-one.dot(&along) / square)
 }
 
 /// Foot on the line moved to the segment between the points if it lies outside.
 #[inline]
 #[must_use]
-pub fn clamped_foot(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    let along = [other[0] - one[0], other[1] - one[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
+pub fn clamped_foot(one: Vector2<f64>, other: Vector2<f64>) -> Vector2<f64> {
+    let along = other - one;
+    let square = along.dot(&along);
     if square == 0.0 {
         return one;
     }
-    let share = (-(one[0] * along[0] + one[1] * along[1]) / square).clamp(0.0, 1.0);
-    [one[0] + share * along[0], one[1] + share * along[1]]
+    one + along * (-one.dot(&along) / square).clamp(0.0, 1.0)
 }
 
 /// When the echoes of two neighboring sensors belong to one obstacle: their points are less than
@@ -87,10 +84,10 @@ impl Pairing {
     /// Whether two echoes belong to one obstacle.
     #[inline]
     #[must_use]
-    pub fn joins(&self, points: [[f64; 2]; 2], readings: [f64; 2]) -> bool {
-        let apart = [points[1][0] - points[0][0], points[1][1] - points[0][1]];
+    pub fn joins(&self, points: [Vector2<f64>; 2], readings: [f64; 2]) -> bool {
+        let apart = points[1] - points[0];
         let limit = self.gap + self.share * readings[0].min(readings[1]);
-        apart[0] * apart[0] + apart[1] * apart[1] < limit * limit
+        apart.dot(&apart) < limit * limit
     }
 }
 
@@ -98,7 +95,7 @@ impl Pairing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
     /// Vector from the origin of the sensors to the obstacle, in m.
-    pub vector: [f64; 2],
+    pub vector: Vector2<f64>,
     /// Which of [`CASES`] it is.
     pub case: usize,
 }
@@ -112,7 +109,7 @@ pub const CASES: [&[usize]; 5] = [&[0], &[1], &[2], &[0, 1], &[1, 2]];
 #[inline]
 #[must_use]
 pub fn pair_echoes(
-    points: &[[f64; 2]; 3],
+    points: &[Vector2<f64>; 3],
     readings: &[f64; 3],
     pairing: &Pairing,
 ) -> [Option<Collision>; 3] {

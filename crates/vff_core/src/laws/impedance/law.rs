@@ -1,5 +1,7 @@
 //! Repulsive force of a collision vector.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result, finite, positive};
 
 /// Which law gives the repulsive force.
@@ -155,13 +157,12 @@ impl Prepared {
     /// direction.
     #[inline]
     #[must_use]
-    pub fn force(&self, vector: [f64; 2], speed: f64) -> [f64; 2] {
-        let distance = (vector[0] * vector[0] + vector[1] * vector[1]).sqrt();
+    pub fn force(&self, vector: Vector2<f64>, speed: f64) -> Vector2<f64> {
+        let distance = vector.dot(&vector).sqrt();
         if distance == 0.0 {
-            return [0.0, 0.0];
+            return Vector2::zeros();
         }
-        let size = -(self.spring(distance) + self.damper(distance, speed)) / distance;
-        [size * vector[0], size * vector[1]]
+        vector * (-(self.spring(distance) + self.damper(distance, speed)) / distance)
     }
 
     /// Force in N on a robot that knows the nearest point of every obstacle, `C` in m, and how it
@@ -169,15 +170,14 @@ impl Prepared {
     #[must_use]
     pub fn force_of_points(
         &self,
-        points: impl IntoIterator<Item = ([f64; 2], [f64; 2])>,
-    ) -> [f64; 2] {
-        let mut sum = [0.0, 0.0];
+        points: impl IntoIterator<Item = (Vector2<f64>, Vector2<f64>)>,
+    ) -> Vector2<f64> {
+        let mut sum = Vector2::zeros();
         for (vector, change) in points {
-            let distance = (vector[0] * vector[0] + vector[1] * vector[1]).sqrt();
+            let distance = vector.dot(&vector).sqrt();
             if distance > 0.0 {
-                let rate = (vector[0] * change[0] + vector[1] * change[1]) / distance;
-                let force = self.force(vector, (-rate).max(0.0));
-                sum = [sum[0] + force[0], sum[1] + force[1]];
+                let rate = vector.dot(&change) / distance;
+                sum += self.force(vector, (-rate).max(0.0));
             }
         }
         sum

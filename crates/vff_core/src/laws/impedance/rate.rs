@@ -1,5 +1,7 @@
 //! Speed of a collision vector from its samples.
 
+use nalgebra::Vector2;
+
 use crate::error::{Result, not_negative, positive};
 
 /// Which speed stands for `||dC/dt||`.
@@ -66,8 +68,8 @@ impl RateFilter {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rate {
     case: Option<usize>,
-    last: Option<[f64; 2]>,
-    filtered: [f64; 2],
+    last: Option<Vector2<f64>>,
+    filtered: Vector2<f64>,
 }
 
 impl Rate {
@@ -83,31 +85,29 @@ impl Rate {
     pub fn update(
         &mut self,
         filter: &RateFilter,
-        (case, vector): (usize, [f64; 2]),
+        (case, vector): (usize, Vector2<f64>),
         (step, weight): (f64, f64),
     ) -> f64 {
-        let distance = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+        let length = |vector: Vector2<f64>| vector.dot(&vector).sqrt();
         if self.case != Some(case) {
             self.reset();
             self.case = Some(case);
         }
         // The distance alone is kept for the closing speed.
         let sample = match filter.speed {
-            Speed::Closing => [distance(vector), 0.0],
+            Speed::Closing => Vector2::new(length(vector), 0.0),
             Speed::Norm => vector,
         };
         if let Some(last) = self.last {
-            let raw = [(sample[0] - last[0]) / step, (sample[1] - last[1]) / step];
-            if raw[0] * raw[0] + raw[1] * raw[1] <= filter.largest * filter.largest {
-                for (filtered, raw) in self.filtered.iter_mut().zip(raw) {
-                    *filtered += weight * (raw - *filtered);
-                }
+            let raw = (sample - last) / step;
+            if raw.dot(&raw) <= filter.largest * filter.largest {
+                self.filtered += (raw - self.filtered) * weight;
             }
         }
         self.last = Some(sample);
         match filter.speed {
-            Speed::Closing => (-self.filtered[0]).max(0.0),
-            Speed::Norm => distance(self.filtered),
+            Speed::Closing => (-self.filtered.x).max(0.0),
+            Speed::Norm => length(self.filtered),
         }
     }
 }

@@ -47,8 +47,8 @@ impl Outline {
                 half_width,
                 axis,
             } => {
-                let along = Vector::splat(axis) * half_length;
-                let across = Vector::splat(axis).left_normal() * half_width;
+                let along = axis * half_length;
+                let across = axis.left_normal() * half_width;
                 let corners = [
                     center + along + across,
                     center - along + across,

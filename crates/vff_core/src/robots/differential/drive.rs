@@ -2,8 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::Vector2;
+
 use crate::error::{Result, finite, finite_pair, positive};
 use crate::robots::DifferentialDriveRobot;
+use crate::world::frame::Frame;
 
 /// Half turns below this have `sin(x)/x = 1 - x^2/6` to the last bit, in rad.
 const SMALL_TURN: f64 = 1e-4;
@@ -53,8 +56,7 @@ impl Pose {
     /// `v T sin(w T/2)/(w T/2)` points along the heading at half time.
     #[must_use]
     pub fn after(&self, twist: Twist, duration: f64) -> Self {
-        let half_turn = 0.5 * twist.turn_rate * duration;
-        let chord = twist.speed * duration * sine_ratio(half_turn);
+        let (chord, half_turn) = twist.chord(duration, Integration::Arc);
         let (sin, cos) = (self.heading + half_turn).sin_cos();
         Self {
             position: [
@@ -84,6 +86,49 @@ impl Twist {
         finite("speed", self.speed)?;
         finite("turn_rate", self.turn_rate)?;
         Ok(self)
+    }
+}
+
+/// How far a robot comes with a constant twist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integration {
+    /// Along the exact arc.
+    #[default]
+    Arc,
+    /// Along the chord of the arc, with the length of the arc taken for that of the chord: too far
+    /// by a share of `(w T)^2/24`.
+    Chord,
+}
+
+impl Twist {
+    /// Length of the chord after `duration` s in m, and the angle between it and the first
+    /// heading, which is half of the turn, in rad.
+    #[inline]
+    #[must_use]
+    pub fn chord(&self, duration: f64, integration: Integration) -> (f64, f64) {
+        let half_turn = 0.5 * self.turn_rate * duration;
+        let length = self.speed * duration;
+        match integration {
+            Integration::Arc => (length * sine_ratio(half_turn), half_turn),
+            Integration::Chord => (length, half_turn),
+        }
+    }
+
+    /// A frame after `duration` s.
+    #[inline]
+    #[must_use]
+    pub fn moved(&self, frame: &Frame, duration: f64, integration: Integration) -> Frame {
+        let (chord, half_turn) = self.chord(duration, integration);
+        let (sin, cos) = half_turn.sin_cos();
+        let turn = Vector2::new(cos, sin);
+        let half = Frame {
+            position: frame.position,
+            direction: frame.outward(turn),
+        };
+        Frame {
+            position: frame.position + half.direction * chord,
+            direction: half.outward(turn),
+        }
     }
 }
 
@@ -250,6 +295,30 @@ mod tests {
         let angle = 0.3 + 0.5 * PI;
         assert!((quarter.position[0] - (center[0] + 0.25 * angle.sin())).abs() < 1e-15);
         assert!((quarter.position[1] - (center[1] - 0.25 * angle.cos())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_frame_and_a_pose_move_alike_and_the_chord_goes_too_far() {
+        let twist = Twist {
+            speed: 0.5,
+            turn_rate: 2.0,
+        };
+        let pose = Pose {
+            position: [1.0, -2.0],
+            heading: 0.3,
+        };
+        let frame = Frame::at(pose.position, pose.heading);
+        let (exact, there) = (
+            twist.moved(&frame, 0.1, Integration::Arc),
+            pose.after(twist, 0.1),
+        );
+        assert!((exact.position - Vector2::from(there.position)).norm() < 1e-15);
+        assert!((exact.angle() - there.heading).abs() < 1e-15);
+        let chord = twist.moved(&frame, 0.1, Integration::Chord);
+        let ways = [exact, chord].map(|end| (end.position - frame.position).norm());
+        let excess = ways[1] / ways[0] - 1.0;
+        assert!((excess - 0.2 * 0.2 / 24.0).abs() < 1e-5, "{excess}");
+        assert_eq!(exact.direction, chord.direction);
     }
 
     #[test]

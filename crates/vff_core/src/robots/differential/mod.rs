@@ -12,8 +12,9 @@ mod reference;
 mod torque;
 mod track;
 mod tracker;
+mod velocity_drive;
 
-pub use drive::{DifferentialDrive, DifferentialLimits, Pose, Twist};
+pub use drive::{DifferentialDrive, DifferentialLimits, Integration, Pose, Twist};
 pub use full_speed::FullSpeed;
 pub use goal::ExponentialGoal;
 pub use nonlinear::{ErrorFrame, Nonlinear, ReferenceTurn};
@@ -21,3 +22,4 @@ pub use reference::{Reference, ReferencePath};
 pub use torque::{TorqueSteering, VirtualTorque};
 pub use track::{TrackOptions, TrackRow, TrackRun, TrackStart, track, track_batch};
 pub use tracker::{Tracker, Tracking};
+pub use velocity_drive::VelocityDrive;

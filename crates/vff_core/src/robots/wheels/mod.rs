@@ -13,6 +13,7 @@ mod open_loop;
 mod presets;
 mod reference;
 mod slip;
+mod tri_omni;
 
 pub use control_loop::{WheelLoop, WheelSample};
 pub use controller::{Feedback, WheelController};
@@ -25,3 +26,4 @@ pub use open_loop::{OpenLoopTest, open_loop_angles};
 pub use presets::{differential_wheels, holonomic_wheels};
 pub use reference::{WheelReference, WheelWish};
 pub use slip::Slip;
+pub use tri_omni::{TANGENTS, TriOmni};

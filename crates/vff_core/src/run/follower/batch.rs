@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Given, Result};
 use crate::laws::impedance::Form;
-use crate::run::follower::episode::{Follower, Outcome};
+use crate::run::follower::episode::{Follower, FollowerOutcome};
 use crate::run::follower::layouts::Layouts;
 use crate::run::follower::settings::Settings;
 use numeric::parallel::{Work, each_run};
@@ -18,10 +18,10 @@ fn outcomes(
     layouts: &Layouts,
     seeds: &[u64],
     work: Work<'_>,
-) -> Result<Vec<Outcome>> {
+) -> Result<Vec<FollowerOutcome>> {
     each_run(seeds.len(), work, |index| {
         let seed = seeds[index];
-        follower.run(&layouts.scene(seed), seed, &mut (), work.interrupted)
+        follower.run(&layouts.scene(seed)?, seed, &mut (), work.interrupted)
     })
 }
 
@@ -34,7 +34,7 @@ pub fn run_batch(
     layouts: &Layouts,
     seeds: &[u64],
     work: Work<'_>,
-) -> Result<Vec<Outcome>> {
+) -> Result<Vec<FollowerOutcome>> {
     let layouts = layouts.checked()?;
     outcomes(&Follower::new(settings)?, &layouts, seeds, work)
 }

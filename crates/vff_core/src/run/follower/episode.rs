@@ -1,12 +1,16 @@
 //! One run of the follower.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Result};
 use crate::laws::impedance::bank::{Bank, BankLayout};
 use crate::laws::impedance::law::Prepared;
-use crate::run::follower::scene::Scene;
+use crate::run::follower::scene::FollowerScene;
 use crate::run::follower::settings::{Settings, VelocityRule};
+use crate::sensing::sonar::SonarArray;
 use crate::sensing::sonar::ranging::Normals;
-use crate::sensing::sonar::{Pose, Shape, SonarArray};
+use crate::world::frame::Frame;
+use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
 /// Streams of one seed.
@@ -21,7 +25,7 @@ const CHECK: usize = 1024;
 
 /// A touch of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct Touch {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// Direction of the nearest point from the front of the robot, counterclockwise, in rad.
@@ -30,9 +34,9 @@ pub struct Contact {
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
+pub struct FollowerOutcome {
     /// The touch that ended it.
-    pub contact: Option<Contact>,
+    pub contact: Option<Touch>,
     /// When it ended, in s.
     pub end_time: f64,
     /// Distance from the source at the end, in m.
@@ -52,32 +56,32 @@ pub struct Sample<'a> {
     /// Time, in s.
     pub time: f64,
     /// Robot.
-    pub pose: &'a Pose,
+    pub pose: &'a Frame,
     /// Virtual velocity at the end of the step, in m/s.
-    pub virtual_velocity: [f64; 2],
+    pub virtual_velocity: Vector2<f64>,
     /// Speeds (left, right) of the wheels until the next sample, in m/s.
     pub wheels: [f64; 2],
     /// Where it wants to be, in m.
-    pub target: [f64; 2],
+    pub target: Vector2<f64>,
     /// Source, in m.
-    pub source: [f64; 2],
+    pub source: Vector2<f64>,
     /// Attraction, in N.
-    pub attraction: [f64; 2],
+    pub attraction: Vector2<f64>,
     /// Repulsion, in N.
-    pub repulsion: [f64; 2],
+    pub repulsion: Vector2<f64>,
     /// Readings, in m; infinite without echo.
     pub readings: &'a [f64],
     /// Obstacles.
-    pub shapes: &'a [Shape],
+    pub shapes: &'a [PlacedShape],
 }
 
 /// Receives samples.
-pub trait Observer {
+pub trait SampleObserver {
     /// Takes one sample.
     fn sample(&mut self, sample: &Sample<'_>);
 }
 
-impl Observer for () {
+impl SampleObserver for () {
     #[inline]
     fn sample(&mut self, _sample: &Sample<'_>) {}
 }
@@ -88,7 +92,7 @@ pub struct Follower {
     settings: Settings,
     array: SonarArray,
     layout: BankLayout,
-    banks: Vec<Pose>,
+    banks: Vec<Frame>,
     law: Prepared,
     /// Weight of a new sample in the filter of the speed.
     weight: f64,
@@ -100,9 +104,9 @@ pub struct Follower {
 
 /// What changes during a run.
 struct State {
-    pose: Pose,
-    velocity: [f64; 2],
-    target: [f64; 2],
+    pose: Frame,
+    velocity: Vector2<f64>,
+    target: Vector2<f64>,
     banks: [Bank; 2],
     readings: [f64; 2 * BANK],
     fixes: Normals,
@@ -111,9 +115,12 @@ struct State {
 
 /// Obstacles at one time.
 struct Surroundings {
-    shapes: Vec<Shape>,
+    shapes: Vec<PlacedShape>,
+    /// Pieces of the motions that were the last ones.
+    cursors: Vec<usize>,
+    leader_cursor: usize,
     /// Those that a sensor may see.
-    near: Vec<Shape>,
+    near: Vec<PlacedShape>,
     /// Squared distance of the nearest one from the center, in m^2.
     least: f64,
     nearest: usize,
@@ -127,7 +134,7 @@ impl Follower {
     pub fn new(settings: &Settings) -> Result<Self> {
         let settings = settings.clone().checked()?;
         let array = settings.sensors.array()?;
-        let farthest = |mount: &Pose| mount.position[0].hypot(mount.position[1]);
+        let farthest = |mount: &Frame| mount.position.x.hypot(mount.position.y);
         let offset = array.mounts().iter().map(farthest).fold(0.0, f64::max);
         let burst = (settings.fixes.interval / settings.step).round().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
@@ -162,15 +169,15 @@ impl Follower {
     /// The duration is out of range, the state became non-finite, or the caller asked to stop.
     pub fn run(
         &self,
-        scene: &Scene,
+        scene: &FollowerScene,
         seed: u64,
-        observer: &mut impl Observer,
+        observer: &mut impl SampleObserver,
         interrupted: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Outcome> {
+    ) -> Result<FollowerOutcome> {
         let steps = self.settings.steps(scene.duration)?;
         let mut state = State::new(seed);
         let mut around = Surroundings::of(scene);
-        let mut outcome = Outcome {
+        let mut outcome = FollowerOutcome {
             contact: None,
             end_time: 0.0,
             source_distance: f64::NAN,
@@ -183,11 +190,10 @@ impl Follower {
                 return Err(Failure::Interrupted);
             }
             let time = step as f64 * self.settings.step;
-            let source = scene.leader.at(time);
-            self.look(&mut around, scene, time, &state.pose);
+            let source = self.look(&mut around, scene, time, &state.pose);
             outcome.end_time = time;
             outcome.least_clearance = outcome.least_clearance.min(around.least);
-            outcome.source_distance = length(minus(source, state.pose.position));
+            outcome.source_distance = length(source - state.pose.position);
             let radius = self.settings.drive.body_radius;
             let touching = around.least < radius * radius;
             if touching {
@@ -198,7 +204,7 @@ impl Follower {
                 break;
             }
             self.advance(&mut state, wheels, &mut outcome);
-            if !(state.pose.position[0] + state.pose.position[1]).is_finite() {
+            if !(state.pose.position.x + state.pose.position.y).is_finite() {
                 return Err(Failure::NonFinite { run: 0, time });
             }
         }
@@ -206,15 +212,22 @@ impl Follower {
         Ok(outcome)
     }
 
-    /// Puts the obstacles where they are.
+    /// Puts the obstacles where they are; returns the place of the source in m.
     #[inline]
-    fn look(&self, around: &mut Surroundings, scene: &Scene, time: f64, pose: &Pose) {
+    fn look(
+        &self,
+        around: &mut Surroundings,
+        scene: &FollowerScene,
+        time: f64,
+        pose: &Frame,
+    ) -> Vector2<f64> {
         around.near.clear();
         around.least = f64::INFINITY;
-        for (index, mover) in scene.obstacles.iter().enumerate() {
-            let shape = mover.at(time);
-            let [x, y] = shape.nearest(pose.position);
-            let square = x * x + y * y;
+        let cursors = around.cursors.iter_mut();
+        for (index, (obstacle, cursor)) in scene.obstacles.iter().zip(cursors).enumerate() {
+            let shape = obstacle.at(time, cursor);
+            let to = shape.nearest(pose.position);
+            let square = to.dot(&to);
             if square < around.least {
                 around.least = square;
                 around.nearest = index;
@@ -224,51 +237,50 @@ impl Follower {
             }
             around.shapes[index] = shape;
         }
-        if let Some([x, y]) = scene.leader.visible {
-            let body = crate::sensing::sonar::Rectangle::upright(
-                scene.leader.at(time),
-                [2.0 * x, 2.0 * y],
-            );
-            around.near.push(Shape::Rectangle(body));
+        let leader = &scene.leader;
+        let source = leader
+            .motion
+            .at(time, &mut around.leader_cursor)
+            .position
+            .into();
+        if let Some(shape) = leader.shape {
+            around.near.push(PlacedShape {
+                center: source,
+                shape,
+            });
         }
+        source
     }
 
-    /// Hears, senses, and chooses the speeds of the wheels.
+    /// Locates the source, senses, and chooses the speeds of the wheels.
     #[inline]
     fn act(
         &self,
         state: &mut State,
         around: &Surroundings,
         step: usize,
-        source: [f64; 2],
-        observer: &mut impl Observer,
+        source: Vector2<f64>,
+        observer: &mut impl SampleObserver,
     ) -> [f64; 2] {
         let settings = &self.settings;
         let pose = state.pose;
         if step.is_multiple_of(self.burst) {
-            let offset = pose.inward(minus(source, pose.position));
+            let offset = pose.inward(source - pose.position);
             let (range, direction) = settings.fixes.fix(offset, &mut state.fixes);
             let advance = settings.attraction.advance(range);
-            let [x, y] = pose.outward(direction);
-            state.target = [
-                pose.position[0] + advance * x,
-                pose.position[1] + advance * y,
-            ];
+            state.target = pose.position + pose.outward(direction) * advance;
         }
         let readings = &mut state.readings[..self.array.mounts().len()];
         self.array
             .measure(&pose, &around.near, step, readings, &mut state.noise);
         let repulsion = self.repulsion(&mut state.banks, &state.readings, &pose);
-        let offset = minus(state.target, pose.position);
+        let offset = state.target - pose.position;
         let attraction = settings.attraction.force(offset, state.velocity);
         let gain = settings.step / settings.drive.mass;
-        let mut velocity = [
-            state.velocity[0] + gain * (attraction[0] + repulsion[0]),
-            state.velocity[1] + gain * (attraction[1] + repulsion[1]),
-        ];
+        let mut velocity = state.velocity + (attraction + repulsion) * gain;
         let speed = length(velocity);
         if speed > settings.drive.wheel_speed {
-            velocity = velocity.map(|part| part * (settings.drive.wheel_speed / speed));
+            velocity *= settings.drive.wheel_speed / speed;
         }
         state.velocity = velocity;
         let wheels = settings.drive.wheels(pose.inward(velocity));
@@ -293,13 +305,13 @@ impl Follower {
         &self,
         memory: &mut [Bank; 2],
         readings: &[f64; 2 * BANK],
-        pose: &Pose,
-    ) -> [f64; 2] {
-        let mut sum = [0.0, 0.0];
+        pose: &Frame,
+    ) -> Vector2<f64> {
+        let mut sum = Vector2::zeros();
         let timing = (self.settings.step, self.weight);
         for (index, (bank, mounted)) in memory.iter_mut().zip(&self.banks).enumerate() {
             let own: [f64; BANK] = std::array::from_fn(|sensor| readings[BANK * index + sensor]);
-            let force = bank.force(
+            sum += bank.force(
                 &self.layout,
                 &own,
                 &pose.carrying(mounted),
@@ -307,21 +319,20 @@ impl Follower {
                 &self.settings.bank,
                 timing,
             );
-            sum = [sum[0] + force[0], sum[1] + force[1]];
         }
         sum
     }
 
     /// Moves the robot by one step.
     #[inline]
-    fn advance(&self, state: &mut State, wheels: [f64; 2], outcome: &mut Outcome) {
+    fn advance(&self, state: &mut State, wheels: [f64; 2], outcome: &mut FollowerOutcome) {
         let Settings { drive, step, .. } = &self.settings;
-        state.pose = drive.moved(&state.pose, wheels, *step);
-        outcome.path_length += 0.5 * (wheels[0] + wheels[1]).abs() * step;
-        outcome.turning += ((wheels[1] - wheels[0]) / drive.wheel_base).abs() * step;
+        let twist = drive.twist(wheels);
+        state.pose = twist.moved(&state.pose, *step, drive.integration);
+        outcome.path_length += twist.speed.abs() * step;
+        outcome.turning += twist.turn_rate.abs() * step;
         if self.settings.velocity == VelocityRule::Reset {
-            let speed = 0.5 * (wheels[0] + wheels[1]);
-            state.velocity = state.pose.direction.map(|part| speed * part);
+            state.velocity = state.pose.direction * twist.speed;
         }
     }
 }
@@ -329,12 +340,12 @@ impl Follower {
 impl State {
     fn new(seed: u64) -> Self {
         Self {
-            pose: Pose {
-                position: [0.0, 0.0],
-                direction: [1.0, 0.0],
+            pose: Frame {
+                position: Vector2::zeros(),
+                direction: Vector2::x(),
             },
-            velocity: [0.0, 0.0],
-            target: [0.0, 0.0],
+            velocity: Vector2::zeros(),
+            target: Vector2::zeros(),
             banks: [Bank::default(); 2],
             readings: [f64::INFINITY; 2 * BANK],
             fixes: Normals::new(Stream::new(seed, BURSTS)),
@@ -344,34 +355,33 @@ impl State {
 }
 
 impl Surroundings {
-    fn of(scene: &Scene) -> Self {
+    fn of(scene: &FollowerScene) -> Self {
         Self {
-            shapes: scene.obstacles.iter().map(|mover| mover.shape).collect(),
+            shapes: scene
+                .obstacles
+                .iter()
+                .map(|each| each.at(0.0, &mut 0))
+                .collect(),
+            cursors: vec![0; scene.obstacles.len()],
+            leader_cursor: 0,
             near: Vec::with_capacity(scene.obstacles.len() + 1),
             least: f64::INFINITY,
             nearest: 0,
         }
     }
 
-    fn contact(&self, pose: &Pose) -> Contact {
-        let to = self
-            .shapes
-            .get(self.nearest)
-            .map_or([0.0, 0.0], |shape| shape.nearest(pose.position));
-        let [forward, left] = pose.inward(to);
-        Contact {
+    fn contact(&self, pose: &Frame) -> Touch {
+        let nearest = self.shapes.get(self.nearest);
+        let to = nearest.map_or(Vector2::zeros(), |shape| shape.nearest(pose.position));
+        let to = pose.inward(to);
+        Touch {
             obstacle: self.nearest,
-            bearing: left.atan2(forward),
+            bearing: to.y.atan2(to.x),
         }
     }
 }
 
 #[inline]
-fn minus(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    [one[0] - other[0], one[1] - other[1]]
-}
-
-#[inline]
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
+fn length(vector: Vector2<f64>) -> f64 {
+    vector.dot(&vector).sqrt()
 }

@@ -1,5 +1,7 @@
 //! Range and bearing of the source once per burst.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::sensing::sonar::ranging::Normals;
 
@@ -147,17 +149,17 @@ impl Fixes {
 
     /// Range in m and direction (unit vector, forward and left) of a source at an offset in m in
     /// the axes of the robot.
-    pub fn fix(&self, offset: [f64; 2], normals: &mut Normals) -> (f64, [f64; 2]) {
+    pub fn fix(&self, offset: Vector2<f64>, normals: &mut Normals) -> (f64, Vector2<f64>) {
         let forward = if self.mirrored {
-            offset[0].abs()
+            offset.x.abs()
         } else {
-            offset[0]
+            offset.x
         };
-        let range = (forward * forward + offset[1] * offset[1]).sqrt();
-        let bearing = offset[1].atan2(forward);
+        let range = (forward * forward + offset.y * offset.y).sqrt();
+        let bearing = offset.y.atan2(forward);
         let [range_deviation, bearing_deviation] = self.noise.at(range, bearing);
         let range = range + range_deviation * normals.draw();
         let (sin, cos) = (bearing + bearing_deviation * normals.draw()).sin_cos();
-        (range, [cos, sin])
+        (range, Vector2::new(cos, sin))
     }
 }

@@ -1,8 +1,9 @@
 //! Random layouts of the experiments.
 
 use crate::error::{Failure, Given, Result, finite, positive};
-use crate::run::follower::scene::{Leader, Mover, Scene};
-use crate::sensing::sonar::{Rectangle, Shape};
+use crate::run::follower::scene::{FollowerScene, Leader};
+use crate::world::motion::Motion;
+use crate::world::obstacle::{Limits, Obstacle, Shape};
 use numeric::random::Stream;
 
 /// Stream of a seed that draws the layout.
@@ -69,41 +70,47 @@ impl Layouts {
     }
 
     /// Layout of a seed.
-    #[must_use]
-    pub fn scene(&self, seed: u64) -> Scene {
+    ///
+    /// # Errors
+    /// A number drawn is out of range: the layouts were not checked.
+    pub fn scene(&self, seed: u64) -> Result<FollowerScene> {
         let mut draw = Stream::new(seed, LAYOUT);
         let mut scene = match self.setting {
-            Setting::Static => Scene {
+            Setting::Static => FollowerScene {
                 leader: Leader::standing([6.0, 0.0]),
                 obstacles: self.standing(&mut draw),
                 duration: 40.0,
             },
-            Setting::Tracking | Setting::OneDynamic | Setting::TwoDynamic => Scene {
-                leader: moving_leader(),
-                obstacles: self.moving(&mut draw),
+            Setting::Tracking | Setting::OneDynamic | Setting::TwoDynamic => FollowerScene {
+                leader: moving_leader()?,
+                obstacles: self.moving(&mut draw)?,
                 duration: 26.0,
             },
         };
-        scene.leader.visible = self.leader;
-        scene
+        let seen = |half: [f64; 2]| Shape::upright(half.map(|side| 2.0 * side));
+        scene.leader.shape = self.leader.map(seen);
+        Ok(scene)
     }
 
-    fn shape(&self, center: [f64; 2], size: [f64; 2]) -> Shape {
-        let size = size.map(|side| self.size_factor * side);
-        Shape::Rectangle(Rectangle::upright(center, size))
+    fn boxed(&self, size: [f64; 2], motion: Motion) -> Obstacle {
+        Obstacle {
+            shape: Shape::upright(size.map(|side| self.size_factor * side)),
+            motion,
+            limits: Limits::default(),
+        }
     }
 
-    fn standing(&self, draw: &mut Stream) -> Vec<Mover> {
+    fn standing(&self, draw: &mut Stream) -> Vec<Obstacle> {
         [([1.6, 2.4], [0.5, 1.0]), ([3.4, 4.2], [0.5, 0.8])]
             .into_iter()
             .map(|([low, high], size)| {
                 let center = [draw.uniform(low, high), draw.uniform(-0.6, 0.6)];
-                Mover::standing(self.shape(center, size))
+                self.boxed(size, Motion::at_rest(center))
             })
             .collect()
     }
 
-    fn moving(&self, draw: &mut Stream) -> Vec<Mover> {
+    fn moving(&self, draw: &mut Stream) -> Result<Vec<Obstacle>> {
         let boxes: &[([f64; 2], [f64; 2])] = match self.setting {
             Setting::OneDynamic => &[([2.5, 4.0], [0.8, 0.5])],
             Setting::TwoDynamic => &[([2.5, 4.0], [0.8, 0.5]), ([4.5, 6.5], [0.5, 0.2])],
@@ -119,26 +126,21 @@ impl Layouts {
             let run_in = (speed * time).min(RUN);
             let before = run_in / speed;
             let center = [crossing - along * before, side * run_in];
-            movers.push(Mover {
-                shape: self.shape(center, *size),
-                velocity: [along, -side * speed],
-                start: (time - before).max(0.0),
-                stop: time + RUN / speed,
-            });
+            let between = [(time - before).max(0.0), time + RUN / speed];
+            let motion = Motion::between(center, [along, -side * speed], between)?;
+            movers.push(self.boxed(*size, motion));
             side = -side;
         }
-        movers
+        Ok(movers)
     }
 }
 
 /// Longest run-in of a moving box before it crosses the way of the leader, and its way beyond, in m.
 const RUN: f64 = 3.0;
 
-fn moving_leader() -> Leader {
-    Leader {
-        start: [1.2, 0.0],
-        velocity: [0.3, 0.0],
-        duration: (7.5 - 1.2) / 0.3,
-        visible: None,
-    }
+fn moving_leader() -> Result<Leader> {
+    Ok(Leader {
+        motion: Motion::between([1.2, 0.0], [0.3, 0.0], [0.0, (7.5 - 1.2) / 0.3])?,
+        shape: None,
+    })
 }

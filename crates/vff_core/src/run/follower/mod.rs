@@ -1,7 +1,6 @@
-//! The robot that follows a sound: differential drive, leader, dead reckoning, runs and batches of runs.
+//! The robot that follows a sound: its sensors, leader, runs and batches of runs.
 
 pub mod batch;
-pub mod drive;
 pub mod episode;
 pub mod fix;
 pub mod layouts;
@@ -10,10 +9,9 @@ pub mod scene;
 pub mod settings;
 
 pub use batch::{run_batch, touching_layouts};
-pub use drive::Drive;
-pub use episode::{Contact, Follower, Outcome};
+pub use episode::{Follower, FollowerOutcome, Touch};
 pub use fix::{FixNoise, Fixes};
 pub use layouts::{Layouts, Setting};
-pub use record::{Recording, record};
-pub use scene::{Leader, Mover, Scene};
+pub use record::{FollowerRecord, record};
+pub use scene::{FollowerScene, Leader};
 pub use settings::{Sensors, Settings, VelocityRule};

@@ -1,11 +1,14 @@
 //! Settings of the follower.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::laws::impedance::bank::BankLayout;
 use crate::laws::impedance::{Attraction, BankOptions, Impedance};
-use crate::run::follower::drive::Drive;
+use crate::robots::differential::VelocityDrive;
 use crate::run::follower::fix::Fixes;
-use crate::sensing::sonar::{Beam, Firing, Pose, Ranging, SonarArray};
+use crate::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
+use crate::world::frame::Frame;
 
 /// Longest run, in steps.
 pub const MOST_STEPS: f64 = 1e7;
@@ -65,7 +68,7 @@ impl Sensors {
         not_negative("sensor_forward", self.forward)?;
         not_negative("sensor_spacing", self.spacing)?;
         finite("sensor_fan", self.fan)?;
-        let mount = |side: f64| Pose::at([0.0, side * self.spacing], side * self.fan);
+        let mount = |side: f64| Frame::at([0.0, side * self.spacing], side * self.fan);
         Ok(BankLayout {
             mounts: [mount(-1.0), mount(0.0), mount(1.0)],
         })
@@ -73,10 +76,10 @@ impl Sensors {
 
     /// Origins and fronts of the banks on the robot.
     #[must_use]
-    pub fn banks(&self) -> Vec<Pose> {
-        let bank = |sign: f64| Pose {
-            position: [sign * self.forward, 0.0],
-            direction: [sign, 0.0],
+    pub fn banks(&self) -> Vec<Frame> {
+        let bank = |sign: f64| Frame {
+            position: Vector2::new(sign * self.forward, 0.0),
+            direction: Vector2::new(sign, 0.0),
         };
         let signs: &[f64] = if self.rear { &[1.0, -1.0] } else { &[1.0] };
         signs.iter().map(|sign| bank(*sign)).collect()
@@ -102,7 +105,7 @@ impl Sensors {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The robot.
-    pub drive: Drive,
+    pub drive: VelocityDrive,
     /// Its ultrasonic sensors.
     pub sensors: Sensors,
     /// Its ear.
@@ -122,7 +125,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            drive: Drive::default(),
+            drive: VelocityDrive::default(),
             sensors: Sensors::default(),
             fixes: Fixes::default(),
             attraction: Attraction::default(),

@@ -1,8 +1,8 @@
 //! The avoidance test: eight directions, several times each, in many random layouts.
 
 use crate::error::{Failure, Given, Result};
-use crate::run::skirt::robot::{Course, Moment, Motion, Skirt, run, steps_of};
-use crate::run::skirt::scene::{Scene, SceneOptions};
+use crate::run::skirt::robot::{Course, Moment, Skirt, Travel, run, steps_of};
+use crate::run::skirt::scene::{DiscScene, DiscSceneOptions};
 use crate::run::skirt::states::Direction;
 use numeric::parallel::{Work, each_run};
 use numeric::random::Stream;
@@ -21,9 +21,9 @@ pub struct TestPlan {
     /// Tests of each direction in each of them, every one with discs of its own.
     pub repeats: usize,
     /// How discs are laid out.
-    pub scene: SceneOptions,
+    pub scene: DiscSceneOptions,
     /// How the robot moves.
-    pub motion: Motion,
+    pub motion: Travel,
     /// Seed of discs and noise.
     pub seed: u64,
 }
@@ -82,13 +82,13 @@ impl TestPlan {
     ///
     /// # Errors
     /// There is no room for the discs.
-    pub fn test(&self, skirt: &Skirt, index: usize) -> Result<(f64, Scene, Stream)> {
+    pub fn test(&self, skirt: &Skirt, index: usize) -> Result<(f64, DiscScene, Stream)> {
         // The robot comes from the side that it is to escape to.
         let course = self.direction(index).angle() + std::f64::consts::PI;
         let stream = 2 * index as u64;
         let chassis = skirt.ring().chassis_radius();
         let mut draws = Stream::new(self.seed, stream);
-        let scene = Scene::draw(&self.scene, chassis, course, &mut draws)?;
+        let scene = DiscScene::draw(&self.scene, chassis, course, &mut draws)?;
         Ok((course, scene, Stream::new(self.seed, stream + 1)))
     }
 
@@ -101,7 +101,7 @@ impl TestPlan {
         skirt: &Skirt,
         index: usize,
         watch: impl FnMut(&Moment<'_>),
-    ) -> Result<(TestRow, Scene)> {
+    ) -> Result<(TestRow, DiscScene)> {
         let (course, scene, noise) = self.test(skirt, index)?;
         let course = run(skirt, &self.motion, &scene, course, noise, watch)?;
         let nearest_seen = scene.seen.get(course.nearest).copied().unwrap_or(true);

@@ -2,7 +2,6 @@
 //! corrected. x points east, y north, angles are counterclockwise from x.
 
 pub mod batch;
-pub mod kinematics;
 pub mod ring;
 pub mod robot;
 pub mod scene;
@@ -10,9 +9,8 @@ pub mod states;
 pub mod trigger;
 
 pub use batch::{TestPlan, TestRow, test_batch};
-pub use kinematics::TriOmni;
 pub use ring::Ring;
-pub use robot::{Course, Motion, Skirt, SkirtOptions};
-pub use scene::{Scene, SceneOptions};
+pub use robot::{Course, Skirt, SkirtOptions, Travel};
+pub use scene::{DiscScene, DiscSceneOptions};
 pub use states::{Action, Direction, Policy};
 pub use trigger::{Rule, normal_distances};

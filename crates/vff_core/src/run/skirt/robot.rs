@@ -1,12 +1,16 @@
 //! A robot with a skirt of sensors that fire in turn, among discs.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Result, positive};
 use crate::run::skirt::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
-use crate::run::skirt::scene::Scene;
+use crate::run::skirt::scene::DiscScene;
 use crate::run::skirt::states::{Action, Decider, Policy};
 use crate::run::skirt::trigger::{Rule, trigger_distances};
 use crate::sensing::sonar::ranging::Normals;
-use crate::sensing::sonar::{Beam, Firing, Pose, Ranging, Shape, SonarArray};
+use crate::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
+use crate::world::frame::Frame;
+use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
 /// How the skirt senses and decides.
@@ -53,7 +57,7 @@ impl Skirt {
         let mounts = ring.bearings().iter().map(|bearing| {
             let (sin, cos) = bearing.sin_cos();
             let radius = ring.face_radius();
-            Pose::at([radius * cos, radius * sin], *bearing)
+            Frame::at([radius * cos, radius * sin], *bearing)
         });
         let ranging = Ranging {
             least: options.least_range,
@@ -101,7 +105,7 @@ impl Skirt {
 
 /// How the robot moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct Travel {
     /// Speed, in m/s.
     pub speed: f64,
     /// Largest acceleration, in m/s^2.
@@ -112,7 +116,7 @@ pub struct Motion {
     pub duration: f64,
 }
 
-impl Motion {
+impl Travel {
     /// Passes a motion that can be.
     ///
     /// # Errors
@@ -142,10 +146,10 @@ pub struct Course {
 pub struct Moment<'a> {
     /// Time, in s.
     pub time: f64,
-    /// Pose; its direction is the east of the body.
-    pub pose: Pose,
+    /// Frame; its direction is the east of the body.
+    pub pose: Frame,
     /// Velocity, in m/s.
-    pub velocity: [f64; 2],
+    pub velocity: Vector2<f64>,
     /// Yaw rate, in rad/s.
     pub yaw_rate: f64,
     /// Latest readings, in m.
@@ -161,18 +165,18 @@ pub struct Moment<'a> {
 /// The state became non-finite.
 pub fn run(
     skirt: &Skirt,
-    motion: &Motion,
-    scene: &Scene,
+    motion: &Travel,
+    scene: &DiscScene,
     course: f64,
     noise: Stream,
     mut watch: impl FnMut(&Moment<'_>),
 ) -> Result<Course> {
-    let shapes: Vec<Shape> = scene
+    let shapes: Vec<PlacedShape> = scene
         .discs
         .iter()
         .zip(&scene.seen)
         .filter(|(_, seen)| **seen)
-        .map(|(disc, _)| Shape::Disc(*disc))
+        .map(|(disc, _)| *disc)
         .collect();
     let mut normals = Normals::new(noise);
     let mut readings = vec![skirt.options.most_range; skirt.ring.bearings().len()];
@@ -225,13 +229,13 @@ pub fn steps_of(duration: f64, period: f64) -> usize {
 }
 
 struct Robot {
-    pose: Pose,
+    pose: Frame,
     heading: f64,
-    velocity: [f64; 2],
+    velocity: Vector2<f64>,
     yaw_rate: f64,
     /// Direction of motion in the frame of the body, in rad.
     direction: f64,
-    target: [f64; 2],
+    target: Vector2<f64>,
 }
 
 impl Robot {
@@ -239,55 +243,49 @@ impl Robot {
     fn starting(course: f64) -> Self {
         let (sin, cos) = course.sin_cos();
         Self {
-            pose: Pose::at([0.0, 0.0], 0.0),
+            pose: Frame::at([0.0, 0.0], 0.0),
             heading: 0.0,
-            velocity: [0.0, 0.0],
+            velocity: Vector2::zeros(),
             yaw_rate: 0.0,
             direction: course,
-            target: [cos, sin],
+            target: Vector2::new(cos, sin),
         }
     }
 
     /// One period with the acceleration limited; the robot turns only where it spins.
-    fn advance(&mut self, action: Action, motion: &Motion, period: f64) {
+    fn advance(&mut self, action: Action, motion: &Travel, period: f64) {
         let spins = action == Action::Spin;
         self.yaw_rate = if spins { motion.spin_rate } else { 0.0 };
         if spins {
             self.heading += self.yaw_rate * period;
-            self.pose = Pose::at(self.pose.position, self.heading);
+            self.pose = Frame::at(self.pose.position.into(), self.heading);
         }
         if let Action::Move(direction) = action {
             self.direction = direction.angle();
         }
         if action != Action::Keep {
             let (sin, cos) = (self.heading + self.direction).sin_cos();
-            self.target = [cos, sin];
+            self.target = Vector2::new(cos, sin);
         }
         let speed = if spins { 0.0 } else { motion.speed };
-        let change = [
-            speed * self.target[0] - self.velocity[0],
-            speed * self.target[1] - self.velocity[1],
-        ];
-        let size = (change[0] * change[0] + change[1] * change[1]).sqrt();
+        let change = self.target * speed - self.velocity;
+        let size = change.dot(&change).sqrt();
         let most = motion.acceleration * period;
         let share = if size > most { most / size } else { 1.0 };
-        for (axis, each) in change.iter().enumerate() {
-            self.velocity[axis] += share * each;
-            self.pose.position[axis] += self.velocity[axis] * period;
-        }
+        self.velocity += change * share;
+        self.pose.position += self.velocity * period;
     }
 
     /// Clearance of the nearest disc.
-    fn nearest(&self, scene: &Scene, chassis_radius: f64) -> Course {
+    fn nearest(&self, scene: &DiscScene, chassis_radius: f64) -> Course {
         let mut found = Course {
             min_clearance: f64::INFINITY,
             nearest: 0,
             contact_time: None,
         };
         for (index, disc) in scene.discs.iter().enumerate() {
-            let x = disc.center[0] - self.pose.position[0];
-            let y = disc.center[1] - self.pose.position[1];
-            let clearance = (x * x + y * y).sqrt() - disc.radius - chassis_radius;
+            let to = disc.center - self.pose.position;
+            let clearance = to.dot(&to).sqrt() - disc.shape.inner_radius() - chassis_radius;
             // A state that is no number must not pass for a distance.
             if clearance < found.min_clearance || clearance.is_nan() {
                 found.min_clearance = clearance;

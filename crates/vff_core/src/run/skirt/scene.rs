@@ -1,7 +1,9 @@
 //! Random layouts of discs: one on the course, the others anywhere.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::sensing::sonar::Disc;
+use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
 /// Most places that are tried for a disc.
@@ -9,7 +11,7 @@ const MOST_TRIES: usize = 10_000;
 
 /// How discs are laid out. The start is the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SceneOptions {
+pub struct DiscSceneOptions {
     /// Number of discs, the one on the course included.
     pub obstacles: usize,
     /// Range of their radii, in m.
@@ -28,7 +30,7 @@ pub struct SceneOptions {
     pub unseen_share: f64,
 }
 
-impl Default for SceneOptions {
+impl Default for DiscSceneOptions {
     fn default() -> Self {
         Self {
             obstacles: 8,
@@ -43,7 +45,7 @@ impl Default for SceneOptions {
     }
 }
 
-impl SceneOptions {
+impl DiscSceneOptions {
     /// Passes options that can be, for a robot of a radius in m.
     ///
     /// # Errors
@@ -83,20 +85,20 @@ fn ascending(name: &str, range: [f64; 2]) -> Result<()> {
 
 /// Discs of one test.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub struct DiscScene {
     /// The discs; the first one is on the course.
-    pub discs: Vec<Disc>,
+    pub discs: Vec<PlacedShape>,
     /// Whether the sensors can see them.
     pub seen: Vec<bool>,
 }
 
-impl Scene {
+impl DiscScene {
     /// Draws the discs of a test with a course at an angle in rad.
     ///
     /// # Errors
     /// There is no room for so many discs.
     pub fn draw(
-        options: &SceneOptions,
+        options: &DiscSceneOptions,
         chassis_radius: f64,
         course: f64,
         stream: &mut Stream,
@@ -105,10 +107,8 @@ impl Scene {
         let ahead = stream.uniform(options.course_distance[0], options.course_distance[1]);
         let aside = stream.uniform(-options.course_offset, options.course_offset);
         let (sin, cos) = course.sin_cos();
-        let mut discs = vec![Disc {
-            center: [ahead * cos - aside * sin, ahead * sin + aside * cos],
-            radius: stream.uniform(least, most),
-        }];
+        let center = [ahead * cos - aside * sin, ahead * sin + aside * cos];
+        let mut discs = vec![PlacedShape::disc(center, stream.uniform(least, most))];
         let mut seen = vec![stream.unit() >= options.unseen_share];
         let clear = chassis_radius + options.start_clearance;
         let mut tries = 0;
@@ -118,14 +118,14 @@ impl Scene {
                 stream.uniform(place(), options.half_size),
                 stream.uniform(place(), options.half_size),
             ];
-            let radius = stream.uniform(least, most);
-            let far = length(center) - radius > clear;
+            let disc = PlacedShape::disc(center, stream.uniform(least, most));
+            let far = length(disc.center) - disc.shape.inner_radius() > clear;
             if far
                 && discs
                     .iter()
-                    .all(|other| gap(center, radius, other) >= options.spacing)
+                    .all(|other| gap(&disc, other) >= options.spacing)
             {
-                discs.push(Disc { center, radius });
+                discs.push(disc);
                 seen.push(stream.unit() >= options.unseen_share);
                 tries = 0;
             } else if tries == MOST_TRIES {
@@ -140,35 +140,37 @@ impl Scene {
     }
 }
 
-fn gap(center: [f64; 2], radius: f64, other: &Disc) -> f64 {
-    let between = [center[0] - other.center[0], center[1] - other.center[1]];
-    length(between) - radius - other.radius
+/// Distance between two discs, in m.
+fn gap(disc: &PlacedShape, other: &PlacedShape) -> f64 {
+    let between = disc.center - other.center;
+    length(between) - disc.shape.inner_radius() - other.shape.inner_radius()
 }
 
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
+fn length(vector: Vector2<f64>) -> f64 {
+    vector.dot(&vector).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Scene, SceneOptions, gap, length};
+    use super::{DiscScene, DiscSceneOptions, gap, length};
     use numeric::random::Stream;
 
     #[test]
     fn discs_lie_where_they_may() {
-        let options = SceneOptions::default().checked(0.33).unwrap();
+        let options = DiscSceneOptions::default().checked(0.33).unwrap();
         for index in 0..200 {
-            let scene = Scene::draw(&options, 0.33, 1.0, &mut Stream::new(5, index)).unwrap();
+            let scene = DiscScene::draw(&options, 0.33, 1.0, &mut Stream::new(5, index)).unwrap();
             assert_eq!((scene.discs.len(), scene.seen.len()), (8, 8));
             let (sin, cos) = 1.0_f64.sin_cos();
-            let [x, y] = scene.discs[0].center;
+            let [x, y]: [f64; 2] = scene.discs[0].center.into();
             assert!((1.2..=2.0).contains(&(x * cos + y * sin)));
             assert!((y * cos - x * sin).abs() <= 0.3 + 1e-12);
             for (place, disc) in scene.discs.iter().enumerate() {
-                assert!((0.05..=0.25).contains(&disc.radius));
-                assert!(place == 0 || length(disc.center) - disc.radius > 1.13);
+                let radius = disc.shape.inner_radius();
+                assert!((0.05..=0.25).contains(&radius));
+                assert!(place == 0 || length(disc.center) - radius > 1.13);
                 for other in &scene.discs[..place] {
-                    assert!(gap(disc.center, disc.radius, other) >= 0.1);
+                    assert!(gap(disc, other) >= 0.1);
                 }
             }
         }
@@ -176,15 +178,15 @@ mod tests {
 
     #[test]
     fn the_share_of_unseen_discs_changes_nothing_else() {
-        let with = SceneOptions {
+        let with = DiscSceneOptions {
             unseen_share: 0.4,
-            ..SceneOptions::default()
+            ..DiscSceneOptions::default()
         };
         let mut hidden = 0;
         for index in 0..100 {
             let draw =
-                |options| Scene::draw(options, 0.33, 0.0, &mut Stream::new(1, index)).unwrap();
-            let (one, other) = (draw(&SceneOptions::default()), draw(&with));
+                |options| DiscScene::draw(options, 0.33, 0.0, &mut Stream::new(1, index)).unwrap();
+            let (one, other) = (draw(&DiscSceneOptions::default()), draw(&with));
             assert_eq!(one.discs, other.discs);
             hidden += other.seen.iter().filter(|seen| !**seen).count();
         }
@@ -193,34 +195,34 @@ mod tests {
 
     #[test]
     fn a_full_area_is_an_error_not_a_loop() {
-        let crowded = SceneOptions {
+        let crowded = DiscSceneOptions {
             obstacles: 500,
-            ..SceneOptions::default()
+            ..DiscSceneOptions::default()
         };
-        assert!(Scene::draw(&crowded, 0.33, 0.0, &mut Stream::new(0, 0)).is_err());
+        assert!(DiscScene::draw(&crowded, 0.33, 0.0, &mut Stream::new(0, 0)).is_err());
     }
 
     #[test]
     fn options_that_cannot_be_are_refused() {
-        let base = SceneOptions::default();
+        let base = DiscSceneOptions::default();
         for bad in [
-            SceneOptions {
+            DiscSceneOptions {
                 obstacles: 0,
                 ..base
             },
-            SceneOptions {
+            DiscSceneOptions {
                 radius: [0.2, 0.1],
                 ..base
             },
-            SceneOptions {
+            DiscSceneOptions {
                 unseen_share: 1.5,
                 ..base
             },
-            SceneOptions {
+            DiscSceneOptions {
                 course_distance: [0.5, 2.0],
                 ..base
             },
-            SceneOptions {
+            DiscSceneOptions {
                 half_size: f64::NAN,
                 ..base
             },

@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
-use crate::error::{Failure, Given, Result, finite_pair, positive};
-use crate::sensing::sonar::beam::{Beam, Pose};
+use nalgebra::Vector2;
+
+use crate::error::{Failure, Given, Result};
+use crate::sensing::sonar::beam::Beam;
 use crate::sensing::sonar::ranging::{Normals, Ranging};
-use crate::sensing::sonar::shapes::Shape;
+use crate::world::frame::Frame;
+use crate::world::shape::PlacedShape;
 
 /// Which sensors fire in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,13 +34,11 @@ impl Firing {
     }
 }
 
-/// Place of a sensor on the robot, x forward and y left: position in m, unit vector of the axis.
-pub type Mount = Pose;
-
 /// Equal sensors on one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SonarArray {
-    mounts: Vec<Mount>,
+    /// Places on the robot, x forward and y left; beams lie along their x axes.
+    mounts: Vec<Frame>,
     beam: Beam,
     ranging: Ranging,
     firing: Firing,
@@ -48,7 +49,7 @@ impl SonarArray {
     ///
     /// # Errors
     /// There is no sensor, or a place or a limit cannot be.
-    pub fn new(mounts: Vec<Mount>, beam: Beam, ranging: Ranging, firing: Firing) -> Result<Self> {
+    pub fn new(mounts: Vec<Frame>, beam: Beam, ranging: Ranging, firing: Firing) -> Result<Self> {
         if mounts.is_empty() {
             let given = Given::Count(0);
             let rule = "hold at least one sensor";
@@ -56,10 +57,7 @@ impl SonarArray {
         }
         for (index, mount) in mounts.iter().enumerate() {
             let owner = format!("sensors[{index}]");
-            finite_pair("position", mount.position)
-                .and_then(|_| finite_pair("direction", mount.direction))
-                .and_then(|[x, y]| positive("length of direction", x.hypot(y)))
-                .map_err(|error| error.within(&owner))?;
+            mount.checked().map_err(|error| error.within(&owner))?;
         }
         Ok(Self {
             mounts,
@@ -71,7 +69,7 @@ impl SonarArray {
 
     /// Places of the sensors.
     #[must_use]
-    pub fn mounts(&self) -> &[Mount] {
+    pub fn mounts(&self) -> &[Frame] {
         &self.mounts
     }
 
@@ -90,7 +88,7 @@ impl SonarArray {
     /// Reading of one sensor without noise, in m; infinite without echo.
     #[inline]
     #[must_use]
-    pub fn echo(&self, body: &Pose, sensor: usize, shapes: &[Shape]) -> f64 {
+    pub fn echo(&self, body: &Frame, sensor: usize, shapes: &[PlacedShape]) -> f64 {
         let Some(mount) = self.mounts.get(sensor) else {
             return f64::INFINITY;
         };
@@ -112,8 +110,8 @@ impl SonarArray {
     #[inline]
     pub fn measure(
         &self,
-        body: &Pose,
-        shapes: &[Shape],
+        body: &Frame,
+        shapes: &[PlacedShape],
         step: usize,
         readings: &mut [f64],
         noise: &mut Normals,
@@ -130,7 +128,7 @@ impl SonarArray {
 
     /// Half of the way from another sensor to a point of its beam and on to this one: the
     /// shortest of those that this one can see.
-    fn overheard(&self, listener: &Pose, speaker: &Pose, shapes: &[Shape]) -> f64 {
+    fn overheard(&self, listener: &Frame, speaker: &Frame, shapes: &[PlacedShape]) -> f64 {
         let limit = (0.5 * self.beam.width()).cos();
         let mut least = f64::INFINITY;
         for ray in self.beam.rays() {
@@ -139,14 +137,11 @@ impl SonarArray {
             if !out.is_finite() {
                 continue;
             }
-            let back = [
-                speaker.position[0] + out * direction[0] - listener.position[0],
-                speaker.position[1] + out * direction[1] - listener.position[1],
-            ];
-            let way = back[0].hypot(back[1]);
-            let unit = [back[0] / way, back[1] / way];
+            let back = speaker.position + direction * out - listener.position;
+            let way = back.x.hypot(back.y);
+            let unit = back / way;
             let seen = way > 0.0
-                && listener.inward(unit)[0] >= limit
+                && listener.inward(unit).x >= limit
                 && cast(shapes, listener.position, unit) >= way * (1.0 - BEHIND);
             if seen {
                 least = least.min(0.5 * (out + way));
@@ -160,7 +155,7 @@ impl SonarArray {
 const BEHIND: f64 = 1e-9;
 
 /// Distance along a ray to the first shape, in m.
-fn cast(shapes: &[Shape], from: [f64; 2], direction: [f64; 2]) -> f64 {
+fn cast(shapes: &[PlacedShape], from: Vector2<f64>, direction: Vector2<f64>) -> f64 {
     shapes
         .iter()
         .map(|shape| shape.cast(from, direction))

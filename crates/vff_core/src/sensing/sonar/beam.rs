@@ -1,59 +1,14 @@
 //! Beam of an ultrasonic sensor: a fan of rays.
 
+use nalgebra::Vector2;
+
 use crate::error::{Failure, Given, Result};
-use crate::sensing::sonar::shapes::Shape;
+use crate::world::frame::Frame;
+use crate::world::shape::PlacedShape;
 use numeric::error::at_most;
 
 /// Most rays of a beam.
 pub const MOST_RAYS: usize = 100_000;
-
-/// Where a sensor is, and where it looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Position, in m.
-    pub position: [f64; 2],
-    /// Unit vector of its axis.
-    pub direction: [f64; 2],
-}
-
-impl Pose {
-    /// At a position, with its axis at an angle in rad from x.
-    #[must_use]
-    pub fn at(position: [f64; 2], angle: f64) -> Self {
-        let (sin, cos) = angle.sin_cos();
-        Self {
-            position,
-            direction: [cos, sin],
-        }
-    }
-
-    /// A vector given along and to the left of this axis.
-    #[inline]
-    #[must_use]
-    pub fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [c, s] = self.direction;
-        [c * x - s * y, s * x + c * y]
-    }
-
-    /// Components of a vector along and to the left of this axis.
-    #[inline]
-    #[must_use]
-    pub fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [c, s] = self.direction;
-        [c * x + s * y, c * y - s * x]
-    }
-
-    /// Pose of something that is mounted on this one.
-    #[inline]
-    #[must_use]
-    pub fn carrying(&self, mounted: &Self) -> Self {
-        let [x, y] = self.outward(mounted.position);
-        Self {
-            position: [self.position[0] + x, self.position[1] + y],
-            direction: self.outward(mounted.direction),
-        }
-    }
-}
 
 /// Rays evenly spread over the width of a beam; a single ray lies on its axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,9 +16,9 @@ pub struct Beam {
     /// Full angle, in rad.
     width: f64,
     /// Unit vectors of the rays from right to left, x along the axis.
-    rays: Vec<[f64; 2]>,
+    rays: Vec<Vector2<f64>>,
     /// Normals of the right and the left edge, outward.
-    edges: [[f64; 2]; 2],
+    edges: [Vector2<f64>; 2],
 }
 
 impl Beam {
@@ -90,13 +45,13 @@ impl Beam {
                 (2.0 * index as f64 - gaps) / gaps
             };
             let (sin, cos) = (0.5 * width * share).sin_cos();
-            [cos, sin]
+            Vector2::new(cos, sin)
         };
         let (sin, cos) = (0.5 * width).sin_cos();
         Ok(Self {
             width,
             rays: (0..rays).map(ray).collect(),
-            edges: [[-sin, -cos], [-sin, cos]],
+            edges: [Vector2::new(-sin, -cos), Vector2::new(-sin, cos)],
         })
     }
 
@@ -108,14 +63,14 @@ impl Beam {
 
     /// Unit vectors of the rays from right to left, x along the axis.
     #[must_use]
-    pub fn rays(&self) -> &[[f64; 2]] {
+    pub fn rays(&self) -> &[Vector2<f64>] {
         &self.rays
     }
 
     /// Distance along every ray, in m; infinite where nothing is met.
     #[must_use]
-    pub fn every_ray(&self, pose: &Pose, shapes: &[Shape]) -> Vec<f64> {
-        let along = |ray: &[f64; 2]| {
+    pub fn every_ray(&self, pose: &Frame, shapes: &[PlacedShape]) -> Vec<f64> {
+        let along = |ray: &Vector2<f64>| {
             let direction = pose.outward(*ray);
             shapes
                 .iter()
@@ -132,7 +87,7 @@ impl Beam {
     /// the edges of the beam.
     #[inline]
     #[must_use]
-    pub fn nearest(&self, pose: &Pose, shapes: &[Shape], reach: f64) -> f64 {
+    pub fn nearest(&self, pose: &Frame, shapes: &[PlacedShape], reach: f64) -> f64 {
         let mut least = reach;
         let mut found = f64::INFINITY;
         if shapes.is_empty() {
@@ -154,9 +109,9 @@ impl Beam {
 
     /// As `nearest`, of one shape; may be farther than the reach.
     #[inline]
-    fn nearest_of(&self, pose: &Pose, shape: &Shape, reach: f64) -> f64 {
+    fn nearest_of(&self, pose: &Frame, shape: &PlacedShape, reach: f64) -> f64 {
         let to = shape.nearest(pose.position);
-        let square = to[0] * to[0] + to[1] * to[1];
+        let square = to.dot(&to);
         if square > reach * reach {
             return f64::INFINITY;
         }
@@ -164,11 +119,9 @@ impl Beam {
             return 0.0;
         }
         let to = pose.inward(to);
-        let cast = |ray: &[f64; 2]| shape.cast(pose.position, pose.outward(*ray));
-        let beside = if to[0] > 0.0 {
-            let right = self
-                .rays
-                .partition_point(|ray| ray[0] * to[1] - ray[1] * to[0] > 0.0);
+        let cast = |ray: &Vector2<f64>| shape.cast(pose.position, pose.outward(*ray));
+        let beside = if to.x > 0.0 {
+            let right = self.rays.partition_point(|ray| ray.perp(&to) > 0.0);
             [right.checked_sub(1), Some(right)]
         } else {
             // Behind the sensor either edge may be the nearer one.

@@ -1,12 +1,12 @@
-//! Virtual impedance as a navigation law with ideal sensing: the place where both cores meet.
+//! Virtual impedance as a navigation law.
 
-use numeric::error::Result;
-use vff_core::lanes::{Planar, Real, Vector2};
-use vff_core::laws::impedance::attraction::Attraction;
-use vff_core::laws::impedance::law::{Impedance, Prepared};
-use vff_core::laws::{Command, Law, LawFamily, Situation};
-use vff_core::world::geometry::RobotState;
-use vff_core::world::scenario::Scenario;
+use crate::error::Result;
+use crate::lanes::{Planar, Real, Vector2};
+use crate::laws::impedance::attraction::Attraction;
+use crate::laws::impedance::law::{Impedance, Prepared};
+use crate::laws::{Command, Law, LawFamily, Situation};
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
 
 /// Numbers that a search may choose, in their order.
 const GAIN_NAMES: [&str; 6] = [
@@ -65,7 +65,7 @@ impl ImpedanceFamily {
 }
 
 impl LawFamily for ImpedanceFamily {
-    type Law<R: Real, const RECORD: bool> = Impeded;
+    type Law<R: Real, const RECORD: bool> = ImpedanceLaw;
 
     fn gain_names(&self) -> &'static [&'static str] {
         &GAIN_NAMES
@@ -95,16 +95,16 @@ impl LawFamily for ImpedanceFamily {
         &self,
         gains: &[R],
         scenario: &Scenario,
-    ) -> Result<Impeded> {
+    ) -> Result<ImpedanceLaw> {
         let lane = |lane: usize| -> Result<_> {
             let gains: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
             let law = self.with(&gains)?;
             Ok((law.impedance.prepared(), law.attraction))
         };
         let contacts = scenario.obstacles().iter();
-        Ok(Impeded {
+        Ok(ImpedanceLaw {
             lanes: (0..R::WIDTH).map(lane).collect::<Result<_>>()?,
-            goal: scenario.goal(),
+            goal: scenario.goal().into(),
             contacts: contacts.map(|placed| placed.contact_distance).collect(),
             reach: self.reach,
             least_cosine: self.view.cos(),
@@ -113,10 +113,10 @@ impl LawFamily for ImpedanceFamily {
 }
 
 /// The law at work in one scenario.
-pub struct Impeded {
+pub struct ImpedanceLaw {
     /// Repulsion and attraction of every lane.
     lanes: Vec<(Prepared, Attraction)>,
-    goal: [f64; 2],
+    goal: Vector2<f64>,
     /// Distances at which robot and obstacles touch, in m.
     contacts: Vec<f64>,
     reach: f64,
@@ -124,42 +124,37 @@ pub struct Impeded {
     least_cosine: f64,
 }
 
-impl Impeded {
+impl ImpedanceLaw {
     /// Force of one lane in N.
-    fn force(&self, lane: usize, situation: &Situation<'_, f64>) -> [f64; 2] {
+    fn force(&self, lane: usize, situation: &Situation<'_, f64>) -> Vector2<f64> {
         let (law, attraction) = &self.lanes[lane];
-        let [position, velocity] =
-            [situation.robot.position, situation.robot.velocity].map(|vector| vector.lane(0));
-        let offset = [self.goal[0] - position[0], self.goal[1] - position[1]];
+        let RobotState { position, velocity } = situation.robot;
+        let offset = self.goal - position;
         let pull = attraction.force(offset, velocity);
         // A robot that stands looks to where it is going.
-        let speed = velocity[0].hypot(velocity[1]);
+        let speed = velocity.x.hypot(velocity.y);
         let ahead = if speed > STANDING { velocity } else { offset };
-        let ahead = (ahead, ahead[0].hypot(ahead[1]));
+        let length = ahead.x.hypot(ahead.y);
         let bodies = situation.bodies.iter().zip(&self.contacts);
         let push = law.force_of_points(bodies.filter_map(|(body, contact)| {
-            let from_obstacle = body.offset(situation.robot.position);
+            let from_obstacle = body.offset(position);
             let distance = from_obstacle.distance_squared.sqrt();
             let gap = (distance - contact).max(TOUCHING);
             if !body.state.present || gap > self.reach || distance == 0.0 {
                 return None;
             }
-            let [x, y] = from_obstacle.vector.lane(0);
-            let cosine = -(x * ahead.0[0] + y * ahead.0[1]);
-            if cosine < self.least_cosine * distance * ahead.1 {
+            let away = from_obstacle.vector;
+            if -away.dot(&ahead) < self.least_cosine * distance * length {
                 return None;
             }
-            let moving = body.state.velocity;
-            Some((
-                [-x * (gap / distance), -y * (gap / distance)],
-                [moving[0] - velocity[0], moving[1] - velocity[1]],
-            ))
+            let moving = Vector2::from(body.state.velocity);
+            Some((-away * (gap / distance), moving - velocity))
         }));
-        [pull[0] + push[0], pull[1] + push[1]]
+        pull + push
     }
 }
 
-impl<R: Real> Law<R> for Impeded {
+impl<R: Real> Law<R> for ImpedanceLaw {
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut force = Vector2::<R>::zeros();
         for lane in 0..R::WIDTH {
@@ -167,7 +162,7 @@ impl<R: Real> Law<R> for Impeded {
                 position: Vector2::splat(situation.robot.position.lane(lane)),
                 velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
             };
-            let [x, y] = self.force(
+            let own = self.force(
                 lane,
                 &Situation {
                     time: situation.time,
@@ -178,7 +173,7 @@ impl<R: Real> Law<R> for Impeded {
                     stop: situation.stop,
                 },
             );
-            force = Vector2::new(force.x.replace(lane, x), force.y.replace(lane, y));
+            force = Vector2::new(force.x.replace(lane, own.x), force.y.replace(lane, own.y));
         }
         Command {
             force,

@@ -1,4 +1,5 @@
-//! Three omni-wheels at 90, 210 and 330 deg: (11) to (14) with signs and columns restored.
+//! Three omni-wheels at 90, 210 and 330 deg: (11) to (14) of Gussu and Lin (2017) with signs and
+//! columns restored.
 
 use crate::error::{Failure, Given, Result, positive};
 

@@ -1,11 +1,14 @@
-//! Differential drive: wheels, limits, motion over one step.
+//! Two wheels steered toward a velocity: Avi (2019).
 
+use nalgebra::Vector2;
+
+use super::drive::{Integration, Twist};
 use crate::error::{Result, not_negative, positive};
-use crate::sensing::sonar::Pose;
+use crate::world::frame::Frame;
 
-/// A robot with two driven wheels that does not go back.
+/// A robot with two driven wheels that turns toward a wanted velocity and never drives backward.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drive {
+pub struct VelocityDrive {
     /// Mass `M_s` in the virtual impedance, in kg.
     pub mass: f64,
     /// Radius of the disc that models the body, in m.
@@ -18,9 +21,11 @@ pub struct Drive {
     pub heading_gain: f64,
     /// Virtual speed below which the robot does not turn, in m/s.
     pub least_speed: f64,
+    /// How it moves over a step; the chord is that of the source.
+    pub integration: Integration,
 }
 
-impl Default for Drive {
+impl Default for VelocityDrive {
     fn default() -> Self {
         Self {
             mass: 3.94,
@@ -29,12 +34,13 @@ impl Default for Drive {
             wheel_speed: 0.72,
             heading_gain: 4.0,
             least_speed: 0.02,
+            integration: Integration::Chord,
         }
     }
 }
 
-impl Drive {
-    /// Passes numbers that can be.
+impl VelocityDrive {
+    /// Returns the drive if its numbers are in range.
     ///
     /// # Errors
     /// A number is not finite, or out of range.
@@ -52,14 +58,14 @@ impl Drive {
     /// of the robot: `omega = gain e`, `v = |V| max(cos e, 0)`, scaled together to the limit.
     #[inline]
     #[must_use]
-    pub fn wheels(&self, [forward, left]: [f64; 2]) -> [f64; 2] {
-        let speed = (forward * forward + left * left).sqrt();
+    pub fn wheels(&self, wanted: Vector2<f64>) -> [f64; 2] {
+        let speed = wanted.dot(&wanted).sqrt();
         let turning = if speed < self.least_speed {
             0.0
         } else {
-            self.heading_gain * left.atan2(forward)
+            self.heading_gain * wanted.y.atan2(wanted.x)
         };
-        let ahead = forward.max(0.0);
+        let ahead = wanted.x.max(0.0);
         let difference = 0.5 * self.wheel_base * turning;
         let wheels = [ahead - difference, ahead + difference];
         let fastest = wheels[0].abs().max(wheels[1].abs());
@@ -71,22 +77,20 @@ impl Drive {
         }
     }
 
-    /// Pose after wheels at (left, right) m/s have turned for a step in s: along the chord of the
-    /// arc, with its length taken for that of the arc.
+    /// Motion of the body with wheels at (left, right) m/s.
     #[inline]
     #[must_use]
-    pub fn moved(&self, pose: &Pose, [left, right]: [f64; 2], step: f64) -> Pose {
-        let way = 0.5 * (left + right) * step;
-        let turn = (right - left) / self.wheel_base * step;
-        let (sin, cos) = (0.5 * turn).sin_cos();
-        let half = Pose {
-            position: pose.position,
-            direction: pose.outward([cos, sin]),
-        };
-        let [x, y] = half.direction;
-        Pose {
-            position: [pose.position[0] + way * x, pose.position[1] + way * y],
-            direction: half.outward([cos, sin]),
+    pub fn twist(&self, [left, right]: [f64; 2]) -> Twist {
+        Twist {
+            speed: 0.5 * (left + right),
+            turn_rate: (right - left) / self.wheel_base,
         }
+    }
+
+    /// Frame of the robot after wheels at (left, right) m/s have turned for a step in s.
+    #[inline]
+    #[must_use]
+    pub fn moved(&self, frame: &Frame, wheels: [f64; 2], step: f64) -> Frame {
+        self.twist(wheels).moved(frame, step, self.integration)
     }
 }
