@@ -41,6 +41,7 @@ __all__ = [
     "OmniKinematics",
     "ReferencePath",
     "Scenario",
+    "Sensor",
     "SetPoint",
     "SkirtMotion",
     "SkirtScene",
@@ -48,6 +49,7 @@ __all__ = [
     "Sonar",
     "Tracking",
     "TriOmniKinematics",
+    "Ultrasonic",
     "UltrasonicSkirt",
     "VirtualImpedance",
     "VirtualTorque",
@@ -1153,6 +1155,7 @@ class Follower:
         cls,
         *,
         sonar: Sonar,
+        obstacle_vision: Vision | None,
         drive: Sequence[float],
         attraction: _Triple,
         fix_interval: float,
@@ -1245,8 +1248,7 @@ class AsBuilt:
         kinematics: OmniKinematics,
         slip: Slip,
         tracking: Tracking | VirtualTorque,
-        robot_vision: Vision | None,
-        obstacle_vision: Vision | None,
+        sensors: Sequence[Sensor],
         position_share: float,
         heading_share: float,
         mark_distance: float,
@@ -1406,6 +1408,42 @@ class Vision:
     ) -> Self: ...
     def observe(self, time: _Array, position: _Array, seed: int, stream: int) -> _ObservationFields:
         """Frames of a body on a known path, and what is known at the times of the path."""
+
+@final
+class Ultrasonic:
+    """Ultrasonic array on a robot."""
+
+    def __new__(
+        cls,
+        *,
+        mounts: Sequence[Sequence[float]],
+        beam_width: float,
+        rays: int,
+        least_range: float,
+        most_range: float,
+        range_noise: float,
+        firing: str,
+        max_speed: float,
+        assumed_speed: float,
+    ) -> Self: ...
+    def regions(self, scenario: Scenario) -> _Triple:
+        """Critical and active radius of an echo, and what all sensors reach, in m."""
+
+@final
+class Sensor:
+    """Sensor of a robot, of any kind."""
+
+    @staticmethod
+    def robot_camera(vision: Vision) -> Sensor:
+        """Sees the robot."""
+
+    @staticmethod
+    def obstacle_camera(vision: Vision) -> Sensor:
+        """Sees the obstacles that move."""
+
+    @staticmethod
+    def ultrasonic(array: Ultrasonic) -> Sensor:
+        """Rides on the robot."""
 
 def steady_gains(*, acceleration_deviation: float, position_deviation: float, period: float) -> _Pair:
     """Steady gains of a Kalman filter."""

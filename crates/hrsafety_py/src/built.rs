@@ -17,7 +17,7 @@ use crate::errors::InvalidParameterError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{trajectory_fields, weights_of};
-use crate::sensing::Vision;
+use crate::sensing::Sensor;
 use crate::watch::{Report, watched_law};
 use crate::wheels::{OmniKinematics, Slip, WheelDrive};
 
@@ -28,7 +28,7 @@ pub struct AsBuilt(Built);
 #[pymethods]
 impl AsBuilt {
     #[new]
-    #[pyo3(signature = (*, wheels, kinematics, slip, tracking, robot_vision, obstacle_vision,
+    #[pyo3(signature = (*, wheels, kinematics, slip, tracking, sensors,
         position_share, heading_share, mark_distance))]
     #[allow(clippy::too_many_arguments)] // keyword-only in Python
     #[allow(clippy::needless_pass_by_value)] // references to Python objects
@@ -37,8 +37,7 @@ impl AsBuilt {
         kinematics: PyRef<'_, OmniKinematics>,
         slip: PyRef<'_, Slip>,
         tracking: &Bound<'_, PyAny>,
-        robot_vision: Option<PyRef<'_, Vision>>,
-        obstacle_vision: Option<PyRef<'_, Vision>>,
+        sensors: Vec<PyRef<'_, Sensor>>,
         position_share: f64,
         heading_share: f64,
         mark_distance: f64,
@@ -52,8 +51,7 @@ impl AsBuilt {
             omni: kinematics.0,
             slip: slip.0,
             steered,
-            robot_vision: robot_vision.map(|vision| vision.0),
-            obstacle_vision: obstacle_vision.map(|vision| vision.0),
+            sensors: sensors.iter().map(|sensor| sensor.0.clone()).collect(),
             fusion: PoseFusion {
                 position: position_share,
                 heading: heading_share,

@@ -121,7 +121,9 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, simulate};
     #[pymodule_export]
-    use crate::sensing::{Camera, ErrorSource, Estimator, Vision, steady_gains};
+    use crate::sensing::{
+        Camera, ErrorSource, Estimator, Sensor, Ultrasonic, Vision, steady_gains,
+    };
     #[pymodule_export]
     use crate::wheels::{
         DifferentialKinematics, OmniKinematics, Slip, WheelDrive, differential_wheels,

@@ -1,18 +1,20 @@
 //! Sensing: conversion of arguments and results.
 
-use numeric::error::Failure;
+use numeric::error::{Failure, Given};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::sensing::measurement::Distribution;
+use vff_core::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
 use vff_core::sensing::{
-    self, CameraPose, Estimate, Lens, LinearizedCamera, PARAMETERS, PositionError, Track,
-    VisionSensor,
+    self, CameraPose, Estimate, Lens, LinearizedCamera, PARAMETERS, PositionError, SensorOptions,
+    Track, VisionSensor,
 };
+use vff_core::world::frame::Frame;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::parameters::word;
+use crate::parameters::{Scenario, word};
 use crate::watch::{Control, Report, watched};
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -278,6 +280,96 @@ fn observed(
         }
     }
     Ok((estimates, exposed, measured))
+}
+
+/// Ultrasonic array on a robot.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Ultrasonic(pub sensing::Ultrasonic);
+
+#[pymethods]
+impl Ultrasonic {
+    #[new]
+    #[pyo3(signature = (*, mounts, beam_width, rays, least_range, most_range, range_noise, firing,
+        max_speed, assumed_speed))]
+    #[allow(clippy::too_many_arguments)] // keyword-only in Python
+    fn new(
+        mounts: Vec<[f64; 3]>,
+        beam_width: f64,
+        rays: usize,
+        least_range: f64,
+        most_range: f64,
+        range_noise: f64,
+        firing: &str,
+        max_speed: f64,
+        assumed_speed: f64,
+    ) -> CoreResult<Self> {
+        let ranging = Ranging {
+            least: least_range,
+            most: most_range,
+            noise: range_noise,
+            ..Ranging::default()
+        };
+        let mounts = mounts
+            .into_iter()
+            .map(|[x, y, axis]| Frame::at([x, y], axis));
+        let beam = Beam::new(beam_width, rays)?;
+        let array = SonarArray::new(mounts.collect(), beam, ranging, firing_of(firing)?)?;
+        let ultrasonic = sensing::Ultrasonic {
+            array,
+            max_speed,
+            assumed_speed,
+        };
+        Ok(Self(ultrasonic.checked()?))
+    }
+
+    /// Critical and active radius of an echo in a scenario, and the distance from the center of the
+    /// robot that all sensors reach, in m.
+    fn regions(&self, scenario: &Scenario) -> CoreResult<(f64, f64, f64)> {
+        let regions = self.0.regions(&scenario.0)?;
+        Ok((
+            regions.critical_radius,
+            regions.active_radius,
+            self.0.reach(),
+        ))
+    }
+}
+
+/// Sensor of a robot, of any kind.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Sensor(pub SensorOptions);
+
+#[pymethods]
+impl Sensor {
+    /// Sees the robot.
+    #[staticmethod]
+    fn robot_camera(vision: &Vision) -> Self {
+        Self(SensorOptions::RobotCamera(vision.0))
+    }
+
+    /// Sees the obstacles that move.
+    #[staticmethod]
+    fn obstacle_camera(vision: &Vision) -> Self {
+        Self(SensorOptions::ObstacleCamera(vision.0))
+    }
+
+    /// Rides on the robot.
+    #[staticmethod]
+    fn ultrasonic(array: &Ultrasonic) -> Self {
+        Self(SensorOptions::Ultrasonic(array.0.clone()))
+    }
+}
+
+/// Order of firing by its word.
+pub fn firing_of(firing: &str) -> CoreResult<Firing> {
+    match firing {
+        "together" => Ok(Firing::Together),
+        "cross_talk" => Ok(Firing::TogetherWithCrossTalk),
+        "in_turn" => Ok(Firing::InTurn),
+        other => {
+            let rule = "be one of \"together\", \"cross_talk\", \"in_turn\"";
+            Err(Failure::invalid("firing", rule, Given::Word(other.into())).into())
+        }
+    }
 }
 
 /// Error of measured positions.

@@ -16,7 +16,7 @@ use vff_core::run::built::{
 use vff_core::run::metrics::Weights;
 use vff_core::run::{AnyLaw, Options, Outcome, simulate};
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
-use vff_core::sensing::{Estimator, PositionError, Vision};
+use vff_core::sensing::{Estimator, PositionError, SensorOptions, Vision};
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::Obstacle;
 use vff_core::world::scenario::{Rules, Scenario};
@@ -192,8 +192,10 @@ fn cameras_and_slip_run() {
             creep: 0.02,
             ..Slip::default()
         },
-        robot_vision: Some(vision()),
-        obstacle_vision: Some(vision()),
+        sensors: vec![
+            SensorOptions::RobotCamera(vision()),
+            SensorOptions::ObstacleCamera(vision()),
+        ],
         ..Built::default()
     };
     let run = simulate_built(&scenario, &field(), &built, &never).unwrap();

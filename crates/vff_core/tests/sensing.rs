@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use vff_core::sensing::camera::distorted_ratio;
 use vff_core::sensing::measurement::Distribution;
-use vff_core::sensing::vision::Frame;
+use vff_core::sensing::vision::Exposure;
 use vff_core::sensing::{
     Camera, CameraPose, Estimator, Lens, LinearizedCamera, PARAMETERS, PositionError, Track,
     Vision, VisionSensor,
@@ -53,7 +53,7 @@ fn followed(
     vision: &Vision,
     end: f64,
     path: impl Fn(f64) -> [f64; 2],
-) -> (VisionSensor, Vec<Frame>) {
+) -> (VisionSensor, Vec<Exposure>) {
     let mut sensor = VisionSensor::new(vision, 7, 1).expect("a sensor");
     let mut frames = Vec::new();
     let mut step = 0_u32;

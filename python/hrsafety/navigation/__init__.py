@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from hrsafety import errors
 from hrsafety._namespace import names_below
-from hrsafety.navigation import gains, laws, metrics, robots, sensing, tracking
+from hrsafety.navigation import gains, knowledge, laws, metrics, robots, sensing, tracking
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.compare import Comparison, compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
@@ -82,4 +82,4 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_below(__name__, __all__, [gains, laws, metrics, robots, sensing, tracking, errors])
+    __getattr__, __dir__ = names_below(__name__, __all__, [gains, laws, metrics, robots, sensing, tracking, knowledge, errors])

@@ -71,7 +71,7 @@ class Run:
     [-0.5, 0.2]
     """
 
-    __slots__ = ("_built", "_goal", "_law", "_native", "_robot", "_scenario")
+    __slots__ = ("_built", "_goal", "_how", "_law", "_native", "_robot", "_scenario")
 
     def __init__(
         self,
@@ -88,6 +88,7 @@ class Run:
         self._law = None if law is None else as_law(law)
         self._built = built is not None or not isinstance(scene.robot, HolonomicRobot)
         how = AsBuilt() if built is None else instance("built", built, AsBuilt)
+        self._how = how
         native = self._scenario._native
         mass, radius, max_speed, max_acceleration = native.point_mass()
         self._robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
@@ -128,7 +129,7 @@ class Run:
         """
         fields = self._native.recorded(motors=self._built)
         law = _COMMANDS if self._law is None else self._law
-        return Trajectory(scenario=self._scenario, law=law, **fields)
+        return Trajectory(scenario=self._scenario, law=law, built=self._how if self._built else None, **fields)
 
     def observe(self) -> Situation:
         """Return what the controller sees now, measured once a control period.

@@ -93,7 +93,7 @@ def simulate(
             step=number("step", step),
             stop_on_contact=flag("stop_on_contact", stop_on_contact),
         )
-        return Trajectory(scenario=scenario, law=law, **columns)
+        return Trajectory(scenario=scenario, law=law, built=robot, **columns)
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
@@ -161,8 +161,8 @@ def evaluate(
         free = replace(without_obstacles(scenario), measurement=None, seed=0)
         return Performance(
             **parts,
-            trajectory=Trajectory(scenario=scenario, law=law, **real),
-            nominal=Trajectory(scenario=free, law=law, **ideal),
+            trajectory=Trajectory(scenario=scenario, law=law, built=robot, **real),
+            nominal=Trajectory(scenario=free, law=law, built=robot.seeing_all(), **ideal),
         )
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)

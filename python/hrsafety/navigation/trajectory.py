@@ -10,7 +10,9 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety.navigation import run_warnings
+from hrsafety.navigation.knowledge import Sensing, sensing_of, warnings_of
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane
@@ -77,6 +79,8 @@ class Trajectory(Table):
         Position of the point mass that the law drives, in m.
     seen_position : ndarray of shape (n, 2), or None
         Position of the robot as the law knows it since the last sample, in m.
+    built : AsBuilt or None
+        How the robot is built.
     """
 
     scenario: Scenario
@@ -103,6 +107,7 @@ class Trajectory(Table):
     energy_used: Array | None = None
     reference_position: Array | None = None
     seen_position: Array | None = None
+    built: AsBuilt | None = None
 
     @property
     def contacts_moving(self) -> int:
@@ -151,8 +156,17 @@ class Trajectory(Table):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Why the run may not mean what it seems to: the warnings of its scenario that matter for its law."""
-        return run_warnings.of_run(self.scenario, self.law)
+        """Why the run may not mean what it seems to.
+
+        The warnings of its scenario that matter for its law, and of sensors that see less than they must.
+        """
+        blind = () if self.built is None else warnings_of(self.scenario, self.built)
+        return (*run_warnings.of_run(self.scenario, self.law), *blind)
+
+    @property
+    def sensing(self) -> Sensing:
+        """Which sensors told the law of the robot and of the obstacles."""
+        return sensing_of(self.scenario, AsBuilt() if self.built is None else self.built)
 
 
 def without_obstacles(scenario: Scenario) -> Scenario:

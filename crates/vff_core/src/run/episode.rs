@@ -99,7 +99,7 @@ impl<L: Listener> Episode<L> {
         let bodies = &scene.frames[0];
         let reading = Reading::at(&built.start_in(&scenario));
         let sight = Sight::new(&scenario, built, bodies)?;
-        let steering = law.map(|law| law.driven().steering(&scenario));
+        let steering = law.map(|law| law.driven().steering(sight.known(&scenario)));
         let mut episode = Self {
             law: steering.transpose()?,
             listener: listener(&scenario, robot.wheels()),
@@ -271,7 +271,9 @@ impl<L: Listener> Episode<L> {
         if self.runs.running {
             self.runs.rest(time);
         }
-        let seen = self.sight.look(time, &self.reading, &self.scene.frames[0]);
+        let heading = self.robot.known_heading();
+        let bodies = &self.scene.frames[0];
+        let seen = self.sight.look(time, &self.reading, heading, bodies);
         self.known = Known {
             robot: seen.robot,
             fix: seen.fix,

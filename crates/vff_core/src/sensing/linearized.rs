@@ -1,7 +1,7 @@
 //! Pixels of points and their derivatives with respect to the parameters of a camera.
 
 use crate::error::Result;
-use crate::sensing::camera::{Camera, Lens, CameraPose, distorted_ratio};
+use crate::sensing::camera::{Camera, CameraPose, Lens, distorted_ratio};
 use crate::sensing::rotation;
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,16 +1,25 @@
-//! What a robot with a camera knows: projection, delayed and noisy positions, velocity estimates.
+//! What a robot knows: sensors with noise and latency, cameras, sonar, sound; estimators.
 
 pub mod camera;
+pub(crate) mod cameras;
 pub mod estimator;
 mod linearized;
+mod marks;
 pub mod measurement;
+pub(crate) mod noisy;
+mod options;
 mod rotation;
 pub mod sampled;
+pub mod sensor;
 pub mod sonar;
 pub mod sound;
+pub mod ultrasonic;
 pub mod vision;
 
 pub use camera::{Camera, CameraPose, Lens};
 pub use estimator::{Estimate, Estimator, Track};
 pub use linearized::{LinearizedCamera, PARAMETERS};
+pub use options::SensorOptions;
+pub use sensor::{Located, Sensor, Truth};
+pub use ultrasonic::Ultrasonic;
 pub use vision::{PositionError, Vision, VisionSensor};

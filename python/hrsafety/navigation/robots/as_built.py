@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, instance, sequence
@@ -16,6 +17,7 @@ from hrsafety.navigation.robots.tracking_laws import (
     VirtualTorque,
 )
 from hrsafety.navigation.robots.wheels import WheelDrive
+from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.navigation.sensing.vision import Vision
 
 __all__ = ["AsBuilt", "PoseFusion"]
@@ -83,6 +85,9 @@ class AsBuilt(Parameters):
     robot_vision, obstacle_vision : Vision or None
         Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
         shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.
+    sensors : sequence of Ultrasonic
+        Ultrasonic arrays on the robot. With one, obstacles are known by their echoes, and by the
+        camera or the measurement of obstacles where there is one too; nothing else is known of them.
     pose_fusion : PoseFusion
         How a two-wheel robot knows its pose.
 
@@ -105,6 +110,7 @@ class AsBuilt(Parameters):
     tracking: Tracking | VirtualTorque = field(default_factory=FullSpeedTracking)
     robot_vision: Vision | None = None
     obstacle_vision: Vision | None = None
+    sensors: Sequence[Ultrasonic] = ()
     pose_fusion: PoseFusion = field(default_factory=PoseFusion)
     _native: _hrsafety.AsBuilt = field(init=False, repr=False, compare=False)
 
@@ -119,8 +125,34 @@ class AsBuilt(Parameters):
         for name in ("robot_vision", "obstacle_vision"):
             if getattr(self, name) is not None:
                 instance(name, getattr(self, name), Vision)
+        arrays = sequence("sensors", "be a sequence of Ultrasonic", self.sensors)
+        self._set(sensors=tuple(instance(f"sensors[{i}]", array, Ultrasonic) for i, array in enumerate(arrays)))
         instance("tracking", self.tracking, FullSpeedTracking, NonlinearTracking, ExponentialTracking, VirtualTorque)
         self._set(_native=self._build())
+
+    def seeing_all(self) -> AsBuilt:
+        """Return the same robot with exact sensing.
+
+        Returns
+        -------
+        AsBuilt
+            Without cameras and sonars.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()]).seeing_all() == nav.robots.AsBuilt()
+        True
+        """
+        return replace(self, robot_vision=None, obstacle_vision=None, sensors=())
+
+    def _sensors(self) -> list[_hrsafety.Sensor]:
+        kind, found = _hrsafety.Sensor, []
+        if self.robot_vision is not None:
+            found.append(kind.robot_camera(self.robot_vision._native))
+        if self.obstacle_vision is not None:
+            found.append(kind.obstacle_camera(self.obstacle_vision._native))
+        return found + [kind.ultrasonic(array._native) for array in self.sensors]
 
     def _build(self) -> _hrsafety.AsBuilt:
         fusion = self.pose_fusion
@@ -129,8 +161,7 @@ class AsBuilt(Parameters):
             kinematics=self.kinematics._native,
             slip=self.slip._native,
             tracking=self.tracking._native,
-            robot_vision=None if self.robot_vision is None else self.robot_vision._native,
-            obstacle_vision=None if self.obstacle_vision is None else self.obstacle_vision._native,
+            sensors=self._sensors(),
             position_share=fusion.position_share,
             heading_share=fusion.heading_share,
             mark_distance=fusion.mark_distance,

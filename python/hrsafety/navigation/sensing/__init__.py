@@ -1,4 +1,4 @@
-"""What robots know: noise and latency, cameras, estimators, calibration."""
+"""What robots know: noise and latency, cameras, sonar, estimators, calibration."""
 
 from hrsafety.navigation.sensing.calibration import CameraCalibration, calibrate_camera
 from hrsafety.navigation.sensing.calibration_study import (
@@ -10,6 +10,7 @@ from hrsafety.navigation.sensing.calibration_study import (
 from hrsafety.navigation.sensing.camera import Camera, nearest_rotation
 from hrsafety.navigation.sensing.estimators import AlphaBeta, Differences, Kalman, TrackedPositions, track_positions
 from hrsafety.navigation.sensing.measurement import Measurement
+from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.navigation.sensing.vision import ColorPatch, Observation, PositionNoise, Vision, observe
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "Observation",
     "PositionNoise",
     "TrackedPositions",
+    "Ultrasonic",
     "Vision",
     "calibrate_camera",
     "calibration_points",

@@ -5,13 +5,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::follower::Sensors;
 use vff_core::sensing::sonar::ranging::Normals;
-use vff_core::sensing::sonar::{self, Firing, Ranging};
+use vff_core::sensing::sonar::{self, Ranging};
 use vff_core::world::frame::Frame;
 use vff_core::world::shape::PlacedShape;
 
-use super::{Column, Rows, pairs, word};
+use super::{Column, Rows, pairs};
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::sensing::firing_of;
 
 /// Stream of a seed for readings outside a run.
 const READINGS: u64 = 3;
@@ -70,12 +71,6 @@ impl Sonar {
         firing: &str,
         rear: bool,
     ) -> CoreResult<Self> {
-        let kinds = [
-            ("together", Firing::Together),
-            ("cross_talk", Firing::TogetherWithCrossTalk),
-            ("in_turn", Firing::InTurn),
-        ];
-        let rule = "be one of \"together\", \"cross_talk\", \"in_turn\"";
         let sensors = Sensors {
             forward,
             spacing,
@@ -89,7 +84,7 @@ impl Sonar {
                 temperature,
                 assumed_temperature,
             },
-            firing: word("firing", rule, firing, &kinds)?,
+            firing: firing_of(firing)?,
             rear,
         };
         sensors.array()?;

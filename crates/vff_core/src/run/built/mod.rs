@@ -19,7 +19,7 @@ pub use run::{evaluate_built, simulate_built};
 use crate::error::{Failure, Given, Result, positive};
 use crate::robots::drives::Start;
 use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
-use crate::sensing::Vision;
+use crate::sensing::SensorOptions;
 use crate::world::scenario::Scenario;
 
 /// How a robot is built, beside what its scenario says.
@@ -37,10 +37,9 @@ pub struct Built {
     pub slip: Slip,
     /// How a two-wheel robot is steered.
     pub steered: Steered,
-    /// Camera that sees the robot.
-    pub robot_vision: Option<Vision>,
-    /// Camera that sees moving obstacles.
-    pub obstacle_vision: Option<Vision>,
+    /// Sensors. What one of them tells of, the robot or the obstacles, is known by sensors alone;
+    /// what none tells of is known exactly.
+    pub sensors: Vec<SensorOptions>,
     /// How far a measured pose corrects the one from the wheels.
     pub fusion: PoseFusion,
 }
@@ -55,8 +54,7 @@ impl Default for Built {
             omni: OmniKinematics::default(),
             slip: Slip::default(),
             steered: Steered::default(),
-            robot_vision: None,
-            obstacle_vision: None,
+            sensors: Vec::new(),
             fusion: PoseFusion::default(),
         }
     }
@@ -80,8 +78,7 @@ impl Built {
             let given = Given::Count(wheels.len() as u64);
             return Err(Failure::invalid("wheels", rule, given));
         }
-        let sees = self.robot_vision.is_some() || self.obstacle_vision.is_some();
-        if sees && scenario.measurement.is_some() {
+        if self.sensors.iter().any(SensorOptions::is_camera) && scenario.measurement.is_some() {
             let rule = "be None where a camera measures";
             let given = Given::Found("a Measurement".into());
             return Err(Failure::invalid("measurement", rule, given));
@@ -103,8 +100,7 @@ impl Built {
     /// The same without errors of measurement.
     fn seeing_all(&self) -> Self {
         Self {
-            robot_vision: None,
-            obstacle_vision: None,
+            sensors: Vec::new(),
             ..self.clone()
         }
     }

@@ -79,6 +79,12 @@ impl SonarArray {
         &self.beam
     }
 
+    /// Which sensors fire when.
+    #[must_use]
+    pub fn firing(&self) -> Firing {
+        self.firing
+    }
+
     /// Limits and noise of each sensor.
     #[must_use]
     pub fn ranging(&self) -> &Ranging {

@@ -1,0 +1,49 @@
+//! What every sensor can do: watch the scene, and tell the controller of the robot or of obstacles.
+
+use crate::world::frame::Frame;
+use crate::world::geometry::{Body, RobotState};
+use crate::world::scenario::PlacedObstacle;
+
+/// The scene as it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Truth<'a> {
+    /// Time in s.
+    pub time: f64,
+    /// State of the robot.
+    pub robot: RobotState<f64>,
+    /// Heading of the robot in rad.
+    pub heading: f64,
+    /// The obstacles.
+    pub bodies: &'a [Body],
+}
+
+/// The robot as a sensor knows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Located {
+    /// Position in m and velocity in m/s.
+    pub robot: RobotState<f64>,
+    /// Heading in rad, if it is measured.
+    pub heading: Option<f64>,
+}
+
+/// A sensor on the robot or above the scene. What it does not tell of, another one may; what none
+/// tells of is known exactly.
+pub trait Sensor: Send {
+    /// Watches the scene at the start of a motion step.
+    fn watch(&mut self, _truth: &Truth<'_>) {}
+
+    /// Tells of the robot at a sample.
+    fn locate(&mut self, _truth: &Truth<'_>) -> Option<Located> {
+        None
+    }
+
+    /// Obstacles that a law under this sensor can know at a time, at most; `None` if the sensor
+    /// does not tell of obstacles.
+    fn obstacles(&self) -> Option<&[PlacedObstacle]> {
+        None
+    }
+
+    /// Tells of these obstacles at a sample, after all sensors have told of the robot; `known` is
+    /// the robot as it knows itself.
+    fn observe(&mut self, _truth: &Truth<'_>, _known: &Frame, _bodies: &mut [Body]) {}
+}

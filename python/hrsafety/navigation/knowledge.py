@@ -1,0 +1,133 @@
+"""What the sensors of a robot told a law, and whether they could tell enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from hrsafety._arguments import instance
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
+from hrsafety.plausibility import ResultWarning
+
+__all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
+
+REGION_BEYOND_RANGE = "region_beyond_range"
+
+
+class Sensing(NamedTuple):
+    """Which sensors told a law of the robot and of the obstacles.
+
+    Attributes
+    ----------
+    robot : str
+        ``"exact"``, ``"measurement"`` or ``"camera"``.
+    obstacles : tuple of str
+        ``"exact"``, or those of ``"measurement"``, ``"camera"`` and ``"ultrasonic"`` that told of them.
+    """
+
+    robot: str
+    obstacles: tuple[str, ...]
+
+
+class EchoRegions(NamedTuple):
+    """Regions around the point of an echo.
+
+    Attributes
+    ----------
+    critical_radius, active_radius : float
+        r3 and r2 in m.
+    reach : float
+        Distance from the center of the robot up to which every sensor reads an echo on its axis, in m.
+    """
+
+    critical_radius: float
+    active_radius: float
+    reach: float
+
+
+def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
+    """Return which sensors tell a law of the robot and of the obstacles.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Whose measurement counts too.
+    built : AsBuilt
+        Cameras and ultrasonic arrays.
+
+    Returns
+    -------
+    Sensing
+        Words for the sensors.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is of another kind.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> camera = nav.robots.AsBuilt(robot_vision=nav.sensing.Vision())
+    >>> nav.knowledge.sensing_of(scenarios.configuration("c1"), camera)
+    Sensing(robot='camera', obstacles=('exact',))
+    """
+    measurement = instance("scenario", scenario, Scenario).measurement
+    measured = "" if measurement is None else measurement.of
+    told = {
+        "measurement": measured in ("both", "obstacles"),
+        "camera": instance("built", built, AsBuilt).obstacle_vision is not None,
+        "ultrasonic": bool(built.sensors),
+    }
+    robot = "measurement" if measured in ("both", "robot") else "exact"
+    return Sensing(
+        robot="camera" if built.robot_vision is not None else robot,
+        obstacles=tuple(word for word, tells in told.items() if tells) or ("exact",),
+    )
+
+
+def echo_regions(scenario: Scenario, sonar: Ultrasonic) -> EchoRegions:
+    """Return the regions around an echo for the robot of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Robot and control period.
+    sonar : Ultrasonic
+        The array.
+
+    Returns
+    -------
+    EchoRegions
+        Radii, and how far the sensors reach, in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is of another kind.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> regions = nav.knowledge.echo_regions(scenarios.configuration("c3"), nav.sensing.Ultrasonic(max_speed=0.0))
+    >>> regions.active_radius < regions.reach
+    True
+    """
+    native = instance("scenario", scenario, Scenario)._native
+    return EchoRegions(*instance("sonar", sonar, Ultrasonic)._native.regions(native))
+
+
+def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
+    """Warn of arrays that do not reach as far as the regions that they must see."""
+    for index, sonar in enumerate(built.sensors):
+        regions = echo_regions(scenario, sonar)
+        if regions.active_radius > regions.reach:
+            yield ResultWarning(
+                REGION_BEYOND_RANGE,
+                f"sensors[{index}].most_range",
+                f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
+                f"radius {regions.active_radius:.3g} m of an echo: what moves at {sonar.max_speed:g} m/s is seen too "
+                "late; give a larger most_range or a smaller max_speed",
+            )
