@@ -22,6 +22,7 @@ use vff_core::world::obstacle::Obstacle;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::sensing::Vision;
 use echoes::{EchoShape, Sonar};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
@@ -276,11 +277,12 @@ pub struct Follower(pub Settings);
 #[pymethods]
 impl Follower {
     #[new]
-    #[pyo3(signature = (*, sonar, drive, attraction, fix_interval, fix_noise, mirrored_fixes,
+    #[pyo3(signature = (*, sonar, obstacle_vision, drive, attraction, fix_interval, fix_noise, mirrored_fixes,
         velocity_rule, integration, step))]
     #[allow(clippy::too_many_arguments)] // keyword-only in Python
     fn new(
         sonar: &Sonar,
+        obstacle_vision: Option<PyRef<'_, Vision>>,
         drive: [f64; 6],
         attraction: [f64; 3],
         fix_interval: f64,
@@ -322,6 +324,7 @@ impl Follower {
                 integration,
             },
             sensors: sonar.0.clone(),
+            obstacle_vision: obstacle_vision.map(|vision| vision.0),
             fixes: Fixes {
                 interval: fix_interval,
                 noise: if fix_noise {

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, checked_seed, flag, instance, numbers
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.reactive.follower.impedance import VirtualImpedance
 from hrsafety.reactive.follower.scenes import FollowerScene
 from hrsafety.reactive.sonar.echoes import Sonar
@@ -42,6 +43,10 @@ class Follower(Parameters):
     ----------
     sonar : Sonar
         Its ultrasonic sensors.
+    obstacle_vision : Vision or None
+        A camera that tells of the obstacles in place of the sonar: the impedance acts between the
+        surface of the body and the nearest point of every obstacle that is within the range of the
+        sonar, all around.
     mass : float
         M_s in kg.
     body_radius : float
@@ -85,6 +90,7 @@ class Follower(Parameters):
     """
 
     sonar: Sonar = field(default_factory=Sonar)
+    obstacle_vision: Vision | None = None
     mass: float = 3.94
     body_radius: float = 0.25
     wheel_base: float = 0.41
@@ -106,9 +112,11 @@ class Follower(Parameters):
         """Check the values."""
         values = self._as_numbers(*_DRIVE, *_ATTRACTION, "fix_interval", "step")
         stiffness, damping, standoff = (values[name] for name in _ATTRACTION)
+        vision = self.obstacle_vision
         self._set(
             _native=_hrsafety.Follower(
                 sonar=instance("sonar", self.sonar, Sonar)._native,
+                obstacle_vision=None if vision is None else instance("obstacle_vision", vision, Vision)._native,
                 drive=[values[name] for name in _DRIVE],
                 attraction=(stiffness, damping, standoff),
                 fix_interval=values["fix_interval"],

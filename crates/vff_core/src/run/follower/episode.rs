@@ -7,8 +7,10 @@ use crate::laws::impedance::bank::{Bank, BankLayout};
 use crate::laws::impedance::law::Prepared;
 use crate::run::follower::scene::FollowerScene;
 use crate::run::follower::settings::{Settings, VelocityRule};
+use crate::run::follower::surroundings::{Surroundings, Touch};
 use crate::sensing::sonar::SonarArray;
 use crate::sensing::sonar::ranging::Normals;
+use crate::sensing::{Vision, VisionSensor};
 use crate::world::frame::Frame;
 use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
@@ -16,21 +18,17 @@ use numeric::random::Stream;
 /// Streams of one seed.
 const BURSTS: u64 = 1;
 const SONAR: u64 = 2;
+/// First stream of the cameras, one for each obstacle.
+const CAMERA: u64 = 16;
 
 /// Sensors of a bank.
 const BANK: usize = 3;
 
+/// Distance of surfaces that touch or overlap, in m: the force needs a direction.
+const TOUCHING: f64 = 1e-9;
+
 /// Steps between two looks whether to stop.
 const CHECK: usize = 1024;
-
-/// A touch of an obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
-    /// Index of the obstacle.
-    pub obstacle: usize,
-    /// Direction of the nearest point from the front of the robot, counterclockwise, in rad.
-    pub bearing: f64,
-}
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,24 +104,15 @@ pub struct Follower {
 struct State {
     pose: Frame,
     velocity: Vector2<f64>,
+    /// Velocity of the robot over the last step, in m/s.
+    driven: Vector2<f64>,
     target: Vector2<f64>,
     banks: [Bank; 2],
+    /// Positions of the obstacles as a camera knows them.
+    cameras: Vec<VisionSensor>,
     readings: [f64; 2 * BANK],
     fixes: Normals,
     noise: Normals,
-}
-
-/// Obstacles at one time.
-struct Surroundings {
-    shapes: Vec<PlacedShape>,
-    /// Pieces of the motions that were the last ones.
-    cursors: Vec<usize>,
-    leader_cursor: usize,
-    /// Those that a sensor may see.
-    near: Vec<PlacedShape>,
-    /// Squared distance of the nearest one from the center, in m^2.
-    least: f64,
-    nearest: usize,
 }
 
 impl Follower {
@@ -175,8 +164,8 @@ impl Follower {
         interrupted: &(dyn Fn() -> bool + Sync),
     ) -> Result<FollowerOutcome> {
         let steps = self.settings.steps(scene.duration)?;
-        let mut state = State::new(seed);
-        let mut around = Surroundings::of(scene);
+        let mut state = State::new(self.settings.obstacle_vision.as_ref(), scene, seed)?;
+        let mut around = Surroundings::of(scene, self.horizon);
         let mut outcome = FollowerOutcome {
             contact: None,
             end_time: 0.0,
@@ -190,7 +179,7 @@ impl Follower {
                 return Err(Failure::Interrupted);
             }
             let time = step as f64 * self.settings.step;
-            let source = self.look(&mut around, scene, time, &state.pose);
+            let source = around.look(scene, time, &state.pose);
             outcome.end_time = time;
             outcome.least_clearance = outcome.least_clearance.min(around.least);
             outcome.source_distance = length(source - state.pose.position);
@@ -212,46 +201,6 @@ impl Follower {
         Ok(outcome)
     }
 
-    /// Puts the obstacles where they are; returns the place of the source in m.
-    #[inline]
-    fn look(
-        &self,
-        around: &mut Surroundings,
-        scene: &FollowerScene,
-        time: f64,
-        pose: &Frame,
-    ) -> Vector2<f64> {
-        around.near.clear();
-        around.least = f64::INFINITY;
-        let cursors = around.cursors.iter_mut();
-        for (index, (obstacle, cursor)) in scene.obstacles.iter().zip(cursors).enumerate() {
-            let shape = obstacle.at(time, cursor);
-            let to = shape.nearest(pose.position);
-            let square = to.dot(&to);
-            if square < around.least {
-                around.least = square;
-                around.nearest = index;
-            }
-            if square <= self.horizon * self.horizon {
-                around.near.push(shape);
-            }
-            around.shapes[index] = shape;
-        }
-        let leader = &scene.leader;
-        let source = leader
-            .motion
-            .at(time, &mut around.leader_cursor)
-            .position
-            .into();
-        if let Some(shape) = leader.shape {
-            around.near.push(PlacedShape {
-                center: source,
-                shape,
-            });
-        }
-        source
-    }
-
     /// Locates the source, senses, and chooses the speeds of the wheels.
     #[inline]
     fn act(
@@ -270,10 +219,14 @@ impl Follower {
             let advance = settings.attraction.advance(range);
             state.target = pose.position + pose.outward(direction) * advance;
         }
-        let readings = &mut state.readings[..self.array.mounts().len()];
-        self.array
-            .measure(&pose, &around.near, step, readings, &mut state.noise);
-        let repulsion = self.repulsion(&mut state.banks, &state.readings, &pose);
+        let repulsion = if settings.obstacle_vision.is_some() {
+            self.repulsion_seen(state, around, step as f64 * settings.step)
+        } else {
+            let readings = &mut state.readings[..self.array.mounts().len()];
+            self.array
+                .measure(&pose, &around.near, step, readings, &mut state.noise);
+            self.repulsion(&mut state.banks, &state.readings, &pose)
+        };
         let offset = state.target - pose.position;
         let attraction = settings.attraction.force(offset, state.velocity);
         let gain = settings.step / settings.drive.mass;
@@ -297,6 +250,33 @@ impl Follower {
             shapes: &around.shapes,
         });
         wheels
+    }
+
+    /// Repulsive force of the obstacles as a camera knows them, in N: from the surface of the body
+    /// to the nearest point of each within the reach of the sonar.
+    fn repulsion_seen(&self, state: &mut State, around: &Surroundings, time: f64) -> Vector2<f64> {
+        let (robot, driven) = (state.pose.position, state.driven);
+        let radius = self.settings.drive.body_radius;
+        let reach = self.array.ranging().reach();
+        let cameras = state.cameras.iter_mut().zip(&around.shapes);
+        self.law
+            .force_of_points(cameras.filter_map(|(camera, actual)| {
+                camera.sample(time, actual.center.into());
+                let found = camera.estimate(time)?;
+                let known = PlacedShape {
+                    center: found.position.into(),
+                    shape: actual.shape,
+                };
+                let to = known.nearest(robot);
+                let distance = length(to);
+                let gap = (distance - radius).max(TOUCHING);
+                (distance > 0.0 && gap <= reach).then(|| {
+                    (
+                        to * (gap / distance),
+                        Vector2::from(found.velocity) - driven,
+                    )
+                })
+            }))
     }
 
     /// Repulsive force of all banks, in N.
@@ -329,55 +309,38 @@ impl Follower {
         let Settings { drive, step, .. } = &self.settings;
         let twist = drive.twist(wheels);
         state.pose = twist.moved(&state.pose, *step, drive.integration);
+        state.driven = state.pose.direction * twist.speed;
         outcome.path_length += twist.speed.abs() * step;
         outcome.turning += twist.turn_rate.abs() * step;
         if self.settings.velocity == VelocityRule::Reset {
-            state.velocity = state.pose.direction * twist.speed;
+            state.velocity = state.driven;
         }
     }
 }
 
 impl State {
-    fn new(seed: u64) -> Self {
-        Self {
+    fn new(vision: Option<&Vision>, scene: &FollowerScene, seed: u64) -> Result<Self> {
+        let mut cameras = Vec::new();
+        if let Some(vision) = vision {
+            vision.check_frames(scene.duration)?;
+            for (stream, _) in (CAMERA..).zip(&scene.obstacles) {
+                cameras.push(VisionSensor::new(vision, seed, stream)?);
+            }
+        }
+        Ok(Self {
             pose: Frame {
                 position: Vector2::zeros(),
                 direction: Vector2::x(),
             },
             velocity: Vector2::zeros(),
+            driven: Vector2::zeros(),
             target: Vector2::zeros(),
             banks: [Bank::default(); 2],
+            cameras,
             readings: [f64::INFINITY; 2 * BANK],
             fixes: Normals::new(Stream::new(seed, BURSTS)),
             noise: Normals::new(Stream::new(seed, SONAR)),
-        }
-    }
-}
-
-impl Surroundings {
-    fn of(scene: &FollowerScene) -> Self {
-        Self {
-            shapes: scene
-                .obstacles
-                .iter()
-                .map(|each| each.at(0.0, &mut 0))
-                .collect(),
-            cursors: vec![0; scene.obstacles.len()],
-            leader_cursor: 0,
-            near: Vec::with_capacity(scene.obstacles.len() + 1),
-            least: f64::INFINITY,
-            nearest: 0,
-        }
-    }
-
-    fn contact(&self, pose: &Frame) -> Touch {
-        let nearest = self.shapes.get(self.nearest);
-        let to = nearest.map_or(Vector2::zeros(), |shape| shape.nearest(pose.position));
-        let to = pose.inward(to);
-        Touch {
-            obstacle: self.nearest,
-            bearing: to.y.atan2(to.x),
-        }
+        })
     }
 }
 

@@ -7,11 +7,13 @@ pub mod layouts;
 pub mod record;
 pub mod scene;
 pub mod settings;
+mod surroundings;
 
 pub use batch::{run_batch, touching_layouts};
-pub use episode::{Follower, FollowerOutcome, Touch};
+pub use episode::{Follower, FollowerOutcome};
 pub use fix::{FixNoise, Fixes};
 pub use layouts::{Layouts, Setting};
 pub use record::{FollowerRecord, record};
 pub use scene::{FollowerScene, Leader};
 pub use settings::{Sensors, Settings, VelocityRule};
+pub use surroundings::Touch;

@@ -7,6 +7,7 @@ use crate::laws::impedance::bank::BankLayout;
 use crate::laws::impedance::{Attraction, BankOptions, Impedance};
 use crate::robots::differential::VelocityDrive;
 use crate::run::follower::fix::Fixes;
+use crate::sensing::Vision;
 use crate::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
 use crate::world::frame::Frame;
 
@@ -108,6 +109,8 @@ pub struct Settings {
     pub drive: VelocityDrive,
     /// Its ultrasonic sensors.
     pub sensors: Sensors,
+    /// A camera that tells of the obstacles in place of the sonar, as far as the sonar reaches.
+    pub obstacle_vision: Option<Vision>,
     /// Its ear.
     pub fixes: Fixes,
     /// Attraction to the source.
@@ -127,6 +130,7 @@ impl Default for Settings {
         Self {
             drive: VelocityDrive::default(),
             sensors: Sensors::default(),
+            obstacle_vision: None,
             fixes: Fixes::default(),
             attraction: Attraction::default(),
             impedance: Impedance::default(),
@@ -145,6 +149,8 @@ impl Settings {
     pub fn checked(self) -> Result<Self> {
         self.drive.checked()?;
         self.sensors.array()?;
+        let vision = self.obstacle_vision;
+        vision.map(Vision::checked).transpose()?;
         self.attraction.checked()?;
         self.impedance.checked()?;
         self.bank.checked()?;
