@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from hrsafety import reproduce
-from hrsafety.reproduce import reactive_follower, reactive_follower_study
+from hrsafety.reproduce import reactive_follower_study
 from hrsafety.reproduce.cells import Cell
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
@@ -25,7 +25,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # The page, not the rates of the follower, which have tests of their own in thousands of layouts.
     few = functools.partial(reactive_follower_study.run_study, layouts=100, base_layouts=400)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reactive_follower, "run_study", few)
+        patch.setattr(reactive_follower_study, "run_study", few)
         return reproduce.run(tmp_path_factory.mktemp("reactive"), only="reactive")
 
 

@@ -46,7 +46,7 @@ def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[Cell]) -> d
     groups = by_table(own.cells)
     section: dict[str, Any] = {
         "part": part,
-        "tables": [view(table, groups[table], pictures) for table in part.tables or groups],
+        "tables": [view(table, groups[table], pictures) for table in dict.fromkeys((*part.tables, *groups))],
         "total": counted(own.cells),
         "pictures": beside_none(list(by_table(cells)), own.pictures),
         "study": own.study,

@@ -66,13 +66,13 @@ pub fn fit_open_loop_until(
     };
     let found = minimize(&start, |parameters| {
         if interrupted() {
-            // Without residuals there is nothing left to minimize.
-            return Vec::new();
+            return None;
         }
         let pairs = elapsed.iter().zip(angle);
-        pairs
-            .map(|(time, angle)| angle - parameters[0] * time * time * lag(parameters[1] * time))
-            .collect()
+        let left = |(time, angle): (&f64, &f64)| {
+            angle - parameters[0] * time * time * lag(parameters[1] * time)
+        };
+        Some(pairs.map(left).collect())
     });
     if interrupted() {
         return Err(Failure::Interrupted);

@@ -28,20 +28,21 @@ pub(super) struct Start {
     pub(super) lower: Vec<f64>,
 }
 
-/// Minimizes the sum of squares; `None` if the residuals do not determine the parameters.
+/// Minimizes the sum of squares; `None` if the residuals do not determine the parameters, or if
+/// there are none any more because the caller was asked to stop.
 pub(super) fn minimize(
     start: &Start,
-    mut residuals: impl FnMut(&[f64]) -> Vec<f64>,
+    mut residuals: impl FnMut(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Minimum> {
     let mut parameters = start.parameters.clone();
-    let mut current = residuals(&parameters);
+    let mut current = residuals(&parameters)?;
     let mut cost = squares(&current);
     let mut damping = 1e-4;
     let mut steps = 0;
     let mut settled = false;
     while steps < STEPS && !settled {
         steps += 1;
-        let jacobian = differences(&parameters, &start.scale, &mut residuals);
+        let jacobian = differences(&parameters, &start.scale, &mut residuals)?;
         let normal = jacobian.tr_mul(&jacobian);
         let gradient = jacobian.tr_mul(&DVector::from_column_slice(&current));
         loop {
@@ -55,7 +56,7 @@ pub(super) fn minimize(
                 .map(|(((value, step), scale), &lower)| (value - step * scale).max(lower))
                 .collect();
             let largest = step.amax();
-            let next = residuals(&trial);
+            let next = residuals(&trial)?;
             let next_cost = squares(&next);
             settled = largest < SETTLED;
             if next_cost <= cost {
@@ -70,7 +71,7 @@ pub(super) fn minimize(
             }
         }
     }
-    let mut jacobian = differences(&parameters, &start.scale, &mut residuals);
+    let mut jacobian = differences(&parameters, &start.scale, &mut residuals)?;
     // In the units of the parameters.
     let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&start.scale));
     let inverse = &scale * factor(jacobian.tr_mul(&jacobian))?.inverse() * &scale;
@@ -94,20 +95,20 @@ fn squares(values: &[f64]) -> f64 {
 fn differences(
     parameters: &[f64],
     scale: &[f64],
-    residuals: &mut impl FnMut(&[f64]) -> Vec<f64>,
-) -> DMatrix<f64> {
+    residuals: &mut impl FnMut(&[f64]) -> Option<Vec<f64>>,
+) -> Option<DMatrix<f64>> {
     let mut moved = parameters.to_vec();
-    let columns: Vec<DVector<f64>> = (0..parameters.len())
+    let columns: Option<Vec<DVector<f64>>> = (0..parameters.len())
         .map(|k| {
             moved[k] = parameters[k] + DIFFERENCE * scale[k];
-            let above = DVector::from_vec(residuals(&moved));
+            let above = DVector::from_vec(residuals(&moved)?);
             moved[k] = parameters[k] - DIFFERENCE * scale[k];
-            let below = DVector::from_vec(residuals(&moved));
+            let below = DVector::from_vec(residuals(&moved)?);
             moved[k] = parameters[k];
-            (above - below) / (2.0 * DIFFERENCE)
+            Some((above - below) / (2.0 * DIFFERENCE))
         })
         .collect();
-    DMatrix::from_columns(&columns)
+    Some(DMatrix::from_columns(&columns?))
 }
 
 /// Cholesky factor of a symmetric matrix; `None` if it is not positive definite, to rounding.
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn the_banana_valley_has_its_minimum_at_one() {
         let found = minimize(&start([-1.2, 1.0]), |p| {
-            vec![10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]
+            Some(vec![10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]])
         })
         .unwrap();
         assert!(
@@ -147,6 +148,6 @@ mod tests {
 
     #[test]
     fn undetermined_parameters_are_noticed() {
-        assert!(minimize(&start([1.0, 1.0]), |p| vec![p[0] + p[1] - 3.0; 4]).is_none());
+        assert!(minimize(&start([1.0, 1.0]), |p| Some(vec![p[0] + p[1] - 3.0; 4])).is_none());
     }
 }

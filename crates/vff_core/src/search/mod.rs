@@ -20,7 +20,7 @@ mod meeting;
 mod observe;
 mod pareto;
 mod problem;
-mod search;
+mod procedure;
 mod solvers;
 mod stage;
 
@@ -39,5 +39,5 @@ pub use local::{LocalMethod, LocalOptions, LocalSearch, LocalStatus, local_searc
 pub use observe::{Control, Observer, Report};
 pub use pareto::{hypervolume, non_dominated};
 pub use problem::{Bounds, Candidate, Evaluation, FEASIBILITY, Problem, Score};
-pub use search::{Search, SearchOptions, search};
+pub use procedure::{Search, SearchOptions, search};
 pub use stage::Stage;

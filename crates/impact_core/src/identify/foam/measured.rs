@@ -155,7 +155,7 @@ impl Tests<'_> {
             scale,
             lower,
         };
-        let found = minimize(&start, |parameters| self.residuals(parameters));
+        let found = minimize(&start, |parameters| Some(self.residuals(parameters)));
         if (self.interrupted)() {
             return Err(Failure::Interrupted);
         }
