@@ -6,7 +6,7 @@ from hrsafety import errors
 from hrsafety._namespace import names_below
 from hrsafety.navigation import gains, knowledge, laws, metrics, robots, sensing, tracking
 from hrsafety.navigation.batch import simulate_batch
-from hrsafety.navigation.compare import Comparison, compare
+from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
 from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
@@ -34,7 +34,6 @@ from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = [
     "BorensteinKoren",
-    "Comparison",
     "DifferentialDriveRobot",
     "Disc",
     "FieldDStar",

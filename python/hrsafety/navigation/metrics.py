@@ -2,11 +2,12 @@
 
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.navigation.bands import Band
-from hrsafety.navigation.compare import Standing, step_cost
+from hrsafety.navigation.compare import Comparison, Standing, step_cost
 from hrsafety.navigation.performance import Performance
 
 __all__ = [
     "Band",
+    "Comparison",
     "Mean",
     "Paired",
     "Performance",
