@@ -153,7 +153,7 @@ BAD_FILES = {
     ),
     "unknown law": (
         ROOM + '[law]\ntype = "astar"\n',
-        r"law\.type must be virtual_force_field or khatib or .*, got 'astar'",
+        r"law\.type must be virtual_force_field or masoud or .*, got 'astar'",
     ),
     "no law type": (ROOM + "[law]\ngain_ratio = 1\n", r"law\.type must be given"),
     "unknown robot": (
