@@ -40,6 +40,7 @@ __all__ = [
     "Obstacle",
     "OmniKinematics",
     "ReferencePath",
+    "Run",
     "Scenario",
     "Sensor",
     "SetPoint",

@@ -95,13 +95,12 @@ impl AtWork {
         Python::attach(|py| {
             let fields = situation_fields(py, situation)?;
             let slot = &mut self.asked[lane];
-            let asked = match slot {
-                Some(asked) => asked,
-                None => {
-                    let (start, goal) = self.ends;
-                    let arguments = (self.robot, start, goal, self.seed);
-                    slot.insert(self.begin.call1(py, arguments)?)
-                }
+            let asked = if let Some(asked) = slot {
+                asked
+            } else {
+                let (start, goal) = self.ends;
+                let arguments = (self.robot, start, goal, self.seed);
+                slot.insert(self.begin.call1(py, arguments)?)
             };
             asked.call1(py, (fields,))?.extract(py)
         })

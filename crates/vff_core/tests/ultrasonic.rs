@@ -1,5 +1,6 @@
 //! A law that knows obstacles by their echoes alone.
 
+#[expect(dead_code)] // only the law is used here
 mod configurations;
 
 use std::f64::consts::{FRAC_PI_6, TAU};

@@ -15,7 +15,15 @@ from hrsafety.errors import HrsafetyError
 __all__ = ["LAW_NAMES", "UsageError", "parser"]
 
 LAW_NAMES = (
-    *("virtual-force-field", "masoud", "ge-cui", "khatib", "borenstein-koren", "virtual-impedance", "velocity-obstacle"),
+    *(
+        "virtual-force-field",
+        "masoud",
+        "ge-cui",
+        "khatib",
+        "borenstein-koren",
+        "virtual-impedance",
+        "velocity-obstacle",
+    ),
     *("optimal-reciprocal-collision-avoidance", "rapidly-exploring-random-tree", "field-d-star"),
 )
 """Laws of `hrsafety.scenarios.laws`, named here so that ``--help`` need not load them."""

@@ -81,4 +81,6 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_below(__name__, __all__, [gains, laws, metrics, robots, sensing, tracking, knowledge, errors])
+    __getattr__, __dir__ = names_below(
+        __name__, __all__, [gains, laws, metrics, robots, sensing, tracking, knowledge, errors]
+    )

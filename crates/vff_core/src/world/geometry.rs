@@ -175,6 +175,7 @@ fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R
 /// Lanes whose segment from robot to goal meets the rectangle, and the cross product of the
 /// directions from the centroid to robot and goal, with their dot product.
 #[inline(always)]
+#[must_use]
 pub fn separation<R: Real>(
     body: &Body,
     half: [f64; 2],
