@@ -13,5 +13,5 @@ from hrsafety import scenarios
 
 scenario = replace(scenarios.configuration("c1"), robot=nav.DifferentialDriveRobot(), heading=pi)
 for law in (nav.VirtualImpedanceLaw(view=pi / 4), nav.VirtualForceField()):
-    run = nav.built.simulate_built(scenario, law, nav.robots.AsBuilt())
+    run = nav.simulate(scenario, law, built=nav.robots.AsBuilt())
     print(f"{type(law).__name__:20} {run.outcome}, least clearance {run.min_clearance.min():.2f} m")
