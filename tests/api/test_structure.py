@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import dataclasses
-import graphlib
 import importlib
 import inspect
 import json
@@ -237,13 +236,6 @@ def test_plotting_computes_nothing_reactive(path: Path) -> None:
     }
     assert not called & COMPUTING_REACTIVE
     assert not [name for name in imported(path) if name.split(".")[-1] in COMPUTING_REACTIVE]
-
-
-def test_no_modules_import_each_other_in_a_circle() -> None:
-    # Imports for types and inside of functions count, too. What a package hands on is no knowledge of its own.
-    modules = {module_name(path): path for path in SOURCES if path.name != "__init__.py"}
-    knows = {name: (set(imported(path)) & set(modules)) - {name} for name, path in modules.items()}
-    graphlib.TopologicalSorter(knows).prepare()  # names the circle
 
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
