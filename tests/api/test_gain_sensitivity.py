@@ -121,7 +121,7 @@ def mean_of(metric: str, gains: np.ndarray) -> float:
 
 @pytest.mark.parametrize(
     ("metric", "column"),
-    [("performance", "performance_total"), ("arrival_time", "arrival_time"), ("min_clearance", "min_clearance")],
+    [("performance", "performance_total"), ("arrival_time", "arrival_time_s"), ("min_clearance", "min_clearance_m")],
 )
 def test_slopes_are_those_of_scipy(metric: Any, column: str) -> None:
     own = nav.gains.gain_gradient(SCENES, SOURCE, metric=metric, relative_step=1e-3)

@@ -1,5 +1,6 @@
 //! Shapes and sonar: conversion of arguments and results.
 
+use numeric::error::finite_pair;
 use numeric::random::Stream;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,6 +39,8 @@ impl EchoShape {
     #[staticmethod]
     #[pyo3(signature = (*, start, end))]
     fn wall(start: [f64; 2], end: [f64; 2]) -> CoreResult<Self> {
+        finite_pair("start", start)?;
+        finite_pair("end", end)?;
         Ok(Self(PlacedShape::wall(start, end).checked()?))
     }
 }
