@@ -1056,7 +1056,7 @@ def doppler_frequency(frequency: float, *, speed_of_sound: float, observer_speed
 def record_burst(
     burst: Burst, array: MicrophoneArray, converter: Converter, place: _SoundPlace, *, seed: int, run: int
 ) -> _HeardFields:
-    """Return samples of three microphones that hear a burst."""
+    """Return samples of three microphones that receive a burst."""
 
 def sound_delays(
     array: MicrophoneArray, samples: _Array, sample_rate: float, options: _DelayOptions

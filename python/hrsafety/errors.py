@@ -174,7 +174,7 @@ class StorageError(HrsafetyError, OSError):
     kept : str
         What is on the disk and stays there.
     remedy : str
-        How to go on.
+        How to resume.
     """
 
     def __init__(self, path: object, error: OSError, *, kept: str, remedy: str) -> None:
@@ -183,7 +183,7 @@ class StorageError(HrsafetyError, OSError):
         self.remedy = remedy
 
     def __str__(self) -> str:
-        """Return the sentence that names the file, the reason, what is kept and how to go on."""
+        """Return the sentence that names the file, the reason, what is kept and how to resume."""
         return f"{self.filename} cannot be written ({self.strerror}); kept: {self.kept}; {self.remedy}"
 
     def __reduce__(self) -> tuple[object, ...]:

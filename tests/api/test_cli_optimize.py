@@ -367,7 +367,7 @@ def test_ctrl_c_keeps_the_best_so_far_and_resume_ends_with_the_same_result(
     _, errors = process.communicate(timeout=LIMIT)
     assert process.returncode == 130, errors
     assert "hrsafety: interrupted; best of " in errors
-    assert f"go on with: hrsafety optimize {path} --out {out} --resume" in errors
+    assert f"resume with: hrsafety optimize {path} --out {out} --resume" in errors
     assert {entry.name for entry in out.iterdir()} == {"best_so_far.json", "search.checkpoint"}
     so_far = json.loads((out / "best_so_far.json").read_text(encoding="utf-8"))
     assert so_far["interrupted"] is True
@@ -376,7 +376,7 @@ def test_ctrl_c_keeps_the_best_so_far_and_resume_ends_with_the_same_result(
     assert main(arguments) == 2
     line = error_line(capsys)
     assert f"--out must hold no unfinished search without --resume, got {out / 'search.checkpoint'}" in line
-    assert "add --resume to go on with it, or remove" in line
+    assert "add --resume to continue it, or remove" in line
     assert "nothing" not in line
     assert main([*arguments, "--resume"]) == 0
     assert "since it was resumed" in capsys.readouterr().out

@@ -100,7 +100,7 @@ def test_pool_that_broke_leaves_the_finished_chunks(tmp_path: Path, expected: by
         parameters={"victim": 0.0, "marker": str(marker)},
     )
     out = tmp_path / "out"
-    with spawned(1) as executor, pytest.raises(sweep.SweepError, match=r"the pool broke .* the same call goes on"):
+    with spawned(1) as executor, pytest.raises(sweep.SweepError, match=r"the pool broke .* the same call resumes"):
         sweep.run(SPEEDS, study, out=out, executor=executor, chunk_rows=512)
     assert marker.exists()
     assert force(sweep.run(SPEEDS, study, out=out, chunk_rows=512)) == expected

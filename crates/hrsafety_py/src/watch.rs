@@ -1,4 +1,4 @@
-//! Long work of the cores: it hears that it is to stop, and tells how much is done.
+//! Long work of the cores: it is told to stop, and reports how much is done.
 
 use std::num::NonZero;
 use std::sync::Mutex;
@@ -16,7 +16,7 @@ use crate::signals::attended;
 /// Time between two looks of work that looks at signals itself.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What the work hears and tells while it runs.
+/// What the work asks and reports while it runs.
 #[derive(Default)]
 pub struct Control<'a> {
     cancelled: AtomicBool,
@@ -63,7 +63,7 @@ impl Control<'_> {
     }
 }
 
-/// A Python function that hears how much of how much is done.
+/// Python callback `(done, total)`.
 #[derive(Clone, Copy, Default)]
 pub struct Report<'a> {
     call: Option<&'a Py<PyAny>>,
@@ -76,7 +76,7 @@ impl<'a> Report<'a> {
         Self { call, total }
     }
 
-    /// Nobody hears of it.
+    /// Nobody is told.
     pub fn none() -> Self {
         Self::default()
     }

@@ -161,7 +161,7 @@ impl Block<'_> {
 }
 
 /// Metrics of every row. A row whose parameters are out of range, or that never closes in, is
-/// NaN with its status. `progress` hears of rows as they are done.
+/// NaN with its status. `progress` is called as rows are done.
 ///
 /// # Errors
 /// Arrays differ in length, an option is out of range, or the caller asked to stop.

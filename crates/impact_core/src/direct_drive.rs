@@ -45,7 +45,7 @@ pub struct DirectDrive {
 }
 
 impl DirectDrive {
-    /// Passes a joint that can be.
+    /// Returns the joint if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.

@@ -69,7 +69,7 @@ impl SetPoint {
         })
     }
 
-    /// Passes a set-point whose segments are in order.
+    /// Returns the set-point if its segments are in order.
     ///
     /// # Errors
     /// They are not, or a number is not finite.

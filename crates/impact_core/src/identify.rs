@@ -36,7 +36,7 @@ fn check_samples(
     check_finite(name, values)
 }
 
-/// Passes a probability strictly between 0 and 1.
+/// Returns the probability if it lies strictly between 0 and 1.
 fn check_confidence(confidence: f64) -> Result<f64> {
     if confidence > 0.0 && confidence < 1.0 {
         Ok(confidence)

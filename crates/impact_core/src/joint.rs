@@ -18,7 +18,7 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// Passes a joint that can be.
+    /// Returns the joint if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.

@@ -103,7 +103,7 @@ pub const HEAD_APPARATUS: Head = Head {
 };
 
 impl Manipulator {
-    /// Passes a manipulator that can be.
+    /// Returns the manipulator if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.
@@ -116,7 +116,7 @@ impl Manipulator {
 }
 
 impl Head {
-    /// Passes a head that can be.
+    /// Returns the head if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.
@@ -139,7 +139,7 @@ impl Foam {
         }
     }
 
-    /// Passes a foam that can be.
+    /// Returns the foam if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.
@@ -161,7 +161,7 @@ impl Foam {
 }
 
 impl System {
-    /// Passes a system whose parts can be.
+    /// Returns the system if its parts are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.

@@ -135,7 +135,7 @@ impl Failure {
     }
 }
 
-/// Passes a finite number.
+/// Returns the number if it is finite.
 ///
 /// # Errors
 /// It is not finite.
@@ -147,7 +147,7 @@ pub fn finite(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Passes a finite number above zero.
+/// Returns the number if it is finite and above zero.
 ///
 /// # Errors
 /// It is not finite or not above zero.
@@ -163,7 +163,7 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Passes a finite number that is not negative.
+/// Returns the number if it is finite and not negative.
 ///
 /// # Errors
 /// It is not finite or below zero.
@@ -179,7 +179,7 @@ pub fn not_negative(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Passes a finite vector.
+/// Returns the vector if it is finite.
 ///
 /// # Errors
 /// A component is not finite.

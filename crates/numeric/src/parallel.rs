@@ -44,7 +44,7 @@ pub fn each_run<T: Send>(
                 if (work.interrupted)() {
                     return Err(Failure::Interrupted);
                 }
-                // Runs before a failure go on: which one is met first depends on the threads.
+                // Runs before a failure continue: which one is met first depends on the threads.
                 if failure.before(index) {
                     break;
                 }

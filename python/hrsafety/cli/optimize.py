@@ -139,7 +139,7 @@ def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> Gai
                 "--out",
                 "hold no unfinished search without --resume",
                 Shown(path),
-                f"add --resume to go on with it, or remove {path} to start over",
+                f"add --resume to continue it, or remove {path} to start over",
             )
     if study.front is not None:
         _check_front(study)
@@ -231,7 +231,7 @@ def _check_front(study: GainStudy) -> None:
 
 
 def _leave(options: argparse.Namespace, study: GainStudy, search: nav.GainSearch, place: Path) -> None:
-    """Write the best so far, say how to go on, and end as Ctrl-C does."""
+    """Write the best so far, say how to resume, and end as Ctrl-C does."""
     path = output.write_text(place / SO_FAR, optimize_record.best_so_far(options.study, study, search))
     found = f"; {search.shortcoming}"
     if search.valid:
@@ -240,7 +240,7 @@ def _leave(options: argparse.Namespace, study: GainStudy, search: nav.GainSearch
     print(f"hrsafety: wrote {path}", file=sys.stderr)
     words = ["hrsafety", "optimize", options.study, "--out", options.out, "--resume"]
     command = " ".join(f'"{word}"' if " " in word else word for word in words)
-    print(f"hrsafety: go on with: {command}", file=sys.stderr, flush=True)
+    print(f"hrsafety: resume with: {command}", file=sys.stderr, flush=True)
     raise KeyboardInterrupt
 
 

@@ -54,7 +54,7 @@ _OPTIMIZE_EXAMPLE = """examples:
 
 The file names scenarios, bounds, the grid and its refinements, an objective, constraints and
 whatever else differs from the published procedure. Ctrl-C keeps what is done in the folder;
---resume goes on from there and ends with the same result. The folder receives summary.html
+--resume continues from there and ends with the same result. The folder receives summary.html
 with the pictures, results.json with every value, and the pictures.
 """
 _SWEEP_EXAMPLE = """examples:
@@ -63,7 +63,7 @@ _SWEEP_EXAMPLE = """examples:
 
 The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
 is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
-command goes on after a stop, whatever stopped it. The folder receives summary.html with the
+command resumes after a stop, whatever stopped it. The folder receives summary.html with the
 pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
 """
 
@@ -252,7 +252,7 @@ def _add_optimize(commands: Any) -> None:
     )
     parser.add_argument("study", metavar="STUDY.toml", help="gain study file")
     parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
-    parser.add_argument("--resume", action="store_true", help="go on with an interrupted search, if there is one")
+    parser.add_argument("--resume", action="store_true", help="resume an interrupted search, if there is one")
     _add_strict(parser)
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
@@ -266,7 +266,7 @@ def _add_sweep(commands: Any) -> None:
     )
     parser.add_argument("study", metavar="STUDY.toml", help="sweep file")
     parser.add_argument(
-        "--out", metavar="DIR", default="sweep", help="folder to write into, or to go on in [%(default)s]"
+        "--out", metavar="DIR", default="sweep", help="folder to write into, or to resume in [%(default)s]"
     )
     parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
     _add_strict(parser)

@@ -1,4 +1,4 @@
-"""``hrsafety sweep STUDY.toml``: run a sweep or go on with it, and show what came out."""
+"""``hrsafety sweep STUDY.toml``: run a sweep or resume it, and show what came out."""
 
 from __future__ import annotations
 

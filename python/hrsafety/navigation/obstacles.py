@@ -524,7 +524,7 @@ class Human(Obstacle):
         start : tuple of float
             Position at time 0, in m.
         segments : iterable of (duration, velocity, acceleration)
-            Duration in s, velocity at the begin of the segment in m/s, acceleration in m/s^2.
+            Duration in s, velocity at the start of the segment in m/s, acceleration in m/s^2.
             After the last segment the velocity reached is kept.
         **fields
             ``radius``, ``active_radius``, ``critical_radius``, ``active_clearance``,

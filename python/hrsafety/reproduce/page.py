@@ -24,7 +24,7 @@ FIRST, LAST = "impact", "reactive"
 
 @dataclass(kw_only=True, slots=True)
 class Report:
-    """What goes on the page.
+    """Content of the page.
 
     Attributes
     ----------

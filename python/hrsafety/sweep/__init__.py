@@ -2,7 +2,7 @@
 
 A design says which rows, a study what is computed for each. `run` does it in chunks that are
 written as they finish, here, in any ``concurrent.futures`` executor or on a Dask cluster; the
-same call goes on after a stop. Sampled designs need SciPy, data frames Polars, N-dimensional
+same call resumes after a stop. Sampled designs need SciPy, data frames Polars, N-dimensional
 tables xarray (extra ``sweep``), clusters dask.distributed (extra ``distributed``).
 """
 

@@ -155,7 +155,7 @@ def to_xarray(result: Stored, columns: Sequence[Column]) -> xarray.Dataset:
         raise MissingExtraError("this format needs xarray: pip install hrsafety[sweep]") from None
     if not result.complete:
         text = f"{len(result.finished)} of {result.chunk_count} chunks"
-        raise SweepError(f"the sweep is not complete ({text}); run it again to go on")
+        raise SweepError(f"the sweep is not complete ({text}); run it again to resume")
     case = result.columns[len(result.axes)].name if result.cases else None
     lengths = [len(result.cases)] if result.cases else []
     coordinates: dict[str, Any] = {} if case is None else {case: ((case,), list(result.cases))}

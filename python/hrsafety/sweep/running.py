@@ -1,4 +1,4 @@
-"""Run a sweep: here, in a pool, or on a cluster; go on after a stop."""
+"""Run a sweep: here, in a pool, or on a cluster; resume after a stop."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ROUNDS = 2
 
 
 class SweepInterrupted(KeyboardInterrupt):
-    """Ctrl-C stopped a sweep; the message says what is finished and how to go on."""
+    """Ctrl-C stopped a sweep; the message says what is finished and how to resume."""
 
 
 class SweepWarning(UserWarning):
@@ -60,7 +60,7 @@ def run(
     """Compute a study for every row of a design, chunk by chunk.
 
     With ``out``, each chunk is written as it finishes, whole or not at all, and the same call
-    goes on where the last one stopped, whatever stopped it: finished chunks are neither lost
+    resumes where the last one stopped, whatever stopped it: finished chunks are neither lost
     nor computed again, and the result is the same bit for bit as without a stop. Chunks whose
     checksum does not fit are computed again with a warning. A folder of another sweep is
     refused. Memory does not grow with the number of rows. Without ``out`` the chunks stay in
@@ -93,7 +93,7 @@ def run(
         Threads of each chunk. ``None``: all cores here; one with an executor or a client, whose
         workers share the cores. Never changes a bit of the result.
     resume : bool
-        Whether a sweep that is in the folder may be gone on with.
+        Whether a sweep that is in the folder may be resumed.
     progress : callable or None
         Called with (rows of the design done, rows in all) at the start and after each chunk.
 
@@ -109,7 +109,7 @@ def run(
     SweepError
         If the folder holds another sweep, another process writes into it, or a pool broke.
     SweepInterrupted
-        After Ctrl-C; a `KeyboardInterrupt` whose message says how to go on.
+        After Ctrl-C; a `KeyboardInterrupt` whose message says how to resume.
     MissingExtraError
         If a library is missing that the design or the client needs.
 
@@ -234,10 +234,10 @@ def _kept(report: _Report, path: Path | None) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        left = f"they are in {path}, the same call goes on" if path else "they are lost without a folder (out)"
+        left = f"they are in {path}, the same call resumes" if path else "they are lost without a folder (out)"
         raise SweepInterrupted(f"sweep stopped with {report.done} of {rows} finished; {left}") from None
     except BrokenExecutor as error:
-        left = f"{report.done} of {rows} are in {path}, the same call goes on" if path else "nothing was kept"
+        left = f"{report.done} of {rows} are in {path}, the same call resumes" if path else "nothing was kept"
         raise SweepError(f"the pool broke ({error}); {left}") from error
 
 

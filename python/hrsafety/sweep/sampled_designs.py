@@ -187,7 +187,7 @@ class Sobol(_Sampled):
 
 
 class _Sequences(threading.local):
-    """The Sobol engine that was used last, one for each thread, so that going on costs nothing."""
+    """The Sobol engine that was used last, one for each thread, so that the next draw costs nothing."""
 
     def __init__(self) -> None:
         self._key: tuple[int, int, bool] | None = None

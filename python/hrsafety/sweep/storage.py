@@ -38,7 +38,7 @@ MOST_NAMED = 4
 
 
 class SweepError(HrsafetyError):
-    """A sweep cannot go on: its folder belongs to another one, is damaged, or a worker died."""
+    """A sweep cannot be resumed: its folder belongs to another one, is damaged, or a worker died."""
 
 
 def new_manifest(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -92,7 +92,7 @@ class Folder:
 
     @classmethod
     def prepared(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool) -> Folder:
-        """Return the folder of a sweep, new or to be gone on with.
+        """Return the folder of a sweep, new or to be resumed.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class Folder:
         manifest : mapping
             Of the sweep that is about to run.
         resume : bool
-            Whether a sweep that is there may be gone on with.
+            Whether a sweep that is there may be resumed.
 
         Returns
         -------

@@ -118,7 +118,7 @@ fn invalid_code(columns: &Columns<'_>, row: usize) -> Option<u8> {
     (Status::ALL.len() + place).try_into().ok()
 }
 
-/// Says which number is bad in every row that cannot be.
+/// Says which number is bad in every invalid row.
 fn name_bad_numbers(
     columns: &Columns<'_>,
     status: &mut [u8],

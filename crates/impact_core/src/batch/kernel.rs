@@ -129,7 +129,7 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
     }
 }
 
-/// Rows that were put off, side by side.
+/// Deferred rows, side by side.
 #[inline(always)]
 fn followed<S: Simd, R: Real, const ALL: bool>(
     simd: S,

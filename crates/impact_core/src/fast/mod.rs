@@ -61,7 +61,7 @@ pub struct Group<R> {
     pub horizon: f64,
     /// Length of a cell times the fastest root.
     pub cell_angle: f64,
-    /// Whether lanes with two humps or a shelf are followed; else they are put off: it takes so
+    /// Whether lanes with two humps or a shelf are followed; else they are deferred: it takes so
     /// many steps that they better share them with their like.
     pub humps: bool,
 }
@@ -98,7 +98,7 @@ pub struct GroupRest<R: Real> {
     pub foam_power: R,
     /// Lanes whose numbers hold.
     pub accepted: R::Mask,
-    /// Lanes that are put off.
+    /// Deferred lanes.
     pub put_off: R::Mask,
 }
 

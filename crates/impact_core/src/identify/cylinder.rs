@@ -29,7 +29,7 @@ pub struct DesiredMotion {
 }
 
 impl CylinderController {
-    /// Passes a controller that can be.
+    /// Returns the controller if its values are valid.
     ///
     /// # Errors
     /// Names the number that is out of range.

@@ -182,7 +182,7 @@ impl State {
     ) {
         self.time = until;
         self.position = position;
-        // A stretch that goes on in the same medium ends at a turn.
+        // A stretch that continues in the same medium ends at a turn.
         let turned = was_flying == flying || matches!(motion, Motion::Rest { .. });
         self.velocity = if turned { 0.0 } else { velocity };
         if !was_flying {

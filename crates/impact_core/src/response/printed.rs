@@ -40,7 +40,7 @@ impl Misprint {
     /// `b^2 r^2`, which is less from `r = (3 + sqrt 5) / 2 b` on.
     pub(super) const FASTER: f64 = 2.618_033_988_749_895;
 
-    /// The series of one cell; the misprint goes on to its end.
+    /// The series of one cell; the misprint lasts to its end.
     pub(super) fn stretch(
         &mut self,
         bodies: &Bodies,

@@ -130,7 +130,7 @@ pub trait LawFamily: Sync {
     fn keeps_to_regions(&self) -> bool {
         false
     }
-    /// Passes a set of gains that the law allows.
+    /// Returns the gains if the law allows them.
     ///
     /// # Errors
     /// Names the gain that is not allowed.

@@ -59,7 +59,7 @@ impl Default for HolonomicRobot {
 }
 
 impl HolonomicRobot {
-    /// Passes a robot whose values are in range.
+    /// Returns the robot if its values are in range.
     ///
     /// # Errors
     /// Names the value that is not.

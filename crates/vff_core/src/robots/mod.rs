@@ -70,7 +70,7 @@ impl Default for DifferentialDriveRobot {
 }
 
 impl DifferentialDriveRobot {
-    /// Passes a robot whose values are in range.
+    /// Returns the robot if its values are in range.
     ///
     /// # Errors
     /// Names the value that is not.

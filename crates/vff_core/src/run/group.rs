@@ -57,7 +57,7 @@ impl AnyLaw {
         self.0.gains()
     }
 
-    /// Passes a law whose gains are allowed.
+    /// Returns the law if its gains are allowed.
     ///
     /// # Errors
     /// Names the gain that is not.
@@ -87,7 +87,7 @@ pub(crate) trait Driven: Send + Sync {
     fn gains(&self) -> Vec<f64>;
     /// Gains that act on a robot without obstacles, ascending.
     fn free_gains(&self) -> &'static [usize];
-    /// Passes a set of gains that the law allows.
+    /// Returns the gains if the law allows them.
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
     /// Runs gain sets and hands every run over.
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;

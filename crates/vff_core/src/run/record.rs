@@ -1,4 +1,4 @@
-//! What is kept of a run while it goes on.
+//! What is kept of a run while it lasts.
 
 use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::Command;
@@ -11,7 +11,7 @@ pub trait Recorder<R: Real> {
     const EVERY_STEP: bool = false;
     /// A force was computed; `running`: for whom it counts.
     fn sample(&mut self, _command: &Command<R>, _running: R::Mask) {}
-    /// State at the begin of a step.
+    /// State at the start of a step.
     fn row(
         &mut self,
         _time: f64,

@@ -10,7 +10,7 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 pub(crate) struct Scene<S> {
     scenario: S,
     cursors: Vec<usize>,
-    /// Bodies at the begin of the block and after each of its steps.
+    /// Bodies at the start of the block and after each of its steps.
     pub frames: Vec<Vec<Body>>,
     /// Bodies in the middle of the first step, if an integrator asks for them.
     pub middle: Vec<Body>,

@@ -39,7 +39,7 @@ impl Archive {
         }
     }
 
-    /// The same points at the begin of a round.
+    /// The same points at the start of a round.
     pub fn renewed(&mut self) -> Self {
         Self {
             entries: std::mem::take(&mut self.entries),

@@ -164,7 +164,7 @@ impl<'a> Session<'a> {
     /// by side; in all there are `total` evaluations, or searches in the local stage. What they
     /// were answered before an interruption comes from the ledger.
     ///
-    /// The observer hears of every meeting. Local searches count when they are done, by
+    /// The observer is called at every meeting. Local searches count when they are done, by
     /// themselves; of the others every evaluation counts, `total` in all.
     pub fn solve<T: Send>(
         &self,

@@ -71,7 +71,7 @@ impl SearchState {
         }
     }
 
-    /// The state to go on from.
+    /// The state to resume from.
     ///
     /// # Errors
     /// It belongs to another search.

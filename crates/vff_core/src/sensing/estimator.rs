@@ -32,7 +32,7 @@ pub enum Estimator {
 }
 
 impl Estimator {
-    /// Passes an estimator whose numbers make sense: gains inside the stable range
+    /// Returns the estimator if its numbers make sense: gains inside the stable range
     /// `0 < alpha <= 1`, `0 < beta < 4 - 2 alpha`, positive deviations.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Estimator {
     }
 }
 
-/// Passes a positive number whose square can be divided by.
+/// Returns a positive number if its square can be divided by.
 fn with_square(name: &str, value: f64) -> Result<f64> {
     positive(name, value)?;
     if DEVIATIONS.contains(&value) {

@@ -127,7 +127,7 @@ impl Vision {
         Err(error.mended_by(format!("take at least {least:?} s")))
     }
 
-    /// Passes a vision whose values make sense.
+    /// Returns the vision if its values make sense.
     ///
     /// # Errors
     /// Names the value that does not.

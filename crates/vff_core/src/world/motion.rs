@@ -42,7 +42,7 @@ impl Piece {
 pub struct Segment {
     /// Duration in s; may be infinite.
     pub duration: f64,
-    /// Velocity at the begin in m/s.
+    /// Velocity at the start in m/s.
     pub velocity: [f64; 2],
     /// Acceleration in m/s^2.
     pub acceleration: [f64; 2],
@@ -51,7 +51,7 @@ pub struct Segment {
 /// Motion of a body over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Pieces in order of time; the last one goes on for ever.
+    /// Pieces in order of time; the last one lasts for ever.
     pieces: Vec<Piece>,
     /// First and last instant of presence.
     presence: (f64, f64),
@@ -317,7 +317,7 @@ impl Motion {
         steady.then(|| self.max_initial_speed())
     }
 
-    /// Largest speed at the begin of any piece, in m/s.
+    /// Largest speed at the start of any piece, in m/s.
     #[must_use]
     pub fn max_initial_speed(&self) -> f64 {
         let speed = |piece: &Piece| piece.velocity[0].hypot(piece.velocity[1]);

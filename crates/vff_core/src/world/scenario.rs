@@ -243,7 +243,7 @@ impl Scenario {
         self.differential.as_ref()
     }
 
-    /// Passes a scenario whose robot moves as a point mass.
+    /// Returns the scenario if its robot moves as a point mass.
     ///
     /// # Errors
     /// The robot has two wheels.

@@ -139,7 +139,7 @@ def optimize_gains(
         Longest simulated time in s where a scenario's own is longer.
     checkpoint : path or None
         File that the state is written to every few seconds, at Ctrl-C and at the end. If it
-        exists the search goes on from there, bit for bit as if it had not been interrupted.
+        exists the search resumes from there, bit for bit as if it had not been interrupted.
     threads : int or None
         Number of threads; all cores when ``None``. Never changes a bit of the result.
     progress : callable or None

@@ -49,7 +49,7 @@ class Ultrasonic(Parameters):
     range_noise : float
         Standard deviation of a reading, in m.
     firing : str
-        ``"together"``; ``"cross_talk"``: together, and each sensor hears the echoes of the others
+        ``"together"``; ``"cross_talk"``: together, and each sensor receives the echoes of the others
         that it can see; ``"in_turn"``: one sensor in each control period, the others keep their points.
     max_speed : float
         Largest speed in m/s of what is seen, for which the regions are sized.

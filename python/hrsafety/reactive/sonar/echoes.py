@@ -183,7 +183,7 @@ class Sonar(Parameters):
     temperature, assumed_temperature : float
         Of the air, and what the sensor takes for granted, in degrees Celsius; 14.17 makes 340 m/s.
     firing : str
-        ``"together"``; ``"cross_talk"``: together, and each sensor hears the echoes of the others
+        ``"together"``; ``"cross_talk"``: together, and each sensor receives the echoes of the others
         that it can see; ``"in_turn"``: one sensor a step, the others keep their readings.
     rear : bool
         Three more sensors, those in front turned by half a turn about the center.

@@ -145,9 +145,9 @@ def record_burst(
     samples: int | None = None,
     seed: int = 0,
 ) -> SoundRecording:
-    """Return what three microphones hear of a burst.
+    """Return what three microphones receive of a burst.
 
-    Microphone i hears ``s(f (t - R_i / c)) / R_i`` with R_i in m: the pressure falls with 1/R, its
+    Microphone i receives ``s(f (t - R_i / c)) / R_i`` with R_i in m: the pressure falls with 1/R, its
     power with 1/R^2. The factor f of all frequencies is that of `doppler_frequency`, common to the
     three microphones, so that motion does not change the delays; ranges are those at the arrival.
 
@@ -216,7 +216,7 @@ def record_burst(
 def doppler_frequency(
     frequency: float, *, observer_speed: float = 0.0, source_speed: float = 0.0, speed_of_sound: float = 340.0
 ) -> float:
-    """Return the frequency that a moving observer hears of a moving source.
+    """Return the frequency that a moving observer measures of a moving source.
 
     Corrected (1): f' = f (c + v_obs) / (c - v_src).
 

@@ -26,7 +26,7 @@ class Delays(NamedTuple):
     Attributes
     ----------
     delay_12, delay_13 : float
-        dt_12 and dt_13 in s, positive when M1 hears first; NaN when a channel is constant.
+        dt_12 and dt_13 in s, positive when M1 receives it first; NaN when a channel is constant.
     lag_12, lag_13 : int
         Lags of the best values, in whole samples; 0 when a channel is constant.
     coefficient_12, coefficient_13 : float
@@ -94,7 +94,7 @@ def estimate_delays(
     window: int | None = None,
     window_start: int | None = None,
 ) -> Delays:
-    """Return how much later than M1 the microphones M2 and M3 hear a sound.
+    """Return how much later than M1 the microphones M2 and M3 receive a sound.
 
     Lags are signed and end two samples beyond what the spacing allows: ceil(l f_s / c) + 2 for M2,
     twice that for M3. Each channel is taken without its mean. With ``"mean_square"`` the mean of

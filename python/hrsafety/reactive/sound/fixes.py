@@ -168,7 +168,7 @@ def locate(
     array : MicrophoneArray
         The microphones.
     delay_12, delay_13 : float
-        dt_12 and dt_13 in s, positive when the other microphone hears later than M1; NaN where none
+        dt_12 and dt_13 in s, positive when the other microphone receives it later than M1; NaN where none
         was measured.
     arrival_deviation : float
         Standard deviation of the independent jitter of each of the three arrivals, in s. The

@@ -65,7 +65,7 @@ class MicrophoneArray(Parameters):
         Returns
         -------
         delay_12, delay_13 : ndarray
-            How much later than M1 the microphones M2 and M3 hear the source, in s.
+            How much later than M1 the microphones M2 and M3 receive the source, in s.
 
         Raises
         ------

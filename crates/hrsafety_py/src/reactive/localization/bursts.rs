@@ -123,7 +123,7 @@ fn hearing(place: Place) -> Hearing {
     }
 }
 
-/// Samples of three microphones that hear a burst.
+/// Samples of three microphones that receive a burst.
 #[pyfunction]
 #[pyo3(signature = (burst, array, converter, place, *, seed, run))]
 pub fn record_burst<'py>(

@@ -43,7 +43,7 @@ impl Gains {
         sets.iter().flat_map(Self::in_order).collect()
     }
 
-    /// Passes a set whose gains are finite and not negative.
+    /// Returns the set if its gains are finite and not negative.
     ///
     /// # Errors
     /// Names the gain that is not.

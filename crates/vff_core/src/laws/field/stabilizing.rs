@@ -25,7 +25,7 @@ pub enum Cap {
 }
 
 impl Cap {
-    /// Passes a cap that is finite and not negative.
+    /// Returns the cap if it is finite and not negative.
     ///
     /// # Errors
     /// It is not.

@@ -26,7 +26,7 @@ impl Default for Attraction {
 }
 
 impl Attraction {
-    /// Passes numbers that can be.
+    /// Returns the numbers if they are valid.
     ///
     /// # Errors
     /// A number is not finite, or negative.

@@ -45,7 +45,7 @@ pub struct BankOptions {
 }
 
 impl BankOptions {
-    /// Passes options that can be.
+    /// Returns the options if they are valid.
     ///
     /// # Errors
     /// A number is out of range.

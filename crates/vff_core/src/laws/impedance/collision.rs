@@ -71,7 +71,7 @@ impl Default for Pairing {
 }
 
 impl Pairing {
-    /// Passes a rule that can be.
+    /// Returns the rule if its values are valid.
     ///
     /// # Errors
     /// A number is not finite, or negative.

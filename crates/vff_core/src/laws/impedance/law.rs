@@ -56,7 +56,7 @@ impl Default for Impedance {
 }
 
 impl Impedance {
-    /// Passes numbers that can be.
+    /// Returns the numbers if they are valid.
     ///
     /// # Errors
     /// A number is not positive, `k_ref` not above `K_0`, or `d_ref` not below `D_0`.

@@ -41,7 +41,7 @@ impl Default for RateFilter {
 }
 
 impl RateFilter {
-    /// Passes numbers that can be.
+    /// Returns the numbers if they are valid.
     ///
     /// # Errors
     /// The time constant is negative or the largest change not positive.

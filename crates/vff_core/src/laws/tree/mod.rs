@@ -294,7 +294,7 @@ impl TreePlanner {
         if self.path.len() < 2 || self.path.last() != Some(&[0.0; 2]) {
             return false;
         }
-        // The robot may have passed the first points: it goes on to the last one in sight.
+        // The robot may have passed the first points: it heads for the last one in sight.
         let Some(next) = (1..self.path.len())
             .rev()
             .find(|&number| is_free([position, self.path[number]], &self.footprints))

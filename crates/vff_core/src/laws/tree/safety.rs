@@ -20,7 +20,7 @@ pub struct Stopping {
 
 impl Stopping {
     /// Whether a robot that takes up a velocity as fast as it can, keeps it until the next sample
-    /// and then brakes to rest, touches no obstacle that goes on at its velocity. An obstacle that
+    /// and then brakes to rest, touches no obstacle that keeps its velocity. An obstacle that
     /// it touches already must be left.
     ///
     /// Braking is checked in pieces of constant velocity; the radius is enlarged by how far the

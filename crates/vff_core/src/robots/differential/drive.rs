@@ -42,7 +42,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Passes a pose whose numbers are finite.
+    /// Returns the pose if its numbers are finite.
     ///
     /// # Errors
     /// Names the number that is not.
@@ -78,7 +78,7 @@ pub struct Twist {
 }
 
 impl Twist {
-    /// Passes a twist whose numbers are finite.
+    /// Returns the twist if its numbers are finite.
     ///
     /// # Errors
     /// Names the number that is not.

@@ -16,7 +16,7 @@ const WHOLE: f64 = 1e-9;
 /// Control periods between two looks whether to stop.
 const LOOK: usize = 4096;
 
-/// Pose and motion at the begin of a run.
+/// Pose and motion at the start of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackStart {
     /// Where the robot is.
@@ -70,7 +70,7 @@ fn whole(ratio: f64, name: &str, rule: &'static str, value: f64) -> Result<usize
     Ok(count as usize)
 }
 
-/// History of a run: one row at the begin and one for each motion step.
+/// History of a run: one row at the start and one for each motion step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackRun {
     /// Instants in s.

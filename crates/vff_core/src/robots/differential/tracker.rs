@@ -28,7 +28,7 @@ impl Default for Tracking {
 }
 
 impl Tracking {
-    /// Passes a law whose numbers are in range.
+    /// Returns the law if its numbers are in range.
     ///
     /// # Errors
     /// Names the number that is not.
@@ -68,7 +68,7 @@ impl Tracker {
         }
     }
 
-    /// Whether the goal phase may begin or go on; say no while the robot is in the active region
+    /// Whether the goal phase may begin or continue; say no while the robot is in the active region
     /// of an obstacle, for the goal phase knows none.
     pub fn permit_goal_phase(&mut self, permitted: bool) {
         self.may_capture = permitted;

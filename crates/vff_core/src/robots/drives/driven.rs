@@ -86,7 +86,7 @@ impl DrivenWheels {
     }
 
     /// Goes on by one motion step in which the wanted speeds change evenly to new ones, in rad/s;
-    /// `moved` hears after every wheel period how fast the wheels roll on the ground, and how fast
+    /// `moved` is called after every wheel period with how fast the wheels roll on the ground, and how fast
     /// they turn, in rad/s.
     pub fn step(
         &mut self,

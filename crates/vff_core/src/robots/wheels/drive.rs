@@ -108,7 +108,7 @@ pub struct WheelDrive {
 }
 
 impl WheelDrive {
-    /// Passes a drive whose values are in range.
+    /// Returns the drive if its values are in range.
     ///
     /// # Errors
     /// Names the value that is not.

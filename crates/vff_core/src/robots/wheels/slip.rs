@@ -27,7 +27,7 @@ impl Default for Slip {
 }
 
 impl Slip {
-    /// Passes a creep between -1 and 1 and a positive grip, which may be infinite.
+    /// Returns the slip if the creep lies between -1 and 1 and the grip is positive; it may be infinite.
     ///
     /// # Errors
     /// Names the value that is out of range.

@@ -21,7 +21,7 @@ pub struct TriOmni {
 }
 
 impl TriOmni {
-    /// Passes sizes that can be.
+    /// Returns the sizes if they are valid.
     ///
     /// # Errors
     /// A size is not positive, or the wheels are too wide for the chassis.

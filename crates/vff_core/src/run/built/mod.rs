@@ -61,7 +61,7 @@ impl Default for Built {
 }
 
 impl Built {
-    /// Passes what suits a scenario.
+    /// Returns the options if they suit a scenario.
     ///
     /// # Errors
     /// The step is not positive, the number of wheels is not that of the robot, or both cameras and

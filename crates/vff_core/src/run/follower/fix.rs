@@ -138,7 +138,7 @@ impl Default for Fixes {
 }
 
 impl Fixes {
-    /// Passes numbers that can be.
+    /// Returns the numbers if they are valid.
     ///
     /// # Errors
     /// The interval is not positive.

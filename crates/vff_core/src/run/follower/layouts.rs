@@ -47,7 +47,7 @@ impl Layouts {
         }
     }
 
-    /// Passes numbers that can be.
+    /// Returns the numbers if they are valid.
     ///
     /// # Errors
     /// A number is out of range.

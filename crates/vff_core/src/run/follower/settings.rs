@@ -142,7 +142,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Passes settings that can be.
+    /// Returns the settings if they are valid.
     ///
     /// # Errors
     /// A number is out of range.

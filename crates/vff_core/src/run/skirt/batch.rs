@@ -52,7 +52,7 @@ impl TestPlan {
         Direction::ALL[index / self.repeats.max(1) % Direction::ALL.len()]
     }
 
-    /// Passes a plan that can be carried out with a skirt.
+    /// Returns the plan if it can be carried out with a skirt.
     ///
     /// # Errors
     /// A number is out of range.

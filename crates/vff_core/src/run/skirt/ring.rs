@@ -199,7 +199,7 @@ pub struct Circumference {
 }
 
 impl Circumference {
-    /// Passes lengths that can be.
+    /// Returns the lengths if they are valid.
     ///
     /// # Errors
     /// A number is not finite or not positive.

@@ -117,7 +117,7 @@ pub struct Travel {
 }
 
 impl Travel {
-    /// Passes a motion that can be.
+    /// Returns the motion if its values are valid.
     ///
     /// # Errors
     /// A number is not finite and positive.

@@ -46,7 +46,7 @@ impl Default for DiscSceneOptions {
 }
 
 impl DiscSceneOptions {
-    /// Passes options that can be, for a robot of a radius in m.
+    /// Returns the options if they are valid, for a robot of a radius in m.
     ///
     /// # Errors
     /// A number is out of range, or the disc on the course may touch the robot at the start.

@@ -88,7 +88,7 @@ pub enum Policy {
     Nearest,
     /// The direction that leads away from all triggered sensors best.
     BestDirection,
-    /// Nothing: go on as before.
+    /// Nothing: keep the motion.
     TableOnly,
 }
 

@@ -13,10 +13,10 @@ use crate::world::shape::PlacedShape;
 /// Which sensors fire in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Firing {
-    /// All of them, and none hears the others.
+    /// All of them, and none receives the others.
     #[default]
     Together,
-    /// All of them, and each hears the echoes of the others.
+    /// All of them, and each receives the echoes of the others.
     TogetherWithCrossTalk,
     /// One after the other, the first one in step 0.
     InTurn,

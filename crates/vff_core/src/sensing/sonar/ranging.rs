@@ -40,7 +40,7 @@ impl Default for Ranging {
 }
 
 impl Ranging {
-    /// Passes limits that can be.
+    /// Returns the limits if they are valid.
     ///
     /// # Errors
     /// A number is not finite or out of range.

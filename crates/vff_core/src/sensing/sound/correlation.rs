@@ -1,7 +1,7 @@
 //! How alike two channels are at every lag.
 //!
 //! Lag `j` sets sample `k` of the first channel beside sample `k + j` of the other one, so that a
-//! positive lag means that the other one hears later. Lags are signed: with one-sided lags a source
+//! positive lag means that the other one receives it later. Lags are signed: with one-sided lags a source
 //! on the other side could not be seen.
 
 use std::sync::Arc;
