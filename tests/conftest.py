@@ -22,7 +22,39 @@ atexit.register(shutil.rmtree, _MATPLOTLIB, ignore_errors=True)
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+TESTS = Path(__file__).resolve().parent
+REPOSITORY = TESTS.parent
+
+# Files that take more than 7 s of one core; ``--fast`` leaves them out.
+SLOW = {
+    "api": {
+        *("test_animation.py", "test_camera_pictures.py", "test_cli.py", "test_cli_foam.py", "test_cli_optimize.py"),
+        *("test_cli_spoiled_files.py", "test_cli_sweep.py", "test_cli_terminal.py", "test_fork.py", "test_fuzz.py"),
+        *("test_gain_interrupt.py", "test_gain_search.py", "test_interrupt.py", "test_pictures.py", "test_plotting.py"),
+        *("test_reactive_follower.py", "test_reactive_sound_reproduce.py", "test_reproduce.py"),
+        *("test_reproduce_impact.py", "test_reproduce_laws.py", "test_reproduce_reactive.py", "test_reproduce_rows.py"),
+        *("test_sweep_pools.py", "test_sweep_resume.py"),
+    },
+    "docs": {"test_built_numbers.py", "test_documents.py", "test_gains_guide.py", "test_numbers.py"},
+    "golden": {"test_impact_exact.py", "test_impact_gradients.py", "test_impact_tables.py", "test_reciprocal.py"},
+    "properties": {
+        *("test_identification.py", "test_lyapunov.py", "test_runs.py", "test_tracking_convergence.py"),
+    },
+}
+_GONE = [f"{part}/{name}" for part, names in SLOW.items() for name in names if not (TESTS / part / name).is_file()]
+if _GONE:
+    raise pytest.UsageError(f"SLOW of tests/conftest.py names no files: {', '.join(_GONE)}")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option of the quick run."""
+    parser.addoption("--fast", action="store_true", help="leave out the files that take more than 7 s")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave a slow file out of the quick run."""
+    slow = collection_path.name in SLOW.get(collection_path.parent.name, ())
+    return True if slow and config.getoption("--fast") else None
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ use crate::sensing::sampled::{Measured, Sensor};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
-/// Blocks of steps between two questions whether to stop; about a millisecond.
+/// Blocks of steps, times obstacles, between two questions whether to stop; about a millisecond.
 const BLOCKS_PER_QUESTION: usize = 512;
 
 /// Most steps for which the motion of the obstacles is worked out ahead.
@@ -60,7 +60,8 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     // Positions between two samples are wanted only for robots that are measured late.
     let late = groups.first().is_some_and(|runs| runs.past.is_some());
     let longest = if late { 1 } else { STEPS_PER_BLOCK };
-    let mut until_question = BLOCKS_PER_QUESTION;
+    let blocks_per_question = (BLOCKS_PER_QUESTION / scenario.obstacles.len().max(1)).max(1);
+    let mut until_question = blocks_per_question;
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
         let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
@@ -105,7 +106,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         first += steps;
         until_question -= 1;
         if L::THINKS || until_question == 0 {
-            until_question = BLOCKS_PER_QUESTION;
+            until_question = blocks_per_question;
             if interrupted() {
                 return Err(Failure::Interrupted);
             }
