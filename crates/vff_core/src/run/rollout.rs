@@ -9,7 +9,7 @@ use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::Runs;
 use crate::run::scene::{Scene, bodies_at};
-use crate::sensing::sampled::{Measured, Sensor};
+use crate::sensing::sampled::{Measured, SampledScene};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
@@ -51,7 +51,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         clock.steps_per_sample.min(STEPS_PER_BLOCK),
         staged,
     );
-    let mut sensor = Sensor::new(scenario);
+    let mut sensor = SampledScene::new(scenario);
     let mut seen = scene.frames[0].clone();
     let mut groups: Vec<Runs<&Scenario, R>> = team
         .iter()

@@ -11,7 +11,7 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Positions with an error once a control period.
 pub(crate) struct NoisyPositions {
-    sensor: sampled::Sensor,
+    sensor: sampled::SampledScene,
     mark: Option<Noise>,
     mark_distance: f64,
     last_measured: Option<Vector2<f64>>,
@@ -35,7 +35,7 @@ impl NoisyPositions {
         let of_robot = Some(measurement).filter(Measurement::of_robot);
         let of_obstacles = measurement.of_obstacle(false);
         Some(Self {
-            sensor: sampled::Sensor::new(scenario)?,
+            sensor: sampled::SampledScene::new(scenario)?,
             mark: of_robot.map(|noise| Noise::new(noise, scenario.seed, MARK_STREAM)),
             mark_distance,
             last_measured: None,

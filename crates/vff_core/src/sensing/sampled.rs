@@ -111,17 +111,17 @@ struct Watched {
     last_position: Option<[f64; 2]>,
 }
 
-/// What the controller sees of the scene.
+/// What the controller sees of a scene through noise and latency.
 #[derive(Clone, Debug)]
-pub struct Sensor {
+pub struct SampledScene {
     period: f64,
     latency: f64,
     robot: Option<Noise>,
     obstacles: Vec<Option<Watched>>,
 }
 
-impl Sensor {
-    /// Sensor of a scenario, or `None` if everything is known exactly.
+impl SampledScene {
+    /// What the sensors of a scenario see, or `None` if everything is known exactly.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let measurement = scenario.measurement?;
