@@ -324,6 +324,6 @@ struct LastRow {
 
 impl LastRow {
     fn tell(&self, listener: &mut impl Listener) {
-        listener.row(self.time, &self.reading, self.energy, &self.bodies);
+        listener.end(self.time, &self.reading, self.energy, &self.bodies);
     }
 }

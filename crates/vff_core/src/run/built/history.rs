@@ -31,8 +31,12 @@ pub struct BuiltTrajectory {
 pub trait Listener {
     /// A force was computed from a position in m as the law knows it.
     fn sample(&mut self, _command: &Command<f64>, _seen: [f64; 2]) {}
-    /// State at the start of a step, or at the end of the run.
+    /// State at the start of a step.
     fn row(&mut self, _time: f64, _reading: &Reading, _energy: f64, _bodies: &[Body]) {}
+    /// State at the end of the run.
+    fn end(&mut self, time: f64, reading: &Reading, energy: f64, bodies: &[Body]) {
+        self.row(time, reading, energy, bodies);
+    }
 }
 
 /// Keeps everything.

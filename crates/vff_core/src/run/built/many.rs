@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Failure, Given, Result};
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::Planar;
 use crate::robots::drives::Reading;
 use crate::run::Interrupted;
 use crate::run::built::Built;
@@ -35,21 +35,21 @@ struct Sampled {
     kept: Histories,
     every: usize,
     next: usize,
-    last: Option<(f64, Vector2<f64>, Vec<f64>)>,
 }
 
 impl Sampled {
-    fn keep(&mut self, (time, position, distances): (f64, Vector2<f64>, Vec<f64>)) {
+    fn keep(&mut self, time: f64, reading: &Reading, bodies: &[Body]) {
+        let position = reading.robot.position;
+        let distance = |body: &Body| {
+            if body.state.present {
+                body.offset(position).distance_squared.sqrt()
+            } else {
+                f64::NAN
+            }
+        };
         self.kept.time.push(time);
         self.kept.position.push(position.lane(0));
-        self.kept.distance.extend(distances);
-    }
-
-    fn finish(mut self) -> Histories {
-        if let Some(last) = self.last.take() {
-            self.keep(last);
-        }
-        self.kept
+        self.kept.distance.extend(bodies.iter().map(distance));
     }
 }
 
@@ -60,23 +60,15 @@ impl Listener for Deaf {}
 
 impl Listener for Sampled {
     fn row(&mut self, time: f64, reading: &Reading, _energy: f64, bodies: &[Body]) {
-        let position = reading.robot.position;
-        let distance = |body: &Body| {
-            if body.state.present {
-                body.offset(position).distance_squared.sqrt()
-            } else {
-                f64::NAN
-            }
-        };
-        let row = (time, position, bodies.iter().map(distance).collect());
         if self.next == 0 {
             self.next = self.every;
-            self.last = None;
-            self.keep(row);
-        } else {
-            self.last = Some(row);
+            self.keep(time, reading, bodies);
         }
         self.next -= 1;
+    }
+
+    fn end(&mut self, time: f64, reading: &Reading, _energy: f64, bodies: &[Body]) {
+        self.keep(time, reading, bodies);
     }
 }
 
@@ -187,10 +179,9 @@ impl Many<'_> {
             kept: Histories::default(),
             every: clock_of(scenario, self.built)?.steps_per_sample,
             next: 0,
-            last: None,
         };
         let (summary, sampled) = self.one(scenario, law, self.built, sampled)?;
-        Ok((summary, sampled.finish()))
+        Ok((summary, sampled.kept))
     }
 
     fn one<L: Listener>(
