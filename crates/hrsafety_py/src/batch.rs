@@ -47,7 +47,7 @@ pub fn simulate_batch<'py>(
         .map(|scenario| scenario.0.clone())
         .collect();
     let report = Report::new(progress.as_ref(), count * scenarios.len());
-    let table = watched_law(py, law, report, |control| {
+    let table = watched_law(py, (law, options.threads), report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
         run_batch(

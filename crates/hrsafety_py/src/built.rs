@@ -105,7 +105,7 @@ pub fn built_simulate<'py>(
     stop_on_contact: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let built = built.run(step, stop_on_contact);
-    let (summary, columns) = watched_law(py, law, Report::none(), |control| {
+    let (summary, columns) = watched_law(py, (law, Some(1)), Report::none(), |control| {
         simulate_built(&scenario.0, &law.any, &built, &|| control.interrupted())
     })?;
     built_fields(py, &scenario.0, summary, columns)
@@ -124,7 +124,7 @@ pub fn built_evaluate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     let built = built.run(step, false);
     let weights = weights_of(weights);
-    let (score, run, nominal) = watched_law(py, law, Report::none(), |control| {
+    let (score, run, nominal) = watched_law(py, (law, Some(1)), Report::none(), |control| {
         let interrupted = || control.interrupted();
         evaluate_built(&scenario.0, &law.any, &built, weights, &interrupted)
     })?;
@@ -178,7 +178,7 @@ pub fn built_many<'py>(
         .collect();
     let driven: Vec<AnyLaw> = laws.iter().map(|law| law.any.clone()).collect();
     let report = Report::new(progress.as_ref(), driven.len() * scenarios.len());
-    let runs = watched_law(py, lead, report, |control| {
+    let runs = watched_law(py, (lead, options.threads), report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
         run_many_built(&scenarios, &driven, &built, &options, &interrupted, &count)

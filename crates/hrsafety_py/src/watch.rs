@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use numeric::error::Failure;
@@ -16,6 +16,12 @@ use crate::signals::attended;
 /// Time between two looks of work that looks at signals itself.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Most questions whether to stop of which one reads the clock.
+const MOST_QUESTIONS: u32 = 64;
+
+/// The clock is read more often when so much time has passed since it was read last.
+const LONG: Duration = Duration::from_millis(1);
+
 /// What the work asks and reports while it runs.
 #[derive(Default)]
 pub struct Control<'a> {
@@ -23,11 +29,17 @@ pub struct Control<'a> {
     done: AtomicUsize,
     /// Looks from within the work, where no other thread does.
     own: Option<Mutex<Looks<'a>>>,
+    /// Questions until the clock is read, and of how many one reads it: a control step of a fast
+    /// law takes little longer than that.
+    left: AtomicU32,
+    stride: AtomicU32,
 }
 
 /// Looks at signals and progress from within the work.
 struct Looks<'a> {
     report: Report<'a>,
+    /// When the clock was read last.
+    read: Instant,
     next: Instant,
     reported: Option<usize>,
     raised: Option<PyErr>,
@@ -39,11 +51,25 @@ impl Control<'_> {
         if self.cancelled.load(Ordering::Relaxed) {
             return true;
         }
-        let looks = self.own.as_ref().map(Mutex::lock);
-        let Some(Ok(mut looks)) = looks else {
+        let Some(own) = &self.own else { return false };
+        let left = self.left.load(Ordering::Relaxed);
+        if left > 0 {
+            self.left.store(left - 1, Ordering::Relaxed);
+            return false;
+        }
+        let Ok(mut looks) = own.lock() else {
             return false;
         };
-        if Instant::now() < looks.next {
+        let now = Instant::now();
+        let stride = if now - looks.read < LONG {
+            (2 * self.stride.load(Ordering::Relaxed)).clamp(1, MOST_QUESTIONS)
+        } else {
+            1
+        };
+        looks.read = now;
+        self.stride.store(stride, Ordering::Relaxed);
+        self.left.store(stride - 1, Ordering::Relaxed);
+        if now < looks.next {
             return false;
         }
         let (report, mut reported) = (looks.report, looks.reported);
@@ -106,10 +132,12 @@ pub fn here<T: Send, E: Send>(
 where
     CoreError: From<E>,
 {
+    let now = Instant::now();
     let control = Control {
         own: Some(Mutex::new(Looks {
             report,
-            next: Instant::now() + LOOK,
+            read: now,
+            next: now + LOOK,
             reported: None,
             raised: None,
         })),
@@ -131,17 +159,18 @@ where
     Ok(found)
 }
 
-/// Works under a law: in this thread if the law runs under the interpreter, as `watched` otherwise.
+/// Works under a law: in this thread if the law runs under the interpreter or no other thread is
+/// asked for, as `watched` otherwise.
 pub fn watched_law<T: Send, E: Send>(
     py: Python<'_>,
-    law: &Law,
+    (law, threads): (&Law, Option<usize>),
     report: Report<'_>,
     work: impl FnOnce(&Control<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T>
 where
     CoreError: From<E>,
 {
-    if law.is_python() {
+    if law.is_python() || threads == Some(1) {
         here(py, report, work)
     } else {
         watched(py, report, work)
