@@ -226,3 +226,21 @@ def test_warnings_are_found_when_first_asked_for() -> None:
     found = crowd.warnings
     assert time.perf_counter() - began < 0.2
     assert crowd.warnings is found
+
+
+def test_many_runs_carry_what_their_sensors_do_not_see() -> None:
+    place = scenarios.configuration("c1")
+    short = nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic(most_range=0.5), nav.sensing.Ultrasonic()])
+    (alone,) = nav.simulate(place, LAW, built=short).warnings
+    assert alone.code == "region_beyond_range"
+    assert nav.evaluate(place, LAW, built=short).warnings == (alone,)
+    for paths in (False, True):
+        runs = nav.simulate_many({"c1": place, "again": place}, LAW, built=short, paths=paths)
+        assert runs.built is short
+        (found,) = runs.warnings
+        assert (found.code, found.subject) == (alone.code, f"scenarios['c1'].{alone.subject}")
+        assert found.message == f"scenarios['c1']: {alone.message} (1 more of this kind in these scenarios)"
+        assert runs.select(scenario="again").warnings[0].message == f"scenarios['again']: {alone.message}"
+    (compared,) = nav.compare(place, [LAW, nav.Khatib()], built=short).warnings
+    assert compared.message == f"scenarios[0]: {alone.message}"
+    assert nav.simulate_many(place, LAW, built=nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()])).warnings == ()

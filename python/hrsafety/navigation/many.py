@@ -114,8 +114,8 @@ def simulate_many(
     places, drivers = named_scenarios(scenarios), named_laws(laws)
     sets = _sets(drivers, gains)
     drawn = None if seeds is None else checked_seeds(seeds)
-    study = _Study(places, drivers, sets, drawn)
     robot = as_built(list(places.values()), built, integrator, hold=hold)
+    study = _Study(places, drivers, sets, drawn, robot)
     # Only the loop of single runs keeps paths; a point mass has the same bits there.
     if flag("paths", paths) and robot is None:
         robot = as_built(list(places.values()), AsBuilt(), integrator, hold=hold)
@@ -138,6 +138,7 @@ class _Study:
     laws: Mapping[str, Law]
     sets: Sequence[Array]
     seeds: list[int] | None
+    built: AsBuilt | None
 
     def __post_init__(self) -> None:
         """Refuse a table that would not fit into memory."""
@@ -202,6 +203,7 @@ class _Study:
             law_index=np.repeat(np.arange(len(rows)), rows),
             scenario_index=episode // (len(seeds) // len(self.scenarios)),
             seed=seeds[episode],
+            built=self.built,
             **columns,
         )
 

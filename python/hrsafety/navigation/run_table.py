@@ -14,6 +14,7 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.bands import Band, along_the_way, over_time
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import SHOWN_ROWS, Column, Columns, Table, each, unit_suffix
@@ -99,6 +100,8 @@ class RunTable(Table):
         True positions of the robot at these instants, in m.
     distance : ndarray of shape (n, k, m), or None
         Distances to the obstacles at these instants, in m.
+    built : AsBuilt or None
+        How the robots are built.
     """
 
     law_names: tuple[str, ...]
@@ -132,6 +135,7 @@ class RunTable(Table):
     time: Array | None = None
     position: Array | None = None
     distance: Array | None = None
+    built: AsBuilt | None = None
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -152,7 +156,7 @@ class RunTable(Table):
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
         numbered = self.scenario_names == tuple(map(str, range(len(self.scenarios))))
         names = [f"scenarios[{name if numbered else repr(name)}]" for name in self.scenario_names]
-        return run_warnings.of_runs(self.scenarios, names, self.laws)
+        return run_warnings.of_runs(self.scenarios, names, self.laws, self.built)
 
     @property
     def success(self) -> Share:

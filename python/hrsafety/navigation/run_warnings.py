@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from hrsafety.navigation.knowledge import warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["of_run", "of_runs"]
+__all__ = ["of_run", "of_runs", "of_scenes"]
 
 
-def of_run(scenario: Scenario, law: Law) -> tuple[ResultWarning, ...]:
-    """Return the warnings of a scenario that matter for a law.
+def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a scenario that matter for a law, and of sensors that see less than they must.
 
     Parameters
     ----------
@@ -23,19 +25,22 @@ def of_run(scenario: Scenario, law: Law) -> tuple[ResultWarning, ...]:
     law : Law
         What drives the robot. Only the virtual force field brakes in critical regions, so their size
         says nothing about the other laws.
+    built : AsBuilt or None
+        How the robot is built; a point mass that is told of everything when ``None``.
 
     Returns
     -------
     tuple of ResultWarning
         The warnings.
     """
-    if isinstance(law, VirtualForceField):
-        return scenario.warnings
-    about_regions = (BELOW_SAFE, IN_CRITICAL_REGION)
-    return tuple(each for each in scenario.warnings if each.code not in about_regions)
+    about_regions = () if isinstance(law, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
+    of_scene = (each for each in scenario.warnings if each.code not in about_regions)
+    return (*of_scene, *(() if built is None else warnings_of(scenario, built)))
 
 
-def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:
+def of_runs(
+    scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[Law], built: AsBuilt | None = None
+) -> tuple[ResultWarning, ...]:
     """Return the warnings of many runs, the first of each kind with the number of the others.
 
     Parameters
@@ -46,6 +51,8 @@ def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[
         Their names, for the subjects.
     laws : iterable of Law
         What drives the robots.
+    built : AsBuilt or None
+        How they are built.
 
     Returns
     -------
@@ -56,7 +63,7 @@ def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[
     first: dict[str, ResultWarning] = {}
     others: dict[str, int] = {}
     for name, scenario in zip(names, scenarios, strict=True):
-        seen = {each: None for law in kept for each in of_run(scenario, law)}
+        seen = {each: None for law in kept for each in of_run(scenario, law, built)}
         for each in seen:
             if each.code in first:
                 others[each.code] = others.get(each.code, 0) + 1
@@ -65,3 +72,8 @@ def of_runs(scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[
                 first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", message)
     more = {code: f" ({count} more of this kind in these scenarios)" for code, count in others.items()}
     return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
+
+
+def of_scenes(scenarios: Sequence[Scenario], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:
+    """Return the warnings of many runs in scenarios that have numbers for names, see `of_runs`."""
+    return of_runs(scenarios, [f"scenarios[{index}]" for index in range(len(scenarios))], laws)

@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety.navigation import run_warnings
-from hrsafety.navigation.knowledge import Sensing, sensing_of, warnings_of
+from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
@@ -160,8 +160,7 @@ class Trajectory(Table):
 
         The warnings of its scenario that matter for its law, and of sensors that see less than they must.
         """
-        blind = () if self.built is None else warnings_of(self.scenario, self.built)
-        return (*run_warnings.of_run(self.scenario, self.law), *blind)
+        return run_warnings.of_run(self.scenario, self.law, self.built)
 
     @property
     def sensing(self) -> Sensing:
