@@ -95,7 +95,7 @@ def optimize_file(options: argparse.Namespace) -> None:
             print(f"wrote {path}")
         for path in (*_checkpoints(study, place), place / SO_FAR):
             path.unlink(missing_ok=True)
-    found = output.warnings_of(*study.scenarios, report.search)
+    found = output.warnings_of(report.search)
     output.report_warnings(found, strict=False)
     if not report.search.valid:
         search = report.search
@@ -332,5 +332,5 @@ def _write(report: GainReport, place: Path) -> Iterator[Path]:
         name: Picture(name=name, caption=f"{picture.caption}.", png=drawn[name].read_bytes())
         for name, picture in pictures.items()
     }
-    warned = list(dict.fromkeys(map(str, output.warnings_of(*report.study.scenarios, report.search))))
+    warned = list(dict.fromkeys(map(str, output.warnings_of(report.search))))
     yield output.write_text(place / "summary.html", optimize_page.html(report, shown, warned))

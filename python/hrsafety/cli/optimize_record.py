@@ -94,6 +94,7 @@ def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]
         "evaluations": search.evaluations,
         "episodes": search.episodes,
         "failures": search.failures,
+        "warnings": [warning.message for warning in search.warnings],
         "settings": settings(study, search.settings),
     }
 

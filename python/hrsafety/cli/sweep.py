@@ -58,8 +58,7 @@ def sweep_file(options: argparse.Namespace) -> None:
     print()
     for path in _write(options, described, summary, Path(options.out)):
         print(f"wrote {path}")
-    scenes = getattr(described.study, "scenarios", ())
-    output.report_warnings(output.warnings_of(*scenes, described.study, result), options.strict)
+    output.report_warnings(output.warnings_of(result), options.strict)
 
 
 def _run(options: argparse.Namespace, described: SweepFile) -> sweep.SweepResult:

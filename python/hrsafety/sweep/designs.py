@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -19,6 +20,8 @@ from hrsafety.sweep.axes import Axis
 __all__ = ["Design", "Grid", "checked_design"]
 
 MOST_ROWS = 2**53
+# Rows that are looked at for warnings before a sweep runs.
+MOST_LOOKED_AT = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +96,19 @@ class Design(ABC):
         if (end - first) * len(self.axes) > MOST_ROWS_AT_ONCE:
             raise InvalidParameterError("stop", f"ask for at most {MOST_ROWS_AT_ONCE} values at once", end - first)
         return self._block(first, end)
+
+    def looked_at(self) -> dict[str, Array]:
+        """Return the rows by which a study is judged before it runs: of a grid its corners, else the first rows.
+
+        Returns
+        -------
+        dict of str to ndarray
+            At most 64 rows, a column for each axis.
+        """
+        return self._by_axis(self._block(0, min(len(self), MOST_LOOKED_AT)))
+
+    def _by_axis(self, rows: Array) -> dict[str, Array]:
+        return dict(zip(self.names, rows.T, strict=True))
 
     def with_units(self, units: Mapping[str, str]) -> Self:
         """Return the design with units on the axes that had none.
@@ -170,6 +186,12 @@ class Grid(Design):
     def __len__(self) -> int:
         """Return the number of rows."""
         return math.prod(self.shape)
+
+    def looked_at(self) -> dict[str, Array]:
+        """Return the corners; of more than six axes the first and the last row, see `Design.looked_at`."""
+        ends = [axis.levels()[[0, -1]] for axis in self.axes]
+        few = 2 ** len(ends) <= MOST_LOOKED_AT
+        return self._by_axis(np.array(list(itertools.product(*ends) if few else zip(*ends, strict=True))))
 
     def _block(self, start: int, stop: int) -> Array:
         places = np.unravel_index(np.arange(start, stop), self.shape)

@@ -14,6 +14,7 @@ from hrsafety._arguments import Array, number, positive, with_article, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.batch import STATUS_WORDS
 from hrsafety.impact.criteria.declared import CRITERIA
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.studies import Found, Study, chosen
 
@@ -135,7 +136,15 @@ class ImpactStudy(Study):
             raise InvalidParameterError(
                 "closing_speed", "be an axis or among the fixed numbers", Shown("nothing"), remedy
             )
-        found = impact.metrics_batch(
+        found = self._batch(given, threads).columns()
+        return {column.name: found[column.name] for column in self.columns()}
+
+    def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
+        """Return numbers that are hardly what was meant, see `Study.doubts`."""
+        return self._batch({**self.fixed, **rows}, 1).warnings
+
+    def _batch(self, given: dict[str, Any], threads: int | None) -> impact.ImpactMetricsBatch:
+        return impact.metrics_batch(
             manipulator=self.manipulator,
             foam=self.foam,
             head=self.head,
@@ -143,5 +152,4 @@ class ImpactStudy(Study):
             fields=self.fields,
             threads=threads,
             **given,
-        ).columns()
-        return {column.name: found[column.name] for column in self.columns()}
+        )

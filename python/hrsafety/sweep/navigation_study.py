@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,7 +15,9 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation import run_warnings
 from hrsafety.navigation.performance import check_weights
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Cases, Found, Study, chosen
 
@@ -232,6 +235,20 @@ class NavigationStudy(Study):
             for name, values in found.items():
                 values[part.rows] = _values(table, name).reshape(-1, each)[part.order]
         return {name: values.reshape(-1) for name, values in found.items()}
+
+    def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
+        """Return the warnings of the scenes of these rows, see `Study.doubts`."""
+        others = [name for name in rows if name not in self.law.GAIN_UNITS]
+        distinct = np.unique(np.stack([rows[name] for name in others], axis=1), axis=0) if others else np.empty((1, 0))
+        if self.scenario is not None:
+            distinct = distinct[[0, -1]]  # a function of the caller may take long
+        scenes: list[nav.Scenario] = []
+        for row in distinct.tolist():
+            # A row that cannot be is an error of the chunk that computes it.
+            with contextlib.suppress(InvalidParameterError):
+                scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
+        words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
+        return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law])
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
         """Yield calls that cover all rows: those that share everything but the gains run together."""

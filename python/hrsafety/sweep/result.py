@@ -77,7 +77,8 @@ class SweepResult:
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the result may not mean what it seems to; empty when there is no doubt."""
-        return self._design.warnings
+        of_study = (ResultWarning(**each) for each in self._store.manifest.get("warnings", ()))
+        return (*self._design.warnings, *of_study)
 
     @property
     def units(self) -> dict[str, str]:

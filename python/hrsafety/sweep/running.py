@@ -149,7 +149,7 @@ def run(
     own = threads if threads is not None or (executor is None and client is None) else 1
     most = in_flight or _most_in_flight(executor, client)
     plan = planned(design, study, chunk_rows=chunk_rows, least_chunks=ROUNDS * most, threads=own)
-    manifest = new_manifest(plan.settings(__version__))
+    manifest = new_manifest(plan.settings(__version__), study.doubts(design.looked_at()))
     with contextlib.nullcontext() if path is None else locked(path):
         store = Memory(manifest) if path is None else Folder.prepared(path, manifest, resume=resume)
         missing = _missing(plan, store)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import datetime
 import json
 import os
 import platform
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from hrsafety._atomic import DAMAGE, only_writer, replacing
 from hrsafety.errors import HrsafetyError, InvalidParameterError, StorageError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.identity import differences, fingerprint
 
@@ -41,12 +43,13 @@ class SweepError(HrsafetyError):
     """A sweep cannot be resumed: its folder belongs to another one, is damaged, or a worker died."""
 
 
-def new_manifest(settings: Mapping[str, Any]) -> dict[str, Any]:
+def new_manifest(settings: Mapping[str, Any], warnings: Iterable[ResultWarning] = ()) -> dict[str, Any]:
     """Return the manifest of a sweep that begins now; only ``settings`` is ever compared."""
     return {
         "format": FORMAT,
         "fingerprint": fingerprint(settings),
         "settings": dict(settings),
+        "warnings": [dataclasses.asdict(each) for each in warnings],
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "environment": {"python": platform.python_version(), "numpy": np.__version__, "system": platform.platform()},
     }

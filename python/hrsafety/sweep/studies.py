@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, sequence, word
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.identity import described
 
@@ -87,6 +88,21 @@ class Study(ABC):
         dict of str to ndarray, shape (n * number of cases,)
             A column for each of `columns`.
         """
+
+    def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:  # noqa: ARG002 - for studies that look
+        """Return why rows may not mean what they seem to.
+
+        Parameters
+        ----------
+        rows : dict of str to ndarray, shape (n,)
+            Values of the axes: the corners of a design, or its ends.
+
+        Returns
+        -------
+        tuple of ResultWarning
+            The first warning of each kind; none where the study does not know its numbers.
+        """
+        return ()
 
     def settings(self) -> dict[str, Any]:
         """Return everything that the result depends on, as plain data."""

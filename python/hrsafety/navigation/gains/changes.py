@@ -10,12 +10,14 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, vector
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = ["GainSensitivity", "gain_sensitivity"]
@@ -79,6 +81,11 @@ class GainSensitivity(Table):
     mean_performance: Array
     reference_performance: Array
     relative_sensitivity: Array
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        return run_warnings.of_scenes(self.scenarios, [self.law])
 
     def largest_sensitivity(self) -> Array:
         """Return the largest magnitude of the relative sensitivity to each gain.

@@ -12,12 +12,14 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, positive
 from hrsafety._bounds import MOST_POINTS_OF_AXIS
 from hrsafety.errors import InfeasibleError, InvalidParameterError
+from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gains.confidence import Confidence
 from hrsafety.navigation.gains.metrics import METRIC_UNITS
 from hrsafety.navigation.gains.problem import gain_problem, with_gains
 from hrsafety.navigation.gains.settings import SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "ParetoFront", "SearchRound"]
@@ -120,6 +122,8 @@ class Flatness:
     near_best_share : float
         Share of the best grid points, `GainSearch.top`, within the tolerance of the best value;
         NaN without a grid.
+    warnings : tuple of ResultWarning
+        Those of the search.
     """
 
     gain_names: tuple[str, ...]
@@ -132,6 +136,7 @@ class Flatness:
     low: Array
     high: Array
     near_best_share: float
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -196,6 +201,11 @@ class GainSearch(Table):
     confidence: Confidence | None
     interrupted: bool
     settings: SearchSettings
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law])
 
     @property
     def best(self) -> Law:
@@ -351,6 +361,11 @@ class ParetoFront(Table):
     interrupted: bool
     settings: SearchSettings
 
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law])
+
     def __len__(self) -> int:
         """Return the number of gain sets."""
         return len(self.gains)
@@ -436,6 +451,7 @@ def _flatness(search: GainSearch, points: int, tolerance: float, threads: int | 
         near_best_share=float((search.top_values >= floor).mean())
         if search.history and search.top_values.size
         else np.nan,
+        warnings=search.warnings,
     )
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, numbers, positive
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.gains.metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
@@ -17,6 +18,7 @@ from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["GainGradient", "gain_gradient"]
 
@@ -32,6 +34,8 @@ class GainGradient:
     ----------
     law : Law
         The law at whose gains the slopes were taken.
+    scenarios : tuple of Scenario
+        Where.
     metric : str
         What the slopes are of.
     gain_names : tuple of str
@@ -56,6 +60,7 @@ class GainGradient:
     """
 
     law: Law
+    scenarios: tuple[Scenario, ...]
     metric: str
     gain_names: tuple[str, ...]
     value: float
@@ -66,6 +71,11 @@ class GainGradient:
     backward: Array
     forward: Array
     relative: Array
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        return run_warnings.of_scenes(self.scenarios, [self.law])
 
 
 def gain_gradient(
@@ -157,7 +167,7 @@ def gain_gradient(
         threads=threads,
     )
     found = _values(table, metric_name).reshape(len(gains), len(offsets), len(scenes))
-    return _slopes(law, metric_name, widths, one_sided, found)
+    return _slopes(law, scenes, metric_name, widths, one_sided, found)
 
 
 def _values(table: RunTable, metric: str) -> Array:
@@ -181,7 +191,9 @@ def _steps(law: Law, relative_step: float, steps: npt.ArrayLike | None) -> Array
     return widths
 
 
-def _slopes(law: Law, metric: str, widths: Array, one_sided: npt.NDArray[np.bool_], found: Array) -> GainGradient:
+def _slopes(
+    law: Law, scenes: Sequence[Scenario], metric: str, widths: Array, one_sided: npt.NDArray[np.bool_], found: Array
+) -> GainGradient:
     """Return the slopes from the values at 0, h, h/2, h/4, and at minus these (or at half of them)."""
     shares = np.array(SHARES)[None, :, None]
     h = widths[:, None, None] * shares
@@ -195,6 +207,7 @@ def _slopes(law: Law, metric: str, widths: Array, one_sided: npt.NDArray[np.bool
     relative = gradient * np.array(law.gains) / value if value else np.full(len(widths), np.nan)
     return GainGradient(
         law=law,
+        scenarios=tuple(scenes),
         metric=metric,
         gain_names=law.GAIN_NAMES,
         value=value,

@@ -9,7 +9,7 @@ import numpy as np
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.bands import Band
 from hrsafety.navigation.run_table import RunTable
-from hrsafety.plotting import floor, inputs, shapes, style
+from hrsafety.plotting import floor, inputs, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -112,7 +112,7 @@ def repeated_paths(
         floor.line(axes, exact.position, zorder=5.0, label="compared with", **EXACT_LOOK)
     shapes.add_start_and_goal(axes, scenario)
     handles, _ = axes.get_legend_handles_labels()
-    return floor.finish(figure, [*handles, *shapes.start_and_goal_handles(), *_standing_handles(scenario)])
+    return floor.finish(figure, [*handles, *shapes.start_and_goal_handles(), *_standing_handles(scenario)], runs=[runs])
 
 
 def _standing_handles(scenario: Scenario) -> list[Artist]:
@@ -221,4 +221,5 @@ def repeated_distances(
     panels[-1].set_xlabel("time (s)")
     panels[-1].set_xlim(0.0, float(runs.end_time.max()))
     figure.align_ylabels()
+    notes.add_warnings(figure, runs)
     return figure

@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.compare import Comparison
-from hrsafety.plotting import style
+from hrsafety.plotting import notes, style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
 
@@ -81,6 +81,7 @@ def plot_arena_standings(result: Comparison, *, title: str | None = None) -> Fig
         handle("robot moving at a contact", marker="o", markersize=7, color=red, markerfacecolor="white"),
     ]
     style.legend_below(figure, handles, columns=len(handles))
+    notes.add_warnings(figure, result)
     return figure
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.run_table import RunTable
-from hrsafety.plotting import style
+from hrsafety.plotting import notes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -101,6 +101,7 @@ def clearances(
     axes.set_xlabel("least clearance (m)")
     axes.set_ylabel("share of runs")
     figure.legend(loc="outside lower center", ncols=1 if len(groups) > 2 else len(groups))
+    notes.add_warnings(figure, *clearances.values())
     return figure
 
 
@@ -195,6 +196,7 @@ def outcomes(
     axes = figure.subplots()
     _draw_bars(axes, bars)
     figure.legend(loc="outside lower center", ncols=3)
+    notes.add_warnings(figure, *outcomes.values())
     return figure
 
 

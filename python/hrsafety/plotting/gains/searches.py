@@ -12,7 +12,7 @@ import numpy as np
 from hrsafety._arguments import instance
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.gains.results import GainSearch, ParetoFront
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.gains.sensitivity import gain_label, mark_look
 
 if TYPE_CHECKING:
@@ -89,6 +89,7 @@ def search_history(search: GainSearch, *, quantity: str = "mean H", title: str |
     for parts, more in zip((handles, texts), figure.axes[1].get_legend_handles_labels(), strict=True):
         parts += more
     figure.legend(handles, texts, loc="outside lower center", ncols=3, columnspacing=1.4)
+    notes.add_warnings(figure, search)
     return figure
 
 
@@ -154,6 +155,7 @@ def pareto_front(
         _draw_points(axes, front, (x, y), knee, others)
     handles, texts = panels[0].get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=min(len(handles), 2 + columns), columnspacing=1.4)
+    notes.add_warnings(figure, front)
     return figure
 
 
@@ -175,6 +177,7 @@ def _convergence(search: GainSearch, quantity: str, title: str | None) -> Figure
     axes.set_xlabel("gain sets evaluated")
     axes.set_ylabel(quantity)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center")
+    notes.add_warnings(figure, search)
     return figure
 
 

@@ -13,7 +13,7 @@ from hrsafety._arguments import instance
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.gains.changes import GainSensitivity
 from hrsafety.navigation.gains.results import Flatness
-from hrsafety.plotting import inputs, labels, style
+from hrsafety.plotting import inputs, labels, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,6 +94,7 @@ def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) 
     figure.legend(*upper.get_legend_handles_labels(), loc="outside lower center", ncols=2, columnspacing=1.4)
     figure.align_ylabels()
     labels.clear_labels(figure, deep)
+    notes.add_warnings(figure, sensitivity)
     return figure
 
 
@@ -162,6 +163,7 @@ def flatness(
         axes.set_xlim(*_widened(low, high))
     handles, texts = panels[0].get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=2, columnspacing=1.4)
+    notes.add_warnings(figure, found)
     return figure
 
 

@@ -211,6 +211,7 @@ def foam_map(
     axes.set_ylabel(STIFFNESS_LABEL)
     axes.set_xlim(columns[0], columns[-1])
     axes.set_ylim(rows[0] / KILO, rows[-1] / KILO)
+    notes.add_warnings(figure, *(foams or {}).values())
     labels.clear_labels(figure, named)
     return figure
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import callback
-from hrsafety.plotting import inputs, movies, shapes, style
+from hrsafety.plotting import inputs, movies, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -220,6 +220,7 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
         if regions and not shapes.is_mobile(obstacle):
             shapes.add(axes, shapes.region_patches(obstacle, shapes.center(obstacle), look.color))
     shapes.add_start_and_goal(axes, scenario)
+    notes.add_warnings(figure, run)
     return figure, axes
 
 

@@ -75,7 +75,7 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
             _draw_motion(axes, obstacle, look.color)
     shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
     shapes.add_start_and_goal(axes, scenario)
-    return floor.finish(figure, handles)
+    return floor.finish(figure, handles, runs=[scenario])
 
 
 def _shows_regions(scenario: Scenario, obstacle: Obstacle) -> bool:

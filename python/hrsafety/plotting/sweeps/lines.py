@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import instance, word
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import style
+from hrsafety.plotting import notes, style
 from hrsafety.plotting.inputs import Array
 from hrsafety.sweep import Axis, Column, Grid, SweepResult
 
@@ -72,6 +72,7 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
         figure.legend(loc="outside lower center", ncols=MOST_CASES)
     label_axis(axes, axis, "x")
     axes.set_ylabel(drawn.label)
+    notes.add_warnings(figure, result)
     return figure
 
 
@@ -145,6 +146,7 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
             axes.xaxis.set_tick_params(labelbottom=True)
             axes.set_xlabel(first.label)
     figure.colorbar(colors, ax=grid, label=drawn.label)
+    notes.add_warnings(figure, result)
     return figure
 
 

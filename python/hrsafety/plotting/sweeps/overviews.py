@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import count
 from hrsafety._bounds import MOST_DRAWN
-from hrsafety.plotting import style
+from hrsafety.plotting import notes, style
 from hrsafety.plotting.inputs import Array
 from hrsafety.plotting.sweeps.lines import (
     MOST_CASES,
@@ -93,6 +93,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     if len(cases) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=MOST_CASES, markerscale=18.0 / size)
+    notes.add_warnings(figure, result)
     return figure
 
 
@@ -167,6 +168,7 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.spines[["left", "bottom"]].set_visible(False)
     of_cases = f", mean of {len(result.cases)} cases" if len(result.cases) > 1 else ""
     figure.colorbar(lines, ax=axes, label=drawn.label + of_cases)
+    notes.add_warnings(figure, result)
     return figure
 
 
