@@ -1,7 +1,7 @@
 """Sweep two gains over three configurations and print the best sets.
 
 Run it with ``python examples/gain_sweep.py [FOLDER]``. With a folder, chunks are written there
-as they finish, and a second call goes on where the first one stopped.
+as they finish, and a second call resumes where the first one stopped.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""``hrsafety optimize STUDY.toml``: what it finds and writes, how it stops and goes on, how it answers a bad file."""
+"""``hrsafety optimize STUDY.toml``: what it finds and writes, how it stops and resumes, how it answers a bad file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hrsafety sweep STUDY.toml``: what it prints and writes, how it goes on, how it answers a bad file."""
+"""``hrsafety sweep STUDY.toml``: what it prints and writes, how it resumes, how it answers a bad file."""
 
 from __future__ import annotations
 

@@ -191,6 +191,8 @@ def test_a_closed_box_around_start_or_goal(ends: tuple[nav.obstacles.Pair, nav.o
     start, goal = ends
     closed = nav.Scenario(start=start, goal=goal, obstacles=box(3.0))
     assert codes(closed) == ["closed_in"]
+    words = "standing obstacles leave no way from start to goal for a robot of radius 0.2 m; move start, goal or"
+    assert closed.warnings[0].message.startswith(words)
     assert nav.simulate(closed, LAW).outcome != "arrived"
     # The top wall covers 0.2 m of the gap: 0.3 m is too narrow for the robot, 0.5 m is not.
     assert codes(nav.Scenario(start=start, goal=goal, obstacles=box(3.0, gap=0.5))) == ["closed_in"]

@@ -1,4 +1,4 @@
-"""Whether obstacles that stand close every way of a robot: a coarse grid, on the safe side of doubt."""
+"""Whether standing obstacles leave a robot no way: a coarse grid, on the safe side of doubt."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _distances(obstacle: Obstacle, x: Array, y: Array) -> Array:
 def certainly_closed(
     obstacles: Iterable[Obstacle], *, start: Pair, goal: Pair, radius: float, arrival_tolerance: float
 ) -> bool:
-    """Return whether the obstacles that stand close every way from start to goal.
+    """Return whether the standing obstacles leave no way from start to goal.
 
     A cell counts as closed only if the robot touches one obstacle wherever its center is in the cell,
     and a way may lead over corners of cells. So ``True`` is certain; a gap that is too narrow by less

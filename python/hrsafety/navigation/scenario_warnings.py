@@ -203,6 +203,6 @@ def _closed(scenario: Described) -> Iterator[ResultWarning]:
         yield ResultWarning(
             "closed_in",
             "obstacles",
-            f"obstacles that stand close every way from start to goal for a robot of radius "
-            f"{scenario.robot.radius:g} m; move start, goal or an obstacle",
+            f"standing obstacles leave no way from start to goal for a robot of radius {scenario.robot.radius:g} m; "
+            "move start, goal or an obstacle",
         )
