@@ -17,6 +17,7 @@ __all__ = [
     "MOST_LAYOUTS",
     "MOST_LOCAL_STARTS",
     "MOST_OBSTACLES",
+    "MOST_PATH_NUMBERS",
     "MOST_PIXELS",
     "MOST_POINTS",
     "MOST_POINTS_OF_AXIS",
@@ -53,6 +54,8 @@ MOST_LAYOUTS = 10**7
 MOST_SEEDS = 10**6
 # Rows of a table of runs: about half a kilobyte each while it is made.
 MOST_TABLE_ROWS = 10**7
+# Numbers of the paths of a table of runs: 1.6 GB, about three times that while they are put side by side.
+MOST_PATH_NUMBERS = 2 * 10**8
 # Runs of all sources together: their delays fill 1.6 GB.
 MOST_RUNS = 10**8
 # Tests of one kind, timed runs, runs across a recording.

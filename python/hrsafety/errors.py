@@ -155,7 +155,19 @@ class InfeasibleError(HrsafetyError):
 
 
 class SimulationError(HrsafetyError):
-    """A run could not be carried out, for example because its state became non-finite."""
+    """A run could not be carried out, for example because its state became non-finite.
+
+    Parameters
+    ----------
+    message : str
+        What happened.
+    run : int or None
+        Which run of several, counted as the rows of their table are; ``None`` where there are no runs.
+    """
+
+    def __init__(self, message: str, run: int | None = None) -> None:
+        super().__init__(message)
+        self.run = run
 
 
 class FolderInUseError(HrsafetyError):

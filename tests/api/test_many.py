@@ -199,3 +199,44 @@ def test_tables_beyond_memory_are_refused_before_they_are_made() -> None:
     with pytest.raises(InvalidParameterError, match="20000000 runs; split the call") as caught:
         nav.simulate_many([C1, C1], LAW, gains=sets, seeds=10_000)
     assert "at most 10000000 runs" in caught.value.requirement
+
+
+def test_paths_beyond_memory_are_refused_before_they_are_made() -> None:
+    """A run of c1 may last 1,002 instants, each with time, place and one distance: 4,008 numbers."""
+    with pytest.raises(InvalidParameterError, match="lower time_limit of the scenarios") as caught:
+        nav.simulate_many(C1, LAW, seeds=51_000, paths=True)
+    assert caught.value.argument == "paths"
+    assert "51000 runs of up to 1002 instants, 2.04e+08 numbers" in str(caught.value)
+    # One scenario that may last long makes the table of all of them wide.
+    with pytest.raises(InvalidParameterError, match=r"302 runs of up to 1\.667e\+05 instants"):
+        nav.simulate_many([C1, replace(C1, time_limit=1e4)], LAW, seeds=151, paths=True)
+    assert nav.simulate_many(C1, LAW, seeds=2, paths=True).position is not None
+
+
+# ---- errors and names -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("paths", [False, True])
+def test_an_error_of_a_run_names_law_scenario_seed_and_row(paths: bool) -> None:
+    far = nav.Scenario(start=(0.0, 0.0), goal=(1e300, 0.0))
+    wanted = r"non-finite at 0 s \(law 'b', scenario 'far', seed 7, row 9 of the table\)"
+    laws: dict[str, nav.Law] = {"a": nav.Khatib(attractive_gain=0.0), "b": LAW}
+    with pytest.raises(nav.SimulationError, match=wanted) as caught:
+        nav.simulate_many({"c1": C1, "far": far}, laws, seeds=[7, 8, 9], paths=paths, threads=1)
+    assert caught.value.run == 9
+    sets = {"attractive_gain": [0.0, 3.0]}
+    with pytest.raises(nav.SimulationError, match=r"scenario 'far', seed 0, row 3 of the table") as caught:
+        nav.simulate_many({"c1": C1, "far": far}, LAW, gains=sets, paths=paths, threads=1)
+    assert caught.value.run == 3
+    with pytest.raises(nav.SimulationError, match=r"\(run 0\)") as caught:
+        nav.simulate(far, LAW)
+    assert caught.value.run == 0
+
+
+def test_laws_in_python_never_take_the_name_of_another_law() -> None:
+    """The second Masoud would be called as the law of the caller is: one of the two was lost."""
+    mine = nav.PythonLaw(function=lambda situation: situation.goal - situation.position, name="Masoud 2")
+    for laws in ([mine, nav.Masoud(), nav.Masoud()], [nav.Masoud(), nav.Masoud(), mine], [nav.Masoud(), mine] * 2):
+        runs = nav.simulate_many(C1, laws)
+        assert len(runs) == len(runs.law_names) == len(set(runs.law_names)) == len(laws)
+    assert nav.simulate_many(C1, [mine, nav.Masoud(), nav.Masoud()]).law_names == ("Masoud 2", "Masoud", "Masoud 3")

@@ -45,6 +45,7 @@ impl From<CoreError> for PyErr {
                 Given::Found(words) => found(name, requirement, &words, remedy),
             },
             Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
+            Failure::NonFinite { run, .. } => SimulationError::new_err((failure.to_string(), run)),
             other => SimulationError::new_err(other.to_string()),
         }
     }

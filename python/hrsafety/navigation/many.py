@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, flag, instance, number, sequence, thread_count
-from hrsafety._bounds import MOST_SEEDS, MOST_TABLE_ROWS
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety._bounds import MOST_PATH_NUMBERS, MOST_SEEDS, MOST_TABLE_ROWS
+from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
@@ -71,7 +71,8 @@ def simulate_many(
         How the robots are built, as for `simulate`.
     paths : bool
         Whether the path of every run is kept, once a control period: ``time``, ``position``,
-        ``distance`` and first contacts, from which bands are made.
+        ``distance`` and first contacts, from which bands are made. At most 2e8 numbers (1.6 GB) if
+        every run lasts until the time limit of its scenario.
     weights : sequence of float
         Weights of time, distance and energy in H.
     integrator, step, hold, stop_on_contact
@@ -92,12 +93,12 @@ def simulate_many(
     ------
     InvalidParameterError
         If there is no scenario, law, seed or gain set, one is not valid, the laws differ in the names
-        of the gains that are given, there would be more than ten million rows, or an option is out of
-        range.
+        of the gains that are given, there would be more than ten million rows or paths beyond memory,
+        or an option is out of range.
     ShapeError
         If gains does not have a column for each gain.
     SimulationError
-        If the state of a run became non-finite.
+        If the state of a run became non-finite; the message names law, scenario, seed and row.
     KeyboardInterrupt
         Within 0.2 s of Ctrl-C.
 
@@ -116,8 +117,10 @@ def simulate_many(
     drawn = None if seeds is None else checked_seeds(seeds)
     robot = as_built(list(places.values()), built, integrator, hold=hold)
     study = _Study(places, drivers, sets, drawn, robot)
+    if flag("paths", paths):
+        study.check_paths()
     # Only the loop of single runs keeps paths; a point mass has the same bits there.
-    if flag("paths", paths) and robot is None:
+    if paths and robot is None:
         robot = as_built(list(places.values()), AsBuilt(), integrator, hold=hold)
     if flag("descent", descent) and robot is not None:
         raise InvalidParameterError("descent", "be False for robots as built and runs with paths", descent)
@@ -142,11 +145,27 @@ class _Study:
 
     def __post_init__(self) -> None:
         """Refuse a table that would not fit into memory."""
-        rows = len(self.scenarios) * len(self.seeds or [0]) * sum(map(len, self.sets))
-        if rows > MOST_TABLE_ROWS:
+        if self.rows > MOST_TABLE_ROWS:
             rule = f"hold at most {MOST_TABLE_ROWS} runs with their scenarios, seeds and gain sets"
             remedy = "split the call, or run a sweep, which writes to files"
-            raise InvalidParameterError("laws", rule, Shown(f"{rows} runs"), remedy)
+            raise InvalidParameterError("laws", rule, Shown(f"{self.rows} runs"), remedy)
+
+    @property
+    def rows(self) -> int:
+        """Number of runs."""
+        return len(self.scenarios) * len(self.seeds or [0]) * sum(map(len, self.sets))
+
+    def check_paths(self) -> None:
+        """Refuse paths that would not fit into memory if a run lasted until its time limit."""
+        places = self.scenarios.values()
+        # The table has one length for all: the instants of the longest run, and the end.
+        instants = max(each.time_limit / each.control_period for each in places) + 2.0
+        numbers = self.rows * instants * (3 + max(len(each.obstacles) for each in places))
+        if numbers > MOST_PATH_NUMBERS:
+            rule = f"hold at most {MOST_PATH_NUMBERS:.3g} numbers if every run lasts until its time limit"
+            remedy = "lower time_limit of the scenarios, keep the paths of fewer runs, or leave them out"
+            found = f"{self.rows} runs of up to {instants:.4g} instants, {numbers:.3g} numbers"
+            raise InvalidParameterError("paths", rule, Shown(found), remedy)
 
     def run(
         self, weights: tuple[float, float, float], options: dict[str, object], progress: Progress | None
@@ -158,12 +177,14 @@ class _Study:
             for seed in seeds
         ]
         total, done, parts = len(natives) * sum(map(len, self.sets)), 0, []
-        for law, sets in zip(self.laws.values(), self.sets, strict=True):
+        for (name, law), sets in zip(self.laws.items(), self.sets, strict=True):
             heard = None if progress is None else _shifted(progress, done, total)
             try:
                 columns = _columns(natives, law, sets, weights, {**options, "progress": heard})
             except InvalidParameterError as error:
                 raise self._naming_scenarios(error) from None
+            except SimulationError as error:
+                raise self._naming_run(error, name, sets, done) from None
             parts.append(_gains_fastest(columns))
             done += len(natives) * len(sets)
         return self._table(parts, np.array(list(itertools.chain(*own)), dtype=np.uint64))
@@ -175,6 +196,22 @@ class _Study:
             return error
         name = f"scenarios[{int(found[1]) // len(self.seeds)}]{error.argument[found.end() :]}"
         return InvalidParameterError(name, error.requirement, error.value, error.remedy)
+
+    def _naming_run(self, error: SimulationError, law: str, sets: Array, before: int) -> SimulationError:
+        """Return an error that names law, scenario, seed and row of the table, given the number of rows before the law.
+
+        The core counts the runs of one law, episodes fastest.
+        """
+        if error.run is None:
+            return error
+        repeats = len(self.seeds or [0])
+        gains, episode = divmod(error.run, len(self.scenarios) * repeats)
+        name, scenario = list(self.scenarios.items())[episode // repeats]
+        seed = scenario.seed if self.seeds is None else self.seeds[episode % repeats]
+        row = before + episode * len(sets) + gains
+        what = str(error).removesuffix(f" (run {error.run})")
+        where = f"law {law!r}, scenario {name!r}, seed {seed}, row {row} of the table"
+        return SimulationError(f"{what} ({where})", row)
 
     def _table(self, parts: list[Columns], seeds: npt.NDArray[np.uint64]) -> RunTable:
         """Return the columns of all laws, one below the other, with what each row is."""
@@ -286,7 +323,8 @@ def named_laws(laws: object) -> dict[str, Law]:
     Returns
     -------
     dict of str to Law
-        Without names they are called by their class, from the second of a class on with a number.
+        Without names they are called by their class, laws in Python by their own name, from the second
+        of a name on with the next number that is free.
 
     Raises
     ------
@@ -303,7 +341,11 @@ def named_laws(laws: object) -> dict[str, Law]:
     for _, law in found:
         kind = law.name if isinstance(law, PythonLaw) and law.name else type(law).__name__
         kinds[kind] = kinds.get(kind, 0) + 1
-        named[kind if kinds[kind] == 1 else f"{kind} {kinds[kind]}"] = law
+        name = kind if kinds[kind] == 1 else f"{kind} {kinds[kind]}"
+        while name in named:  # a law of the caller may be called "Masoud 2"
+            kinds[kind] += 1
+            name = f"{kind} {kinds[kind]}"
+        named[name] = law
     return named
 
 

@@ -113,8 +113,7 @@ impl Batch<'_> {
         };
         let count = self.scenarios.len();
         let ways = Ways::new(self.scenarios);
-        let nominal = NominalRuns::new(&ways, law, self.points, &plan, self.interrupted)
-            .map_err(|error| error.of_run(|run| run * count))?;
+        let nominal = NominalRuns::new(&ways, law, self.points, &plan, self.interrupted)?;
         let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
         let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
         try_each(tasks(&mut strips, plan.team(sets * count)), |task| {

@@ -42,6 +42,12 @@ impl Ways {
     pub fn of(&self, scenario: usize) -> usize {
         self.of[scenario]
     }
+
+    /// Index of the run that an error of a nominal run is told of: the first scenario with its way.
+    pub fn run_of(&self, way: usize, set: usize) -> usize {
+        let first = self.of.iter().position(|of| *of == way);
+        set * self.of.len() + first.unwrap_or(0)
+    }
 }
 
 /// Runs of some gain sets, all different, along one way.
@@ -78,7 +84,7 @@ pub(crate) struct NominalRuns {
 }
 
 impl NominalRuns {
-    /// Errors carry the index of the gain set.
+    /// Errors carry the index of the run, the scenarios fastest.
     pub fn new(
         ways: &Ways,
         law: &dyn Driven,
@@ -116,15 +122,17 @@ impl NominalRuns {
             ..*plan
         };
         let team = plan.team(0);
-        let along = |way: &Scenario| -> Result<Vec<Nominal>> {
+        let along = |(index, way): (usize, &Scenario)| -> Result<Vec<Nominal>> {
             let chunks: Vec<&[f64]> = sets.chunks(team * dimension).collect();
             let parts = try_map(chunks.len(), |part| {
-                nominal_runs(way, law, chunks[part], &plan, interrupted)
-                    .map_err(|error| error.of_run(|run| first[part * team + run]))
+                nominal_runs(way, law, chunks[part], &plan, interrupted).map_err(|error| {
+                    error.of_run(|run| ways.run_of(index, first[part * team + run]))
+                })
             })?;
             Ok(parts.concat())
         };
-        let runs = ways.scenarios.iter().map(along).collect::<Result<_>>()?;
+        let each = ways.scenarios.iter().enumerate();
+        let runs = each.map(along).collect::<Result<_>>()?;
         Ok(Self { of, runs })
     }
 

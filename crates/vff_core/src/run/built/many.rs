@@ -157,7 +157,7 @@ impl Many<'_> {
                     arrival_time: run.arrival_time.unwrap_or(f64::NAN),
                     energy: run.energy,
                 })
-                .map_err(|error| error.of_run(|_| index / along * count))
+                .map_err(|error| error.of_run(|_| ways.run_of(index % along, index / along)))
         })?;
         let runs = try_map(self.laws.len() * count, |row| {
             let kept = self
