@@ -43,7 +43,7 @@ RESULTS: dict[str, Callable[[], Table]] = {
     "Trajectory of a robot as built": lambda: nav.simulate(
         NOISY, LAW, built=nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
     ),
-    "TrackingRun": lambda: nav.tracking.track(LINE, position=(0.0, 0.3), duration=3.0),
+    "Trajectory after a reference": lambda: nav.tracking.track(LINE, position=(0.0, 0.3), duration=3.0),
     "TrackingSummary": lambda: nav.tracking.track_batch(LINE, starts=[(0.0, 0.5, 0.0), (0.0, -0.2, 1.0)], duration=3.0),
     "WheelRun": lambda: nav.robots.follow_wheel(
         nav.robots.HOLONOMIC_WHEELS[0], nav.robots.WheelReference.sine(duration=1.0)

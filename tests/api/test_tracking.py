@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from hrsafety import navigation as nav
+from hrsafety import plotting, scenarios
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 STILL = nav.tracking.LineReference(start=(0.0, 0.0))
@@ -37,6 +38,35 @@ def test_record_begins_at_the_start_and_holds_every_step() -> None:
     # The command is held over the six steps of a period.
     held = run.commanded_turn_rate[:600].reshape(100, 6)
     assert (held == held[:, :1]).all()
+
+
+def test_a_run_after_a_reference_is_a_trajectory_without_a_scene() -> None:
+    run = nav.tracking.track(LINE, position=(0.0, 0.3), heading=0.4, duration=3.0)
+    assert isinstance(run, nav.Trajectory)
+    moved = np.diff(run.position, axis=0) / np.diff(run.time)[:, None]
+    np.testing.assert_allclose(np.hypot(*run.velocity.T), np.abs(run.speed), rtol=1e-15)
+    np.testing.assert_allclose(run.velocity[1:], moved, atol=0.02)
+    assert run.path_length == pytest.approx(np.hypot(*np.diff(run.position, axis=0).T).sum(), rel=1e-3)
+    table = run.columns()
+    assert list(table)[:6] == ["t_s", "x_m", "y_m", "vx_m_per_s", "vy_m_per_s", "heading_rad"]
+    assert list(table)[-3:] == ["commanded_turn_rate_rad_per_s", "goal_phase", "error_m"]
+    assert not any(name.startswith(("force", "stabilizing", "current", "lyapunov")) for name in table)
+    for name in ("scenario", "law", "force", "wheel_current", "outcome", "arrival_time", "energy", "lyapunov"):
+        assert getattr(run, name) is None, name
+    assert (run.warnings, run.contacts_moving, run.sensing.robot) == ((), 0, "exact")
+    driven = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField(), built=nav.robots.AsBuilt())
+    assert driven.error is not None
+    assert "error_m" not in driven.columns()
+    assert nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField()).error is None
+
+
+def test_pictures_of_scenes_refuse_a_run_after_a_reference_and_the_other_way_round() -> None:
+    run = nav.tracking.track(LINE, duration=0.6)
+    for draw in (plotting.paths, plotting.energy, plotting.time_sequence, plotting.distances):
+        with pytest.raises(InvalidParameterError, match=r"got a run after a reference; .*tracking_paths"):
+            draw(run)
+    with pytest.raises(InvalidParameterError, match=r"Trajectory of `tracking\.track`.* got the run of a scenario"):
+        plotting.robots.tracking_paths([nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())])
 
 
 def test_positions_are_those_of_exact_arcs() -> None:

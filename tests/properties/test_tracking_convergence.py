@@ -207,9 +207,7 @@ def test_run_turns_shifts_and_mirrors_with_its_scene(
     goal = generator.uniform(-0.5, 0.5, 2)
     sign = -1.0 if mirrored else 1.0
 
-    def run(
-        place: Array, heading: float, turn_rate: float, way: Array, end: Array, origin: Array
-    ) -> nav.tracking.TrackingRun:
+    def run(place: Array, heading: float, turn_rate: float, way: Array, end: Array, origin: Array) -> nav.Trajectory:
         return nav.tracking.track(
             nav.tracking.LineReference(start=tuple(origin), velocity=tuple(way)),
             law,

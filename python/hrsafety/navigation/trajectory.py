@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
@@ -13,9 +14,10 @@ from hrsafety.navigation import run_warnings
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.robots.tracking_laws import Tracking
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table, each, plane
+from hrsafety.tables import Columns, Table, each, plane, with_units
 
 __all__ = ["Integrator", "Outcome", "Trajectory", "without_obstacles"]
 
@@ -23,13 +25,21 @@ Integrator = Literal["semi_implicit_euler", "rk4"]
 Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
 
 
+class Followed(Protocol):
+    """What a run may follow; the references of `tracking`, which know this module."""
+
+    def at(self, time: npt.ArrayLike) -> Any:
+        """Return positions and velocities at some instants."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Trajectory(Table):
     """One run of a robot: n instants, m obstacles, w wheels.
 
-    The rows are the motion steps and, last, the instant of arrival (linear inside its step). The last
-    four columns are known of two-wheel robots and of robots as built; otherwise they are ``None``, and
-    the table does not have them.
+    The rows are the motion steps and, last, the instant of arrival (linear inside its step). What a run
+    does not know is ``None``, and its table does not have the column: wheels and sensors of ideal point
+    masses; scenario, law, forces, currents, energy and outcome of a run after a reference
+    (`tracking.track`), which ends after its duration.
 
     Attributes
     ----------
@@ -81,33 +91,55 @@ class Trajectory(Table):
         Position of the robot as the law knows it since the last sample, in m.
     built : AsBuilt or None
         How the robot is built.
+    speed, turn_rate : ndarray of shape (n,), or None
+        Forward speed in m/s and turn rate in rad/s over the step that ends at the row; of a run after a
+        reference, as all that follows.
+    commanded_speed, commanded_turn_rate : ndarray of shape (n,), or None
+        What was asked for from the row on, in m/s and rad/s.
+    reference_velocity : ndarray of shape (n, 2), or None
+        Velocity of the reference in m/s; its position is ``reference_position``.
+    goal_phase : ndarray of bool, shape (n,), or None
+        Whether the command came from the goal phase of `tracking.ExponentialTracking`.
+    reference : LineReference, CircleReference, PathReference or None
+        What was followed.
+    tracking : FullSpeedTracking, NonlinearTracking, ExponentialTracking or None
+        The law that followed it.
     """
 
-    scenario: Scenario
-    law: Law
+    # `X | Any`: None in a run after a reference only, which callers that made an episode need not ask.
+    scenario: Scenario | Any = None
+    law: Law | Any = None
     time: Array
     position: Array
     velocity: Array
-    force: Array
+    force: Array | Any = None
     heading: Array
-    wheel_current: Array
+    wheel_current: Array | Any = None
     obstacle_position: Array
     distance: Array
-    outcome: Outcome | Literal["running"]
-    arrival_time: float
-    energy: float
+    outcome: Outcome | Literal["running"] | Any = None
+    arrival_time: float | Any = None
+    energy: float | Any = None
     min_distance: Array
     min_clearance: Array
     contact_time: Array
     contact_speed: Array
     path_length: float
-    stabilizing: Array
-    lyapunov: Array
+    stabilizing: Array | Any = None
+    lyapunov: Array | Any = None
     wheel_speed: Array | None = None
     energy_used: Array | None = None
-    reference_position: Array | None = None
+    reference_position: Array | Any = None
     seen_position: Array | None = None
     built: AsBuilt | None = None
+    speed: Array | Any = None
+    turn_rate: Array | Any = None
+    commanded_speed: Array | Any = None
+    commanded_turn_rate: Array | Any = None
+    reference_velocity: Array | Any = None
+    goal_phase: npt.NDArray[np.bool_] | Any = None
+    reference: Followed | None = None
+    tracking: Tracking | None = None
 
     @property
     def contacts_moving(self) -> int:
@@ -125,8 +157,8 @@ class Trajectory(Table):
         Returns
         -------
         dict of str to ndarray
-            Units are in the names; obstacles and wheels are numbered. What only robots as built know
-            stands last.
+            Units are in the names; obstacles and wheels are numbered. What only robots as built and runs
+            after a reference know stands last.
 
         Examples
         --------
@@ -139,12 +171,14 @@ class Trajectory(Table):
         ['reference_x_m', 'reference_y_m', 'seen_x_m', 'seen_y_m']
         """
         found = {"t_s": self.time, **plane("{}", self.position, "m"), **plane("v{}", self.velocity, "m/s")}
-        found |= {**plane("force_{}", self.force, "N"), "heading_rad": self.heading}
-        found |= each("current_{}", self.wheel_current, "A")
+        found |= {} if self.force is None else plane("force_{}", self.force, "N")
+        found["heading_rad"] = self.heading
+        found |= {} if self.wheel_current is None else each("current_{}", self.wheel_current, "A")
         for index in range(self.distance.shape[1]):
             found |= plane(f"obstacle_{index}_{{}}", self.obstacle_position[:, index], "m")
             found[f"distance_{index}_m"] = self.distance[:, index]
-        found |= {**plane("stabilizing_{}", self.stabilizing, "N"), "lyapunov_N2": self.lyapunov}
+        if self.stabilizing is not None:
+            found |= {**plane("stabilizing_{}", self.stabilizing, "N"), "lyapunov_N2": self.lyapunov}
         if self.wheel_speed is not None:
             found |= each("wheel_{}_speed", self.wheel_speed, "rad/s")
         if self.energy_used is not None:
@@ -152,7 +186,21 @@ class Trajectory(Table):
         for name in ("reference", "seen"):
             places = getattr(self, f"{name}_position")
             found |= {} if places is None else plane(f"{name}_{{}}", places, "m")
-        return found
+        return found | (self._tracked() if self.tracking is not None else {})
+
+    def _tracked(self) -> Columns:
+        """Return the columns that only a run after a reference has."""
+        found = plane("reference_v{}", self.reference_velocity, "m/s")
+        units = {"speed": "m/s", "turn_rate": "rad/s", "commanded_speed": "m/s", "commanded_turn_rate": "rad/s"}
+        return found | with_units(self, {**units, "goal_phase": "", "error": "m"})
+
+    @property
+    def error(self) -> Array | Any:
+        """Distance between robot and reference at each instant in m, shape (n,); ``None`` without a reference."""
+        if self.reference_position is None:
+            return None
+        offset = self.reference_position - self.position
+        return np.hypot(offset[:, 0], offset[:, 1])
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
@@ -160,11 +208,15 @@ class Trajectory(Table):
 
         The warnings of its scenario that matter for its law, and of sensors that see less than they must.
         """
+        if self.scenario is None:
+            return ()
         return run_warnings.of_run(self.scenario, self.law, self.built)
 
     @property
     def sensing(self) -> Sensing:
         """Which sensors told the law of the robot and of the obstacles."""
+        if self.scenario is None:
+            return Sensing(robot="exact", obstacles=("exact",))
         return sensing_of(self.scenario, AsBuilt() if self.built is None else self.built)
 
 

@@ -21,13 +21,16 @@ def checked_trajectory(name: str, value: object) -> Trajectory:
     """Return ``value`` if it is a trajectory."""
     if not isinstance(value, Trajectory):
         raise InvalidParameterError(name, "be a Trajectory", Shown(type(value).__name__))
+    if value.scenario is None:
+        remedy = "`plotting.robots.tracking_paths` and `tracking_errors` draw it"
+        raise InvalidParameterError(name, "be the run of a scenario", Shown("a run after a reference"), remedy)
     return value
 
 
 def checked_runs(trajectories: Trajectory | Sequence[Trajectory]) -> list[Trajectory]:
     """Return one or several trajectories as a list."""
     if isinstance(trajectories, Trajectory):
-        return [trajectories]
+        return [checked_trajectory("trajectories", trajectories)]
     if isinstance(trajectories, (str, bytes)) or not isinstance(trajectories, Sequence):
         requirement = "be a Trajectory or a sequence of them"
         raise InvalidParameterError("trajectories", requirement, Shown(type(trajectories).__name__))

@@ -15,7 +15,7 @@ from hrsafety.navigation.tracking.references import (
     Reference,
     ReferenceMotion,
 )
-from hrsafety.navigation.tracking.runs import TrackingRun, TrackingSummary, track, track_batch
+from hrsafety.navigation.tracking.runs import TrackingSummary, track, track_batch
 
 __all__ = [
     "CircleReference",
@@ -27,7 +27,6 @@ __all__ = [
     "Reference",
     "ReferenceMotion",
     "Tracking",
-    "TrackingRun",
     "TrackingSummary",
     "Twist",
     "VirtualTorque",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,80 +15,12 @@ from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.robots.tracking_laws import ExponentialTracking, FullSpeedTracking, NonlinearTracking, Tracking
 from hrsafety.navigation.tracking.references import CircleReference, LineReference, PathReference, Reference
-from hrsafety.tables import Columns, Table, plane
+from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.tables import Columns, Table
 
-__all__ = ["TrackingRun", "TrackingSummary", "track", "track_batch"]
+__all__ = ["TrackingSummary", "track", "track_batch"]
 
 LEVELS = (0.1, 0.01, 0.001)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class TrackingRun(Table):
-    """A run of a two-wheel robot with ideal wheels after a reference: n instants.
-
-    Attributes
-    ----------
-    reference : LineReference, CircleReference or PathReference
-        What was followed.
-    tracking : FullSpeedTracking, NonlinearTracking or ExponentialTracking
-        The law that followed it.
-    time : ndarray, shape (n,)
-        Instants in s.
-    position : ndarray, shape (n, 2)
-        Positions of the robot in m.
-    heading : ndarray, shape (n,)
-        Headings in rad; whole turns count.
-    speed, turn_rate : ndarray, shape (n,)
-        Motion in m/s and rad/s, over the step that ends at the row.
-    commanded_speed, commanded_turn_rate : ndarray, shape (n,)
-        What was asked for from the row on, in m/s and rad/s.
-    reference_position, reference_velocity : ndarray, shape (n, 2)
-        Motion of the reference in m and m/s.
-    goal_phase : ndarray of bool, shape (n,)
-        Whether the command came from the goal phase of `ExponentialTracking`.
-    """
-
-    reference: Reference
-    tracking: Tracking
-    time: Array
-    position: Array
-    heading: Array
-    speed: Array
-    turn_rate: Array
-    commanded_speed: Array
-    commanded_turn_rate: Array
-    reference_position: Array
-    reference_velocity: Array
-    goal_phase: npt.NDArray[np.bool_]
-
-    @property
-    def error(self) -> Array:
-        """Distance between robot and reference at each instant in m, shape (n,)."""
-        offset = self.reference_position - self.position
-        return np.hypot(offset[:, 0], offset[:, 1])
-
-    def columns(self) -> Columns:
-        """Return one-dimensional columns by name, a row for each instant.
-
-        Returns
-        -------
-        dict of str to ndarray
-            Units are in the names; the distance to the reference is the last.
-
-        Examples
-        --------
-        >>> from hrsafety import navigation as nav
-        >>> run = nav.tracking.track(nav.tracking.LineReference(start=(0.0, 0.0), velocity=(0.5, 0.0)), duration=0.6)
-        >>> list(run.columns())[:4]
-        ['t_s', 'x_m', 'y_m', 'heading_rad']
-        """
-        found = {"t_s": self.time, **plane("{}", self.position, "m"), "heading_rad": self.heading}
-        found |= {"speed_m_per_s": self.speed, "turn_rate_rad_per_s": self.turn_rate}
-        found |= {"commanded_speed_m_per_s": self.commanded_speed}
-        found |= {"commanded_turn_rate_rad_per_s": self.commanded_turn_rate}
-        found |= plane("reference_{}", self.reference_position, "m")
-        found |= plane("reference_v{}", self.reference_velocity, "m/s")
-        return found | {"goal_phase": self.goal_phase, "error_m": self.error}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -154,7 +86,7 @@ def track(
     step: float = 0.01,
     duration: float = 30.0,
     goal: npt.ArrayLike | None = None,
-) -> TrackingRun:
+) -> Trajectory:
     """Let a two-wheel robot with ideal wheels follow a reference.
 
     The law commands speed and turn rate every control period. The robot reaches them as fast as
@@ -187,8 +119,8 @@ def track(
 
     Returns
     -------
-    TrackingRun
-        One row at the start and one for each step.
+    Trajectory
+        One row at the start and one for each step, with the reference and what was commanded.
 
     Raises
     ------
@@ -220,7 +152,7 @@ def track(
         duration=number("duration", duration),
         goal=_goal(law, goal),
     )
-    return TrackingRun(reference=path, tracking=law, **history)
+    return _trajectory(path, law, history)
 
 
 def track_batch(
@@ -304,6 +236,26 @@ def track_batch(
         progress=callback("progress", progress),
     )
     return TrackingSummary(levels=heights, **columns)
+
+
+def _trajectory(path: Reference, law: Tracking, history: Mapping[str, Array]) -> Trajectory:
+    """Return the record of a run, in which there are no obstacles."""
+    heading, rows = history["heading"], len(history["time"])
+    forward = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    nothing = np.zeros(0)
+    return Trajectory(
+        reference=path,
+        tracking=law,
+        velocity=history["speed"][:, None] * forward,
+        obstacle_position=np.zeros((rows, 0, 2)),
+        distance=np.zeros((rows, 0)),
+        min_distance=nothing,
+        min_clearance=nothing,
+        contact_time=nothing,
+        contact_speed=nothing,
+        path_length=float(np.abs(history["speed"][1:] * np.diff(history["time"])).sum()),
+        **history,
+    )
 
 
 def _reference(name: str, value: object) -> Reference:

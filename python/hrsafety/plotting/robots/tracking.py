@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.tracking.runs import TrackingRun
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import floor, inputs, style
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["tracking_errors", "tracking_paths"]
 
-Groups = list[tuple[str, list[TrackingRun]]]
+Groups = list[tuple[str, list[Trajectory]]]
 
 MARGIN = 0.25  # m around the paths
 ARROW = 0.22  # m, for the heading at the start
@@ -32,7 +32,7 @@ BOUND_LOOK: style.Properties = {"color": style.CONTACT_COLOR, "linewidth": 1.2, 
 
 @style.styled
 def tracking_paths(
-    runs: TrackingRun | Sequence[TrackingRun] | Sequence[Sequence[TrackingRun]],
+    runs: Trajectory | Sequence[Trajectory] | Sequence[Sequence[Trajectory]],
     *,
     labels: Sequence[str] | None = None,
     title: str | None = None,
@@ -43,7 +43,7 @@ def tracking_paths(
 
     Parameters
     ----------
-    runs : TrackingRun or sequence of TrackingRun or of such sequences
+    runs : Trajectory or sequence of Trajectory or of such sequences
         The runs: one, a few of which each has a color, or groups with a color each.
     labels : sequence of str or None
         One name for each color; numbered when ``None``.
@@ -88,7 +88,7 @@ def tracking_paths(
 
 @style.styled
 def tracking_errors(
-    runs: TrackingRun | Sequence[TrackingRun] | Sequence[Sequence[TrackingRun]],
+    runs: Trajectory | Sequence[Trajectory] | Sequence[Sequence[Trajectory]],
     *,
     labels: Sequence[str] | None = None,
     rate: float | None = None,
@@ -98,7 +98,7 @@ def tracking_errors(
 
     Parameters
     ----------
-    runs : TrackingRun or sequence of TrackingRun or of such sequences
+    runs : Trajectory or sequence of Trajectory or of such sequences
         As for `tracking_paths`.
     labels : sequence of str or None
         One name for each color; numbered when ``None``.
@@ -158,21 +158,27 @@ def tracking_errors(
 
 def _groups(runs: object, labels: Sequence[str] | None) -> Groups:
     """Return the runs by color, with the name of each."""
-    rule = "be a TrackingRun, a sequence of them or of such sequences"
-    given = [runs] if isinstance(runs, TrackingRun) else runs
+    rule = "be a Trajectory of `tracking.track`, a sequence of them or of such sequences"
+    given = [runs] if isinstance(runs, Trajectory) else runs
     if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
         raise InvalidParameterError("runs", rule, Shown(type(runs).__name__))
-    groups = [[member] if isinstance(member, TrackingRun) else member for member in given]
+    groups = [[member] if isinstance(member, Trajectory) else member for member in given]
     for index, group in enumerate(groups):
         if isinstance(group, (str, bytes)) or not isinstance(group, Sequence) or len(group) == 0:
-            raise InvalidParameterError(f"runs[{index}]", "be a TrackingRun or hold at least one", group)
+            raise InvalidParameterError(
+                f"runs[{index}]", "be a Trajectory of `tracking.track` or hold at least one", group
+            )
         for member in group:
-            if not isinstance(member, TrackingRun):
-                raise InvalidParameterError(f"runs[{index}]", rule, Shown(type(member).__name__))
+            if not isinstance(member, Trajectory) or member.tracking is None:
+                raise InvalidParameterError(f"runs[{index}]", rule, _found(member))
     if not groups:
-        raise InvalidParameterError("runs", "hold at least one TrackingRun", Shown("an empty sequence"))
+        raise InvalidParameterError("runs", "hold at least one Trajectory", Shown("an empty sequence"))
     names = inputs.checked_labels(labels, len(groups))
     return [(name, list(group)) for name, group in zip(names, groups, strict=True)]
+
+
+def _found(value: object) -> Shown:
+    return Shown("the run of a scenario" if isinstance(value, Trajectory) else type(value).__name__)
 
 
 def _thinned(look: style.Properties, thin: bool) -> style.Properties:
@@ -180,7 +186,7 @@ def _thinned(look: style.Properties, thin: bool) -> style.Properties:
     return {**look, "linewidth": 0.9, "alpha": 0.75, "linestyle": "-"} if thin else look
 
 
-def _draw_path(axes: Axes, run: TrackingRun, look: style.Properties, *, thin: bool) -> Line2D:
+def _draw_path(axes: Axes, run: Trajectory, look: style.Properties, *, thin: bool) -> Line2D:
     """Draw a path and the heading at its start."""
     line = floor.line(axes, run.position, zorder=3, **_thinned(look, thin))
     (x, y), heading = run.position[0], run.heading[0]
@@ -191,7 +197,7 @@ def _draw_path(axes: Axes, run: TrackingRun, look: style.Properties, *, thin: bo
     return line
 
 
-def _draw_references(axes: Axes, runs: Sequence[TrackingRun]) -> Line2D:
+def _draw_references(axes: Axes, runs: Sequence[Trajectory]) -> Line2D:
     """Draw the path of every reference, or where it stands, and return one for the legend."""
     for run in runs:
         place = run.reference_position
