@@ -2,6 +2,7 @@
 
 pub mod frame;
 pub mod geometry;
+pub mod map;
 pub mod motion;
 pub mod obstacle;
 pub mod region;

@@ -255,7 +255,7 @@ impl PlacedShape {
 
 /// Distance along a ray to a disc at an offset from its start.
 #[inline]
-fn cast_on_disc(to: Vector2<f64>, radius: f64, direction: Vector2<f64>) -> f64 {
+pub(crate) fn cast_on_disc(to: Vector2<f64>, radius: f64, direction: Vector2<f64>) -> f64 {
     let outside = to.dot(&to) - radius * radius;
     if outside <= 0.0 {
         return 0.0;

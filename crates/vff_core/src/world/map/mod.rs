@@ -1,0 +1,183 @@
+//! What stands still: walls, filled polygons, discs and occupancy grids as one map.
+//!
+//! Everything becomes segments with a radius, and filled interiors. Distances are exact, and zero
+//! inside. A map is shared by reference count, so a copy costs nothing.
+
+mod boundary;
+mod capsule;
+pub mod distance_transform;
+mod grid;
+mod index;
+mod outline;
+mod queries;
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use crate::error::{Failure, Given, Result, at_most, finite_pair, not_negative, positive};
+use crate::world::map::grid::Cells;
+use crate::world::map::index::Index;
+pub use boundary::{MOST_POINTS, checked_kappa};
+pub use capsule::Capsule;
+pub use grid::{GridPlace, MOST_CELLS};
+
+/// Most segments of a map.
+pub const MOST_SEGMENTS: usize = 1 << 23;
+
+/// A map of what stands still.
+#[derive(Clone, Debug)]
+pub struct StaticMap {
+    parts: Arc<Parts>,
+}
+
+#[derive(Debug)]
+struct Parts {
+    index: Index,
+    /// Whether some segments are edges of filled outlines.
+    outlines: bool,
+    grids: Vec<Cells>,
+}
+
+/// What a map is made of.
+#[derive(Clone, Debug, Default)]
+pub struct MapShapes {
+    capsules: Vec<Capsule>,
+    grids: Vec<Cells>,
+}
+
+impl MapShapes {
+    /// Nothing so far.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn room_for(&self, name: &str, more: usize) -> Result<()> {
+        at_most(
+            name,
+            self.capsules.len().saturating_add(more),
+            MOST_SEGMENTS,
+        )
+        .map(|_| ())
+        .map_err(|error| error.mended_by("a coarser grid or fewer vertices give fewer segments"))
+    }
+
+    /// Adds walls along a polyline, with a radius in m.
+    ///
+    /// # Errors
+    /// A number is not finite, the radius is negative, or the polyline has no length.
+    pub fn polyline(&mut self, points: &[[f64; 2]], radius: f64) -> Result<()> {
+        not_negative("radius", radius)?;
+        for (index, point) in points.iter().enumerate() {
+            finite_pair(&format!("point {index}"), *point)?;
+        }
+        self.room_for("segments", points.len())?;
+        let walls = points
+            .windows(2)
+            .map(|pair| Capsule::wall(pair[0].into(), pair[1].into(), radius));
+        let before = self.capsules.len();
+        self.capsules
+            .extend(walls.filter(|wall| wall.from != wall.to));
+        if self.capsules.len() == before {
+            let rule = "have two different points at least";
+            let given = Given::Count(points.len() as u64);
+            let advice = "a single place is a disc";
+            return Err(Failure::invalid("points", rule, given).mended_by(advice));
+        }
+        Ok(())
+    }
+
+    /// Adds a filled polygon; its first point is not repeated at the end.
+    ///
+    /// # Errors
+    /// A number is not finite, there are fewer than three points, or the outline touches or crosses
+    /// itself.
+    pub fn polygon(&mut self, points: &[[f64; 2]]) -> Result<()> {
+        self.room_for("segments", points.len())?;
+        self.capsules.extend(outline::outline(points)?);
+        Ok(())
+    }
+
+    /// Adds a filled disc of a radius in m.
+    ///
+    /// # Errors
+    /// A number is not finite, or the radius is not positive.
+    pub fn disc(&mut self, center: [f64; 2], radius: f64) -> Result<()> {
+        finite_pair("center", center)?;
+        positive("radius", radius)?;
+        self.room_for("discs", 1)?;
+        self.capsules.push(Capsule::disc(center.into(), radius));
+        Ok(())
+    }
+
+    /// Adds a grid of cells, row after row from the lowest y; `true` is occupied. What lies outside
+    /// of the grid is free.
+    ///
+    /// # Errors
+    /// The place is not allowed, the number of cells is not that of the rows and columns, or the
+    /// boundary has too many segments.
+    pub fn grid(&mut self, occupied: &[bool], columns: usize, place: GridPlace) -> Result<()> {
+        let cells = Cells::new(occupied, columns, place)?;
+        self.room_for("segments", cells.count_boundary())?;
+        cells.boundary(&mut self.capsules);
+        self.grids.push(cells);
+        Ok(())
+    }
+
+    /// The map of all that was added.
+    #[must_use]
+    pub fn map(self) -> StaticMap {
+        StaticMap {
+            parts: Arc::new(Parts {
+                outlines: self.capsules.iter().any(|capsule| capsule.filled),
+                index: Index::new(self.capsules),
+                grids: self.grids,
+            }),
+        }
+    }
+}
+
+impl StaticMap {
+    /// The segments in the order of the index.
+    #[must_use]
+    pub fn capsules(&self) -> &[Capsule] {
+        &self.parts.index.capsules
+    }
+
+    /// Lower and upper corner of the box around everything, in m; `None` for an empty map.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[Vector2<f64>; 2]> {
+        let bounds = self.parts.index.bounds()?;
+        Some([bounds.lower, bounds.upper])
+    }
+
+    /// The map with discs, given by centers and radii in m, added to it.
+    #[must_use]
+    pub fn with_discs(&self, discs: &[([f64; 2], f64)]) -> Self {
+        let mut shapes = MapShapes {
+            capsules: self.parts.index.capsules.clone(),
+            grids: self.parts.grids.clone(),
+        };
+        let capsules = discs
+            .iter()
+            .map(|(center, radius)| Capsule::disc((*center).into(), *radius));
+        shapes.capsules.extend(capsules);
+        shapes.map()
+    }
+
+    /// Everything in two maps.
+    ///
+    /// # Errors
+    /// Together they have too many segments.
+    pub fn joined(&self, other: &Self) -> Result<Self> {
+        let mut shapes = MapShapes {
+            capsules: self.parts.index.capsules.clone(),
+            grids: self.parts.grids.clone(),
+        };
+        shapes.room_for("segments", other.capsules().len())?;
+        shapes.capsules.extend_from_slice(other.capsules());
+        shapes.grids.extend_from_slice(&other.parts.grids);
+        Ok(shapes.map())
+    }
+}
