@@ -4,6 +4,7 @@ mod borenstein_koren;
 pub mod field;
 pub mod field_d_star;
 mod ge_cui;
+pub mod guide;
 pub mod impedance;
 mod khatib;
 mod masoud;
