@@ -12,6 +12,7 @@ pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
 pub mod registry;
+pub mod shield;
 pub mod tree;
 pub mod velocity_obstacle;
 

@@ -1,0 +1,181 @@
+//! The plan behind a command: take up a velocity within a period, then brake to rest.
+
+use crate::lanes::Vector2;
+use crate::laws::shield::Limits;
+use crate::laws::shield::person::Person;
+use crate::world::geometry::RobotState;
+
+/// Slower than this is at rest and looks nowhere, in m/s.
+const STILL: f64 = 1e-9;
+
+/// Conservative advancement refuses what comes nearer than this, in m.
+const LEAST: f64 = 1e-4;
+
+/// Rounding of a number of periods.
+const ROUNDING: f64 = 1e-9;
+
+/// Whole periods in which a robot can brake from a speed.
+#[inline]
+#[must_use]
+pub fn braking_periods(speed: f64, limits: &Limits) -> f64 {
+    (speed / limits.change() - ROUNDING).ceil().max(0.0)
+}
+
+/// The velocity after one period of the braking that the last verified plan ends with,
+/// `V (N-1)/N`.
+#[must_use]
+pub fn braking(velocity: Vector2<f64>, limits: &Limits) -> Vector2<f64> {
+    let periods = braking_periods(velocity.norm(), limits);
+    if periods <= 1.0 {
+        return Vector2::zeros();
+    }
+    velocity * ((periods - 1.0) / periods)
+}
+
+/// Ramp from `V` to `u` within a period `T`, then braking along `u` in whole periods, then rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    position: Vector2<f64>,
+    before: Vector2<f64>,
+    command: Vector2<f64>,
+    period: f64,
+    /// Time of braking in s.
+    braking: f64,
+    /// The larger of both speeds, in m/s.
+    speed: f64,
+    /// Directions of the half disc: of `V` and of `u`, in the ramp the union.
+    ahead: [Vector2<f64>; 2],
+}
+
+impl Plan {
+    /// The plan for a command `u` that is given to a robot.
+    #[inline]
+    #[must_use]
+    pub fn new(robot: &RobotState<f64>, command: Vector2<f64>, limits: &Limits) -> Self {
+        let (first, second) = (robot.velocity.norm(), command.norm());
+        let ahead = [
+            robot.velocity * (1.0 / first.max(STILL)),
+            command * (1.0 / second.max(STILL)),
+        ];
+        Self {
+            position: robot.position,
+            before: robot.velocity,
+            command,
+            period: limits.period,
+            braking: braking_periods(second, limits) * limits.period,
+            speed: first.max(second),
+            // A robot that starts from rest, or comes to rest, looks along its other velocity.
+            ahead: match (first < STILL, second < STILL) {
+                (true, false) => [ahead[1]; 2],
+                (false, true) => [ahead[0]; 2],
+                (true, true) | (false, false) => ahead,
+            },
+        }
+    }
+
+    /// When the robot rests, in s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.period + self.braking
+    }
+
+    /// Whether the robot neither moves nor takes up a velocity.
+    fn rests(&self) -> bool {
+        self.speed < STILL
+    }
+
+    /// Position at a time within the plan, in m.
+    #[inline]
+    #[must_use]
+    pub fn position(&self, time: f64) -> Vector2<f64> {
+        if time <= self.period {
+            let gained = (self.command - self.before) * (0.5 * time / self.period);
+            return self.position + (self.before + gained) * time;
+        }
+        let turn = self.position + (self.before + self.command) * (0.5 * self.period);
+        if self.braking == 0.0 {
+            return turn;
+        }
+        let braked = (time - self.period).min(self.braking);
+        turn + self.command * (braked - 0.5 * braked * braked / self.braking)
+    }
+
+    /// `g`: distance between the half disc ahead at a time and everywhere that somebody can be
+    /// then, in m.
+    #[inline]
+    fn clearance(&self, person: &Person, radius: f64, time: f64) -> f64 {
+        let place = self.position(time);
+        let [first, second] = self.ahead;
+        let ahead = person.clearance(place, radius, second, time);
+        if time > self.period || first == second {
+            return ahead;
+        }
+        ahead.min(person.clearance(place, radius, first, time))
+    }
+
+    /// Largest rate of [`Self::clearance`] in m/s.
+    fn rate(&self, person: &Person) -> f64 {
+        self.speed + person.rate(self.end())
+    }
+
+    /// Whether nobody can be ahead at any time of the plan; `grown`: what is added to the radius
+    /// at its end, in m.
+    #[inline]
+    pub(super) fn avoids(&self, person: &Person, limits: &Limits, grown: f64) -> bool {
+        if self.rests() {
+            return true;
+        }
+        let radius = limits.radius + person.radius();
+        let (rate, end) = (self.rate(person), self.end());
+        let mut time = 0.0;
+        loop {
+            let clearance = self.clearance(person, radius, time);
+            if clearance < LEAST {
+                return false;
+            }
+            time += clearance / rate;
+            if time > end {
+                return grown == 0.0 || self.clearance(person, radius + grown, end) > 0.0;
+            }
+        }
+    }
+
+    /// Least `g` over the plan in m, to `accuracy` m and never above it by more; infinite for a
+    /// robot that rests.
+    #[must_use]
+    pub fn gap(&self, person: &Person, limits: &Limits, accuracy: f64) -> f64 {
+        if self.rests() {
+            return f64::INFINITY;
+        }
+        let radius = limits.radius + person.radius();
+        let (rate, end) = (self.rate(person), self.end());
+        // Right after the ramp only the direction of the command counts.
+        let mut least = self.clearance(person, radius, self.period);
+        let mut time = 0.0;
+        while time <= end {
+            let clearance = self.clearance(person, radius, time);
+            least = least.min(clearance);
+            time += (clearance - least + accuracy) / rate;
+        }
+        least.min(self.clearance(person, radius, end))
+    }
+
+    /// Chords of the way with what the way deviates from them, in m: ramp in four, braking in one.
+    pub(super) fn chords(&self) -> impl Iterator<Item = ([Vector2<f64>; 2], f64)> + '_ {
+        let change = self.command - self.before;
+        let straight =
+            self.before.perp(&self.command) == 0.0 && self.before.dot(&self.command) >= 0.0;
+        let deviation = if straight {
+            0.0
+        } else {
+            change.norm() * self.period / 128.0
+        };
+        let ramp = (0..4).map(move |quarter| {
+            let at = |part: f64| self.position(0.25 * part * self.period);
+            let part = f64::from(quarter);
+            ([at(part), at(part + 1.0)], deviation)
+        });
+        let braking = [self.position(self.period), self.position(self.end())];
+        ramp.chain((self.braking > 0.0).then_some((braking, 0.0)))
+    }
+}

@@ -1,0 +1,88 @@
+//! Search for the admissible velocity that is nearest to a wanted one.
+
+use crate::lanes::Vector2;
+
+/// Directions of a ring.
+const DIRECTIONS: u32 = 32;
+
+/// Rings around the wanted velocity.
+const RINGS: u32 = 12;
+
+/// Halvings of the distance between two rings.
+const HALVINGS: u32 = 6;
+
+/// A velocity and its distance from the wanted one.
+type Found = (f64, Vector2<f64>);
+
+fn unit(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Vector2::new(cos, sin)
+}
+
+/// The admissible velocity nearest to `wanted`, as far as rings of directions find it, or `first`
+/// where nothing nearer is found. Everything admissible lies within `farthest` m/s of it.
+pub(super) fn nearest(
+    wanted: Vector2<f64>,
+    farthest: f64,
+    first: Option<Vector2<f64>>,
+    mut admissible: impl FnMut(Vector2<f64>) -> bool,
+) -> Option<Vector2<f64>> {
+    let mut best: Option<Found> = first.map(|velocity| ((velocity - wanted).norm(), velocity));
+    let width = farthest / f64::from(RINGS);
+    let mut inner = 0.0;
+    for ring in 1..=RINGS {
+        let radius = f64::from(ring) * width;
+        if best.is_some_and(|(distance, _)| distance <= radius) {
+            break;
+        }
+        // Every other ring is turned by half a step, so that no direction is looked at twice.
+        let turn = 0.5 * f64::from(ring % 2);
+        if let Some(found) = on_ring(wanted, radius, turn, &mut admissible) {
+            best = Some((radius, found));
+            break;
+        }
+        inner = radius;
+    }
+    let (mut outer, mut found) = best?;
+    for halving in 0..HALVINGS {
+        let radius = 0.5 * (inner + outer);
+        let turn = 0.25 + 0.5 * f64::from(halving % 2);
+        let nearer = beside(wanted, found, radius, halving, &mut admissible)
+            .or_else(|| on_ring(wanted, radius, turn, &mut admissible));
+        match nearer {
+            Some(nearer) => (outer, found) = (radius, nearer),
+            None => inner = radius,
+        }
+    }
+    Some(found)
+}
+
+/// An admissible velocity on a ring whose directions are turned by a part of their step.
+fn on_ring(
+    wanted: Vector2<f64>,
+    radius: f64,
+    turn: f64,
+    admissible: &mut impl FnMut(Vector2<f64>) -> bool,
+) -> Option<Vector2<f64>> {
+    let step = std::f64::consts::TAU / f64::from(DIRECTIONS);
+    (0..DIRECTIONS)
+        .map(|direction| wanted + unit((f64::from(direction) + turn) * step) * radius)
+        .find(|velocity| admissible(*velocity))
+}
+
+/// An admissible velocity at a radius in nearly the direction of one that is.
+fn beside(
+    wanted: Vector2<f64>,
+    found: Vector2<f64>,
+    radius: f64,
+    halving: u32,
+    admissible: &mut impl FnMut(Vector2<f64>) -> bool,
+) -> Option<Vector2<f64>> {
+    let way = found - wanted;
+    let angle = way.y.atan2(way.x);
+    let step = std::f64::consts::PI / f64::from(DIRECTIONS) / f64::from(1 + halving);
+    [0.0, 1.0, -1.0, 2.0, -2.0]
+        .into_iter()
+        .map(|steps| wanted + unit(angle + steps * step) * radius)
+        .find(|velocity| admissible(*velocity))
+}

@@ -1,0 +1,105 @@
+//! What does not move, as the shield sees it: rectangles that stand, and the map.
+
+use crate::lanes::Vector2;
+use crate::world::shape::{PlacedShape, Shape, into_axes};
+
+/// Rounding of distances in m.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// Everything that does not move.
+#[derive(Clone, Copy, Debug)]
+pub struct Walls<'a> {
+    /// Shapes that stand.
+    pub shapes: &'a [PlacedShape],
+}
+
+impl Walls<'_> {
+    /// Nothing stands anywhere.
+    pub const NONE: Self = Self { shapes: &[] };
+
+    /// Whether there is nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty()
+    }
+
+    /// Distance of a point from the nearest wall in m, zero inside.
+    #[must_use]
+    pub fn clearance(&self, point: Vector2<f64>) -> f64 {
+        let distances = self.shapes.iter().map(|shape| shape.distance(point));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a segment from the nearest wall in m, zero if it meets one.
+    #[must_use]
+    pub fn segment_clearance(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+        let distances = self
+            .shapes
+            .iter()
+            .map(|shape| segment_distance(shape, from, to));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Distance of a point from a segment.
+fn from_segment(point: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    let along = to - from;
+    let square = along.dot(&along);
+    let share = if square > 0.0 {
+        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (from + along * share - point).norm()
+}
+
+/// Distance of a segment from a shape, zero where they meet.
+fn segment_distance(shape: &PlacedShape, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    match shape.shape {
+        Shape::Disc { radius } => (from_segment(shape.center, from, to) - radius).max(0.0),
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
+            let way = to - from;
+            let length = way.norm();
+            if length > 0.0 && shape.cast(from, way / length) <= length {
+                return 0.0;
+            }
+            let half = Vector2::new(half_length, half_width);
+            let ends = [from, to].map(|end| into_axes(end - shape.center, axis));
+            let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, y]| {
+                from_segment(Vector2::new(x * half.x, y * half.y), ends[0], ends[1])
+            });
+            let ends = [shape.distance(from), shape.distance(to)];
+            corners.into_iter().chain(ends).fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_is_as_near_as_its_nearest_point() {
+        let table = PlacedShape::turned([0.4, -0.2], [1.2, 0.3], 0.7);
+        let pillar = PlacedShape::disc([-1.0, 0.5], 0.3);
+        let shapes = [table, pillar];
+        let walls = Walls { shapes: &shapes };
+        for [a, b, c, d] in [
+            [-2.0, 0.0, 2.0, 1.5],
+            [1.5, -1.0, 1.0, 1.0],
+            [0.4, -0.2, 3.0, 3.0],
+            [-1.0, 2.0, -1.0, 2.0],
+        ] {
+            let (from, to) = (Vector2::new(a, b), Vector2::new(c, d));
+            let sampled = (0..=4000)
+                .map(|part| walls.clearance(from + (to - from) * (f64::from(part) / 4000.0)))
+                .fold(f64::INFINITY, f64::min);
+            let exact = walls.segment_clearance(from, to);
+            assert!(exact <= sampled + 1e-12 && sampled < exact + 2e-3);
+        }
+    }
+}
