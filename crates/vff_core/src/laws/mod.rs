@@ -15,6 +15,7 @@ pub mod registry;
 pub mod shield;
 pub mod tree;
 pub mod velocity_obstacle;
+pub mod yielding;
 
 pub use borenstein_koren::BorensteinKoren;
 pub use field::law::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};

@@ -1,0 +1,487 @@
+//! Giving way: a velocity that stays out of the way of people, as far as their velocities tell.
+//!
+//! A wanted velocity that meets nobody within the horizon is kept. Otherwise many velocities are
+//! priced by how far they are from the wanted one, how little they lead to the goal, how soon they
+//! meet somebody, and how near they come to anybody.
+
+use crate::error::{Result, not_negative, positive};
+use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use crate::laws::shield::{Limits, Walls};
+use crate::world::geometry::RobotState;
+
+/// Directions of the candidates.
+const DIRECTIONS: usize = 36;
+
+/// Their speeds, as shares of the largest.
+const SPEEDS: usize = 3;
+
+/// Candidates side by side.
+const WIDTH: usize = 8;
+
+/// Chunks of candidates; what is left of the last one repeats the first candidate.
+const CHUNKS: usize = (2 + DIRECTIONS * SPEEDS).div_ceil(WIDTH);
+
+/// Times to contact below this are priced alike, in s.
+const SOONEST: f64 = 0.05;
+
+/// How far ahead walls are looked for, in s.
+const WALL_HORIZON: f64 = 1.0;
+
+/// What is nearer to a wall meets it, in m.
+const TOUCHING: f64 = 1e-3;
+
+/// How the robot gives way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yielding {
+    /// Surfaces that come nearer than this meet, `y` in m.
+    pub clearance: f64,
+    /// Time `H` for which everybody is taken to keep his velocity, in s.
+    pub horizon: f64,
+    /// Weight `k_t` of the inverse time to contact in s.
+    pub time_weight: f64,
+    /// Weight `k_d` of coming nearer than `comfort`.
+    pub distance_weight: f64,
+    /// Distance of the surfaces that is comfortable, `c_p` in m.
+    pub comfort: f64,
+    /// Weight `k_g` of progress.
+    pub goal_weight: f64,
+    /// People whose surface is farther away are not looked at, in m; may be infinite.
+    pub reach: f64,
+}
+
+impl Default for Yielding {
+    fn default() -> Self {
+        Self {
+            clearance: 0.15,
+            horizon: 5.0,
+            time_weight: 3.8,
+            distance_weight: 1.0,
+            comfort: 0.1,
+            goal_weight: 1.3,
+            reach: f64::INFINITY,
+        }
+    }
+}
+
+impl Yielding {
+    /// Returns it if its numbers are allowed.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self> {
+        not_negative("clearance", self.clearance)?;
+        positive("horizon", self.horizon)?;
+        not_negative("time_weight", self.time_weight)?;
+        not_negative("distance_weight", self.distance_weight)?;
+        positive("comfort", self.comfort)?;
+        not_negative("goal_weight", self.goal_weight)?;
+        if self.reach != f64::INFINITY {
+            positive("reach", self.reach)?;
+        }
+        Ok(self)
+    }
+}
+
+/// Somebody who is given way to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passerby {
+    /// Position relative to the robot when the command takes effect, in m.
+    pub offset: Vector2<f64>,
+    /// Velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Distance of the centers at contact, in m.
+    pub touch: f64,
+}
+
+/// What the robot wants, and where it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Outlook<'a> {
+    /// The robot.
+    pub robot: RobotState<f64>,
+    /// Wanted velocity in m/s.
+    pub wanted: Vector2<f64>,
+    /// Unit vector to the (local) goal.
+    pub to_goal: Vector2<f64>,
+    /// Everybody around.
+    pub people: &'a [Passerby],
+    /// What does not move.
+    pub walls: Walls<'a>,
+}
+
+/// First meeting and least clearance of velocities side by side.
+#[derive(Clone, Copy, Debug)]
+struct Meeting<R> {
+    /// When surfaces come nearer than `y`, in s; the horizon if never.
+    time: R,
+    /// Least clearance within the horizon in m.
+    clearance: R,
+}
+
+/// A stretch of constant relative velocity.
+struct Stretch<R> {
+    from: Vector2<R>,
+    velocity: Vector2<R>,
+    duration: R,
+}
+
+impl<R: Real> Stretch<R> {
+    /// Time to come within a distance while closing, or to touch, the duration if neither; and the
+    /// least square of the distance.
+    #[inline(always)]
+    fn meet(&self, near: f64, touch: f64) -> (R, R) {
+        let zero = R::zero();
+        let square = self.from.dot(&self.from);
+        let closing = self.from.dot(&self.velocity);
+        let rate = self.velocity.dot(&self.velocity);
+        let outside = square - R::splat(near * near);
+        let root = (closing * closing - rate * outside).max(zero).sqrt();
+        // The nearer root as a quotient, exact where the two are close.
+        let entry = outside / (root - closing);
+        let meets = closing.lt(zero) & (rate * outside).le(closing * closing);
+        let inside = outside.le(zero) & closing.lt(zero);
+        let inside = inside | square.lt(R::splat(touch * touch));
+        let entry = R::select(meets, entry.min(self.duration), self.duration);
+        let time = R::select(inside, zero, entry);
+        let nearest = R::select(closing.lt(zero), -closing / rate, zero).min(self.duration);
+        let least = square + (closing * R::splat(2.0) + rate * nearest) * nearest;
+        (time, least.max(zero))
+    }
+}
+
+/// Giving way, for one robot.
+#[derive(Clone, Debug)]
+pub struct Yielder {
+    settings: Yielding,
+    limits: Limits,
+    /// Directions of the candidates from that to the goal: nearest first.
+    turns: [Vector2<f64>; DIRECTIONS],
+    processor: pulp::Arch,
+}
+
+impl Yielder {
+    /// Giving way with the limits of a robot.
+    ///
+    /// # Errors
+    /// Names the number that is not allowed.
+    pub fn new(settings: Yielding, limits: Limits) -> Result<Self> {
+        let mut turns = [Vector2::zeros(); DIRECTIONS];
+        for (index, turn) in turns.iter_mut().enumerate() {
+            let steps = index.div_ceil(2) as f64;
+            let side = if index % 2 == 0 { -1.0 } else { 1.0 };
+            let (sin, cos) = (side * steps * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
+            *turn = Vector2::new(cos, sin);
+        }
+        Ok(Self {
+            settings: settings.checked()?,
+            limits,
+            turns,
+            processor: pulp::Arch::new(),
+        })
+    }
+
+    /// What it goes by.
+    #[must_use]
+    pub fn settings(&self) -> &Yielding {
+        &self.settings
+    }
+
+    /// The velocity to have at the next sample, among those that `verified` admits; `None` if it
+    /// admits none.
+    pub fn decide(
+        &self,
+        outlook: &Outlook<'_>,
+        mut verified: impl FnMut(Vector2<f64>) -> bool,
+    ) -> Option<Vector2<f64>> {
+        let before = outlook.robot.velocity;
+        let wanted = self.limits.clipped(before, outlook.wanted);
+        let Yielding {
+            horizon, comfort, ..
+        } = self.settings;
+        let alone = self.meeting::<f64>(outlook, outlook.wanted);
+        let free = alone.clearance >= comfort && alone.time >= horizon;
+        if free && self.wall_time(outlook, outlook.wanted) >= horizon && verified(wanted) {
+            return Some(wanted);
+        }
+        let choice = Choice {
+            yielder: self,
+            outlook,
+            verified,
+        };
+        self.processor.dispatch(choice)
+    }
+
+    /// First meeting and least clearance of a robot that takes up velocities and keeps them.
+    #[inline(always)]
+    fn meeting<R: Real>(&self, outlook: &Outlook<'_>, velocity: Vector2<R>) -> Meeting<R> {
+        let Yielding {
+            clearance, horizon, ..
+        } = self.settings;
+        let half = R::splat(0.5);
+        let before = Vector2::<R>::splat(outlook.robot.velocity.into());
+        let change = velocity - before;
+        let per_second = R::splat(1.0 / self.limits.max_acceleration);
+        let ramp = (change.dot(&change).sqrt() * per_second).min(R::splat(horizon));
+        let rest = R::splat(horizon) - ramp;
+        let mean = (before + velocity) * half;
+        let mut meeting = Meeting {
+            time: R::splat(horizon),
+            clearance: R::splat(f64::INFINITY),
+        };
+        for person in outlook.people {
+            let (touch, near) = (person.touch, person.touch + clearance);
+            let own = Vector2::<R>::splat(person.velocity.into());
+            let taking_up = Stretch {
+                from: Vector2::<R>::splat(person.offset.into()),
+                velocity: own - mean,
+                duration: ramp,
+            };
+            let keeping = Stretch {
+                from: taking_up.from + taking_up.velocity * ramp,
+                velocity: own - velocity,
+                duration: rest,
+            };
+            let (first, least) = taking_up.meet(near, touch);
+            let (second, later) = keeping.meet(near, touch);
+            let time = R::select(first.lt(ramp), first, ramp + second);
+            meeting.time = meeting.time.min(time);
+            let least = least.min(later).sqrt() - R::splat(touch);
+            meeting.clearance = meeting.clearance.min(least);
+        }
+        meeting
+    }
+
+    /// When a velocity is stopped by a wall, in s: the time until it meets one, if that is soon,
+    /// and the time to brake; infinite without one.
+    fn wall_time(&self, outlook: &Outlook<'_>, velocity: Vector2<f64>) -> f64 {
+        let speed = velocity.norm();
+        if outlook.walls.is_empty() || speed == 0.0 {
+            return f64::INFINITY;
+        }
+        let mut time = 0.0;
+        while time < WALL_HORIZON {
+            let place = outlook.robot.position + velocity * time;
+            let room = outlook.walls.clearance(place) - self.limits.radius;
+            if room < TOUCHING {
+                return time + speed / self.limits.max_acceleration;
+            }
+            time += room / speed;
+        }
+        f64::INFINITY
+    }
+
+    /// A chunk of candidates: the wanted velocity, rest, then directions and speeds.
+    #[inline(always)]
+    fn candidates(&self, outlook: &Outlook<'_>, chunk: usize) -> Vector2<Lanes<WIDTH>> {
+        let mut x = [0.0; WIDTH];
+        let mut y = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            let velocity = match chunk * WIDTH + lane {
+                1 => Vector2::zeros(),
+                index if (2..2 + DIRECTIONS * SPEEDS).contains(&index) => {
+                    let (turn, speed) = ((index - 2) / SPEEDS, SPEEDS - (index - 2) % SPEEDS);
+                    let turn = self.turns[turn];
+                    let length = self.limits.max_speed * (speed as f64 / SPEEDS as f64);
+                    let goal = outlook.to_goal;
+                    Vector2::new(
+                        (goal.x * turn.x - goal.y * turn.y) * length,
+                        (goal.x * turn.y + goal.y * turn.x) * length,
+                    )
+                }
+                _ => outlook.wanted,
+            };
+            (x[lane], y[lane]) = (velocity.x, velocity.y);
+        }
+        Vector2::new(Lanes::from_fn(|lane| x[lane]), Lanes::from_fn(|lane| y[lane]))
+    }
+
+    /// Price of velocities without regard to others.
+    #[inline(always)]
+    fn aims<R: Real>(&self, outlook: &Outlook<'_>, velocity: Vector2<R>) -> R {
+        let change = velocity - Vector2::<R>::splat(outlook.wanted.into());
+        let ahead = velocity.dot(&Vector2::<R>::splat(outlook.to_goal.into()));
+        let per_speed = R::splat(1.0 / self.limits.max_speed);
+        (change.dot(&change).sqrt() - ahead * R::splat(self.settings.goal_weight)) * per_speed
+    }
+
+    /// Price of meeting and passing others.
+    #[inline(always)]
+    fn price<R: Real>(&self, meeting: &Meeting<R>) -> R {
+        let Yielding {
+            horizon,
+            time_weight,
+            distance_weight,
+            comfort,
+            ..
+        } = self.settings;
+        let one = R::splat(1.0);
+        let soon = one / meeting.time.max(R::splat(SOONEST)) - R::splat(1.0 / horizon);
+        let soon = soon.max(R::zero()) * R::splat(time_weight);
+        let share = meeting.clearance.max(R::zero()) * R::splat(1.0 / comfort);
+        let short = (one - share).max(R::zero());
+        soon + short * short * R::splat(distance_weight)
+    }
+}
+
+/// The choice among the candidates, compiled once for each instruction set.
+struct Choice<'a, F> {
+    yielder: &'a Yielder,
+    outlook: &'a Outlook<'a>,
+    verified: F,
+}
+
+impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
+    type Output = Option<Vector2<f64>>;
+
+    #[inline(always)]
+    fn call(mut self) -> Self::Output {
+        let (yielder, outlook) = (self.yielder, self.outlook);
+        let before = outlook.robot.velocity;
+        let (mut best, mut chosen) = (f64::INFINITY, None);
+        for chunk in 0..CHUNKS {
+            let candidates = yielder.candidates(outlook, chunk);
+            let aims = yielder.aims(outlook, candidates);
+            // Others only add to the price.
+            if !aims.lt(Lanes::splat(best)).any() {
+                continue;
+            }
+            let meeting = yielder.meeting(outlook, candidates);
+            let prices = aims + yielder.price(&meeting);
+            let mut tried = prices.lt(Lanes::splat(best));
+            while let Some(lane) = cheapest(prices, tried) {
+                tried = tried.without(lane);
+                let velocity = Vector2::from(candidates.lane(lane));
+                let mut price = prices.lane(lane);
+                if price >= best {
+                    break;
+                }
+                if !outlook.walls.is_empty() {
+                    let wall = yielder.wall_time(outlook, velocity);
+                    let meeting = Meeting {
+                        time: meeting.time.lane(lane).min(wall),
+                        clearance: meeting.clearance.lane(lane),
+                    };
+                    price = aims.lane(lane) + yielder.price(&meeting);
+                }
+                let command = yielder.limits.clipped(before, velocity);
+                if price < best && (self.verified)(command) {
+                    (best, chosen) = (price, Some(command));
+                }
+            }
+        }
+        chosen
+    }
+}
+
+/// The lane of the least price among some lanes.
+#[inline(always)]
+fn cheapest(prices: Lanes<WIDTH>, among: <Lanes<WIDTH> as Real>::Mask) -> Option<usize> {
+    (0..WIDTH)
+        .filter(|lane| among.lane(*lane))
+        .min_by(|a, b| prices.lane(*a).total_cmp(&prices.lane(*b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limits() -> Limits {
+        Limits {
+            radius: 0.3,
+            max_speed: 1.5,
+            max_acceleration: 10.0,
+            period: 0.1,
+        }
+    }
+
+    fn outlook(people: &[Passerby]) -> Outlook<'_> {
+        Outlook {
+            robot: RobotState {
+                position: Vector2::zeros(),
+                velocity: Vector2::zeros(),
+            },
+            wanted: Vector2::new(1.0, 0.0),
+            to_goal: Vector2::x(),
+            people,
+            walls: Walls::NONE,
+        }
+    }
+
+    fn passerby(offset: [f64; 2], velocity: [f64; 2]) -> Passerby {
+        Passerby {
+            offset: offset.into(),
+            velocity: velocity.into(),
+            touch: 0.6,
+        }
+    }
+
+    #[test]
+    fn the_wanted_velocity_is_kept_where_nobody_comes() {
+        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
+        let people = [passerby([0.0, 4.0], [0.0, 1.0])];
+        let decided = yielder.decide(&outlook(&people), |_| true);
+        assert_eq!(decided, Some(Vector2::new(1.0, 0.0)));
+    }
+
+    #[test]
+    fn it_gives_way_to_somebody_head_on() {
+        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
+        let people = [passerby([3.0, 0.0], [-1.0, 0.0])];
+        let decided = yielder.decide(&outlook(&people), |_| true).unwrap();
+        assert!(decided.y.abs() > 0.2, "{decided}");
+        assert_eq!(yielder.decide(&outlook(&people), |_| false), None);
+    }
+
+    #[test]
+    fn meetings_are_those_of_small_steps() {
+        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
+        let mut seen = outlook(&[]);
+        seen.robot.velocity = Vector2::new(-0.4, 0.9);
+        for (offset, velocity, target) in [
+            ([2.0, 1.0], [-0.8, 0.3], [1.5, 0.0]),
+            ([1.0, -2.0], [0.2, 0.9], [0.3, -0.6]),
+            ([4.0, 0.1], [-1.0, 0.0], [0.0, 0.0]),
+        ] {
+            let people = [passerby(offset, velocity)];
+            let target = Vector2::from(target);
+            let outlook = Outlook {
+                people: &people,
+                ..seen
+            };
+            let meeting = yielder.meeting::<f64>(&outlook, target);
+            let ramp = (target - seen.robot.velocity).norm() / 10.0;
+            let (mut first, mut least) = (5.0_f64, f64::INFINITY);
+            for step in 0..=50_000 {
+                let time = f64::from(step) * 1e-4;
+                let own = (seen.robot.velocity + target) * 0.5 * time.min(ramp)
+                    + target * (time - ramp).max(0.0);
+                let away = people[0].offset + people[0].velocity * time - own;
+                let clearance = away.norm() - 0.6;
+                least = least.min(clearance);
+                if clearance <= 0.15 {
+                    first = first.min(time);
+                }
+            }
+            assert!((meeting.time - first).abs() < 2e-4, "{meeting:?} {first}");
+            assert!((meeting.clearance - least).abs() < 2e-4, "{meeting:?} {least}");
+        }
+    }
+
+    #[test]
+    fn lanes_price_as_single_velocities_do() {
+        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
+        let people = [
+            passerby([2.0, 1.0], [-0.8, 0.3]),
+            passerby([1.0, -0.5], [0.1, 0.2]),
+        ];
+        let outlook = outlook(&people);
+        for chunk in 0..CHUNKS {
+            let candidates = yielder.candidates(&outlook, chunk);
+            let together = yielder.price(&yielder.meeting(&outlook, candidates));
+            for lane in 0..WIDTH {
+                let one = Vector2::from(candidates.lane(lane));
+                let alone = yielder.price(&yielder.meeting::<f64>(&outlook, one));
+                assert_eq!(alone.to_bits(), together.lane(lane).to_bits());
+            }
+        }
+    }
+}
