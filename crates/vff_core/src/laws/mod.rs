@@ -12,6 +12,7 @@ pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
 pub mod registry;
+pub mod safe;
 pub mod shield;
 pub mod tree;
 pub mod velocity_obstacle;
@@ -112,6 +113,10 @@ pub trait Law<R: Real> {
 
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R>;
+
+    /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
+    /// Laws that plan the whole way themselves keep theirs.
+    fn aim(&mut self, _goal: [f64; 2]) {}
 }
 
 /// A law up to its gains: what a search over gains needs to know of it.
@@ -127,6 +132,10 @@ pub trait LawFamily: Sync {
     /// Every force term at one state with its own gains; `None` for laws that are no sum of terms.
     fn terms(&self, _scenario: &Scenario, _situation: &Situation<'_, f64>) -> Option<FieldTerms> {
         None
+    }
+    /// Whether it chooses a velocity, and so knows no regions.
+    fn chooses_velocities(&self) -> bool {
+        false
     }
     /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
     /// their critical regions; a search then need not follow runs whose end is known.

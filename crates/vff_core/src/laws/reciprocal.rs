@@ -243,4 +243,8 @@ impl Planner for ReciprocalPlanner {
             .nearest(&self.planes, hard, self.max_speed, wanted);
         [velocity.x, velocity.y]
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.goal = Vector::splat(goal);
+    }
 }

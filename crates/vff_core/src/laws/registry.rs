@@ -6,6 +6,7 @@ use crate::laws::field_d_star::FieldDStar;
 use crate::laws::pairwise::Pairwise;
 use crate::laws::planning::family::Planned;
 use crate::laws::reciprocal::ReciprocalAvoidance;
+use crate::laws::safe::SafeNavigation;
 use crate::laws::tree::RapidlyExploringRandomTree;
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle};
 use crate::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, VirtualForceField};
@@ -36,6 +37,7 @@ macro_rules! any_law {
 any_law!(OneAndEight: Pairwise<Masoud>, Pairwise<GeCui>, Pairwise<Khatib>, Pairwise<BorensteinKoren>);
 any_law!(One: Planned<VelocityObstacle>, Planned<ReciprocalAvoidance>);
 any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>);
+any_law!(One: SafeNavigation);
 
 /// What a law is made of, by name: from a caller, a file, or the command line.
 pub trait Arguments {

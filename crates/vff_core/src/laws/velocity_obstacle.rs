@@ -362,6 +362,10 @@ impl Planner for VelocityObstaclePlanner {
         }
         self.latest_contact(situation).lane(0)
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.goal = Vector::splat(goal);
+    }
 }
 
 /// Where a ray meets a circle.

@@ -152,7 +152,8 @@ impl<R: Real> Stretch<R> {
 #[derive(Clone, Debug)]
 pub struct Yielder {
     settings: Yielding,
-    limits: Limits,
+    /// Limits of the robot.
+    pub(crate) limits: Limits,
     /// Directions of the candidates from that to the goal: nearest first.
     turns: [Vector2<f64>; DIRECTIONS],
     processor: pulp::Arch,
@@ -291,7 +292,10 @@ impl Yielder {
             };
             (x[lane], y[lane]) = (velocity.x, velocity.y);
         }
-        Vector2::new(Lanes::from_fn(|lane| x[lane]), Lanes::from_fn(|lane| y[lane]))
+        Vector2::new(
+            Lanes::from_fn(|lane| x[lane]),
+            Lanes::from_fn(|lane| y[lane]),
+        )
     }
 
     /// Price of velocities without regard to others.
@@ -462,7 +466,10 @@ mod tests {
                 }
             }
             assert!((meeting.time - first).abs() < 2e-4, "{meeting:?} {first}");
-            assert!((meeting.clearance - least).abs() < 2e-4, "{meeting:?} {least}");
+            assert!(
+                (meeting.clearance - least).abs() < 2e-4,
+                "{meeting:?} {least}"
+            );
         }
     }
 

@@ -71,11 +71,17 @@ impl AnyLaw {
 pub(crate) trait Steering: Send {
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
+    /// Heads for another goal from now on, in m.
+    fn aim(&mut self, goal: [f64; 2]);
 }
 
 impl<L: Law<f64> + Send> Steering for L {
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         Law::command(self, situation)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        Law::aim(self, goal);
     }
 }
 
@@ -95,8 +101,19 @@ pub(crate) trait Driven: Send + Sync {
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
     /// Every force term with its own gains; `None` for laws that are no sum of terms.
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
+    /// Whether it chooses a velocity, and so knows no regions.
+    fn chooses_velocities(&self) -> bool;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
-    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>>;
+    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
+        self.steering_with(&self.gains(), scenario, true)
+    }
+    /// The same with other gains; `record`: the Lyapunov function is wanted too.
+    fn steering_with(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Steering>>;
     /// One run with its own gains and everything recorded.
     fn record(
         &self,
@@ -197,9 +214,21 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
         self.0.terms(scenario, situation)
     }
 
-    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
-        let law = self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?;
-        Ok(Box::new(law))
+    fn chooses_velocities(&self) -> bool {
+        self.0.chooses_velocities()
+    }
+
+    fn steering_with(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Steering>> {
+        Ok(if record {
+            Box::new(self.0.with_gains::<f64, true>(gains, scenario)?)
+        } else {
+            Box::new(self.0.with_gains::<f64, false>(gains, scenario)?)
+        })
     }
 
     fn record(

@@ -26,7 +26,7 @@ pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use group::Group;
+pub(crate) use group::{Group, Steering};
 pub(crate) use nominal::{Ways, nominal_runs};
 pub(crate) use plan::{Key, Plan, key_of};
 pub(crate) use table::min_clearance;

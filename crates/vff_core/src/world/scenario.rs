@@ -157,6 +157,27 @@ impl Scenario {
         Ok(self)
     }
 
+    /// The same scenario with a slower robot; regions that were not given are sized for it.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn slowed(&self, max_speed: f64) -> Result<Self> {
+        let mut slowed = self.clone();
+        slowed.robot.max_speed = positive("max_speed", max_speed)?;
+        let limits = RobotLimits {
+            max_speed,
+            ..self.limits()
+        };
+        let sensing = Sensing {
+            measurement: self.measurement,
+            ..Sensing::default()
+        };
+        let obstacles = self.obstacles.iter().map(|placed| placed.obstacle.clone());
+        let ends = [self.start, self.goal];
+        slowed.obstacles = place_all(&limits, ends, obstacles, &self.rules, &sensing)?;
+        Ok(slowed)
+    }
+
     /// Limits that size the regions.
     pub(crate) fn limits(&self) -> RobotLimits {
         let holonomic = self.robot.limits();

@@ -363,6 +363,10 @@ impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
         }
         command
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.goal = Vector2::splat(goal);
+    }
 }
 
 /// Terms of one obstacle at one state.

@@ -181,4 +181,8 @@ impl<R: Real> Law<R> for ImpedanceLaw {
             lyapunov: R::splat(f64::NAN),
         }
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.goal = Vector2::from(goal);
+    }
 }

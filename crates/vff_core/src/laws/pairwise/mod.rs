@@ -173,4 +173,8 @@ impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
             lyapunov: R::splat(f64::NAN),
         }
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.goal = Vector2::splat(goal);
+    }
 }

@@ -68,6 +68,12 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
         }
         Command::plain(force_toward(wanted, situation, self.mass))
     }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        for planner in &mut self.planners {
+            planner.aim(goal);
+        }
+    }
 }
 
 impl<F: PlannerFamily> LawFamily for Planned<F> {
@@ -79,6 +85,10 @@ impl<F: PlannerFamily> LawFamily for Planned<F> {
 
     fn gains(&self) -> Vec<f64> {
         self.0.numbers()
+    }
+
+    fn chooses_velocities(&self) -> bool {
+        true
     }
 
     fn free_gains(&self) -> &'static [usize] {

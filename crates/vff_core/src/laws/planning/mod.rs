@@ -15,4 +15,7 @@ pub trait Planner: Send + 'static {
     /// Velocity in m/s that the robot should have at the next sample. A planner that finds no
     /// way asks for standstill, unless its own documentation says more.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2];
+
+    /// Heads for another goal from now on, in m; planners of a whole way keep theirs.
+    fn aim(&mut self, _goal: [f64; 2]) {}
 }

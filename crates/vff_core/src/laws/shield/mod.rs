@@ -247,8 +247,7 @@ impl Guard {
 
     fn safe(&self, view: &View<'_>, command: Vector2<f64>) -> bool {
         let plan = Plan::new(&view.robot, command, &self.limits);
-        let avoids =
-            |person: &Person| plan.avoids(person, &self.limits, self.shield.grown(person));
+        let avoids = |person: &Person| plan.avoids(person, &self.limits, self.shield.grown(person));
         view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan)
     }
 
@@ -260,9 +259,8 @@ impl Guard {
         let radius = self.limits.radius - self.shield.margin;
         let present = walls.clearance(plan.position(0.0)) - radius;
         let least = present.min(self.shield.wall_margin) + radius - walls::ROUNDING;
-        plan.chords().all(|([from, to], deviation)| {
-            walls.segment_clearance(from, to) - deviation >= least
-        })
+        plan.chords()
+            .all(|([from, to], deviation)| walls.segment_clearance(from, to) - deviation >= least)
     }
 
     /// Least distance between the half disc ahead and everywhere that people can be, over the plan

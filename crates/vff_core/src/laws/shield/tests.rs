@@ -94,7 +94,10 @@ fn plans_of_the_specification() {
         };
         assert_eq!(decision.status, Status::Changed);
         let found = (decision.velocity - reached).norm();
-        assert!((found - change).abs() < 0.01 * guard.limits.max_speed, "{index}: {found}");
+        assert!(
+            (found - change).abs() < 0.01 * guard.limits.max_speed,
+            "{index}: {found}"
+        );
         assert!(guard.gap(&view, decision.velocity) > 0.0);
     }
 }

@@ -69,11 +69,13 @@ fn segment_distance(shape: &PlacedShape, from: Vector2<f64>, to: Vector2<f64>) -
             }
             let half = Vector2::new(half_length, half_width);
             let ends = [from, to].map(|end| into_axes(end - shape.center, axis));
-            let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, y]| {
-                from_segment(Vector2::new(x * half.x, y * half.y), ends[0], ends[1])
-            });
+            let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]
+                .map(|[x, y]| from_segment(Vector2::new(x * half.x, y * half.y), ends[0], ends[1]));
             let ends = [shape.distance(from), shape.distance(to)];
-            corners.into_iter().chain(ends).fold(f64::INFINITY, f64::min)
+            corners
+                .into_iter()
+                .chain(ends)
+                .fold(f64::INFINITY, f64::min)
         }
     }
 }

@@ -1,0 +1,174 @@
+//! Safe navigation: a law among walls and people with a way out of local minima, a velocity that
+//! gives way, and a shield. It is itself a law.
+//!
+//! `wanted = law -> takeover -> yielding -> shield -> u`, `F = m (u - V)/T`. A wanted velocity that
+//! every part keeps is the law's own command, bit for bit.
+
+mod law;
+mod takeover;
+
+pub use law::{SafeLaw, Trace};
+pub use takeover::Takeover;
+
+use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::lanes::{Planar, Real, Vector2};
+use crate::laws::shield::Shield;
+use crate::laws::yielding::Yielding;
+use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
+use crate::run::AnyLaw;
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
+
+/// A law with the parts around it.
+#[derive(Clone)]
+pub struct SafeNavigation {
+    /// The law that wants a velocity.
+    pub law: AnyLaw,
+    /// The shield, if there is one.
+    pub shield: Option<Shield>,
+    /// How the robot gives way, if it does.
+    pub yielding: Option<Yielding>,
+    /// When the law is taken over from, if ever.
+    pub takeover: Option<Takeover>,
+    /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
+    /// `None`.
+    pub preferred_speed: Option<f64>,
+    /// Distance of the surfaces in m at which force laws brake, in place of their critical regions.
+    pub critical_distance: Option<f64>,
+}
+
+impl SafeNavigation {
+    /// A law with nothing around it.
+    #[must_use]
+    pub fn bare(law: AnyLaw) -> Self {
+        Self {
+            law,
+            shield: None,
+            yielding: None,
+            takeover: None,
+            preferred_speed: None,
+            critical_distance: None,
+        }
+    }
+
+    /// Returns it if its numbers are allowed.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self> {
+        if let Some(shield) = self.shield {
+            shield.checked()?;
+        }
+        if let Some(yielding) = self.yielding {
+            yielding.checked()?;
+        }
+        if let Some(takeover) = self.takeover {
+            takeover.checked()?;
+        }
+        if let Some(speed) = self.preferred_speed {
+            positive("preferred_speed", speed)?;
+        }
+        if let Some(distance) = self.critical_distance {
+            not_negative("critical_distance", distance)?;
+        }
+        Ok(self)
+    }
+
+    /// What the law within is told of a scenario: a robot that is as fast as is preferred.
+    fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
+        let Some(speed) = self.preferred_speed else {
+            return Ok(scenario.clone());
+        };
+        let most = scenario.robot.max_speed;
+        if speed > most {
+            let rule = format!("be at most the largest speed of the robot, {most} m/s");
+            return Err(Failure::invalid(
+                "preferred_speed",
+                rule,
+                Given::Number(speed),
+            ));
+        }
+        scenario.slowed(speed)
+    }
+}
+
+/// Robots side by side, each with a law and its parts.
+pub struct SafeLanes(Vec<SafeLaw>);
+
+impl<R: Real> Law<R> for SafeLanes {
+    const THINKS: bool = true;
+
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+        let mut force = Vector2::<R>::zeros();
+        let mut stabilizing = Vector2::<R>::zeros();
+        let mut lyapunov = R::splat(f64::NAN);
+        for (lane, law) in self.0.iter_mut().enumerate() {
+            let robot = RobotState {
+                position: Vector2::splat(situation.robot.position.lane(lane)),
+                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
+            };
+            let command = law.command(&Situation {
+                time: situation.time,
+                bodies: situation.bodies,
+                robot,
+                heading: situation.heading,
+                interval: situation.interval,
+                stop: situation.stop,
+            });
+            let put = |target: &mut Vector2<R>, vector: Vector2<f64>| {
+                target.x = target.x.replace(lane, vector.x);
+                target.y = target.y.replace(lane, vector.y);
+            };
+            put(&mut force, command.force);
+            put(&mut stabilizing, command.stabilizing);
+            lyapunov = lyapunov.replace(lane, command.lyapunov);
+        }
+        Command {
+            force,
+            stabilizing,
+            lyapunov,
+        }
+    }
+}
+
+impl LawFamily for SafeNavigation {
+    type Law<R: Real, const RECORD: bool> = SafeLanes;
+
+    fn gain_names(&self) -> &'static [&'static str] {
+        self.law.gain_names()
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.law.gains()
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        self.law.driven().free_gains()
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        self.law.driven().terms(scenario, situation)
+    }
+
+    fn chooses_velocities(&self) -> bool {
+        self.law.driven().chooses_velocities()
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        self.law.driven().check_gains(gains)
+    }
+
+    fn with_gains<R: Real, const RECORD: bool>(
+        &self,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<SafeLanes> {
+        let of_lane = |lane| {
+            let gains: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
+            SafeLaw::new(self, &gains, scenario, RECORD)
+        };
+        Ok(SafeLanes(
+            (0..R::WIDTH).map(of_lane).collect::<Result<_>>()?,
+        ))
+    }
+}
