@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use numeric::error::Failure;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::{Episode, Request};
+use vff_core::run::{Episode, Navigation, Request};
 
 use crate::built::{AsBuilt, built_fields};
 use crate::errors::{CoreError, SimulationError};
@@ -17,11 +17,11 @@ use crate::watch::{Report, here};
 
 /// A run under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Run(Mutex<Episode>);
+pub struct Run(Mutex<Episode<Navigation>>);
 
 impl Run {
     /// The episode, unless another thread, or its own law, is at work on it.
-    fn idle(&self) -> PyResult<MutexGuard<'_, Episode>> {
+    fn idle(&self) -> PyResult<MutexGuard<'_, Episode<Navigation>>> {
         self.0.try_lock().map_err(|_| busy())
     }
 }

@@ -6,6 +6,7 @@ mod episode;
 pub mod follower;
 pub(crate) mod group;
 pub mod metrics;
+mod navigation;
 mod nominal;
 mod options;
 mod outcome;
@@ -18,8 +19,9 @@ pub mod skirt;
 mod table;
 
 pub use batch::{BatchOptions, run_batch};
-pub use episode::{Episode, Request};
+pub use episode::Episode;
 pub use group::AnyLaw;
+pub use navigation::{Navigation, Request};
 pub use options::{Integrator, Options};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 pub use plan::{Instructions, Width};

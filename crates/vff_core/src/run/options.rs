@@ -45,7 +45,7 @@ impl Default for Options {
 
 /// Steps of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Clock {
+pub struct Clock {
     /// Motion step in s.
     pub step: f64,
     /// Steps between two samples of the force.

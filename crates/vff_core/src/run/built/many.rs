@@ -193,7 +193,7 @@ impl Many<'_> {
     ) -> Result<(RunSummary, L)> {
         let scenario = Arc::new(scenario.clone());
         Episode::heard(scenario, Some(&self.laws[law]), built, |_, _| listener)?
-            .run(self.interrupted)
+            .completed(self.interrupted)
     }
 
     fn gathered(

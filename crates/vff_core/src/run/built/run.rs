@@ -26,7 +26,7 @@ pub fn simulate_built(
     interrupted: Interrupted<'_>,
 ) -> Result<(RunSummary, BuiltTrajectory)> {
     let episode = Episode::new(Arc::new(scenario.clone()), Some(law), built)?;
-    let (summary, listener) = episode.run(interrupted)?;
+    let (summary, listener) = episode.completed(interrupted)?;
     Ok((summary, listener.finish()))
 }
 

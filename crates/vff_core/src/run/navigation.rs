@@ -1,0 +1,315 @@
+//! What a navigation run consists of: a robot under a law in a scenario.
+//!
+//! What the controller sees is measured once, at the start of a control period; the law then decides,
+//! or somebody tells the robot what to do, and it moves until the next sample.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::lanes::{Planar, Vector2};
+use crate::laws::{Command, Situation, Stop, force_toward};
+use crate::robots::drives::{Drive, Fix, Order, Reading};
+use crate::run::Interrupted;
+use crate::run::built::Built;
+use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
+use crate::run::built::sight::Sight;
+use crate::run::built::{clock_of, robot_of};
+use crate::run::episode::{Episode, Parts};
+use crate::run::group::{AnyLaw, Steering};
+use crate::run::options::Clock;
+use crate::run::outcome::{Outcome, RunSummary};
+use crate::run::runs::Runs;
+use crate::run::scene::{Scene, bodies_at};
+use crate::world::geometry::{Body, RobotState};
+use crate::world::scenario::Scenario;
+
+/// What drives the robot in a control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Request {
+    /// The law of the episode.
+    #[default]
+    Law,
+    /// A force in N.
+    Force([f64; 2]),
+    /// A velocity in m/s that the robot should have at the next sample.
+    Velocity([f64; 2]),
+}
+
+/// State of the robot as measured at the last sample.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    robot: RobotState<f64>,
+    /// The pose, `None` where it is known exactly.
+    fix: Option<Fix>,
+    /// Whether the robot is outside every active region, as far as it knows.
+    clear: bool,
+}
+
+/// A robot under a law, or told what to do, in a scenario, and what is kept of its run.
+pub struct Navigation<L = Everything> {
+    scenario: Arc<Scenario>,
+    law: Option<Box<dyn Steering>>,
+    robot: Box<dyn Drive>,
+    listener: L,
+    stop_on_contact: bool,
+    /// How long a force acts, in s.
+    interval: f64,
+    scene: Scene<Arc<Scenario>>,
+    sight: Sight,
+    known: Known,
+    runs: Runs<Arc<Scenario>, f64>,
+    reading: Reading,
+    /// Electrical loss so far in J.
+    energy: f64,
+}
+
+impl Episode<Navigation> {
+    /// A robot at the start of a scenario; everything is recorded. Without a law it is told what to
+    /// do in every control period.
+    ///
+    /// # Errors
+    /// An option is out of range, or the law cannot work in the scenario.
+    pub fn new(scenario: Arc<Scenario>, law: Option<&AnyLaw>, built: &Built) -> Result<Self> {
+        Self::heard(scenario, law, built, |scenario, wheels| {
+            Everything::new(scenario, wheels)
+        })
+    }
+
+    /// What is left of the run so far, with its present state as the last row. The outcome counts
+    /// once the run is finished.
+    #[must_use]
+    pub fn recorded(&self) -> (RunSummary, BuiltTrajectory) {
+        let mut listener = self.parts.listener.clone();
+        let (row, summary) = self.parts.closing(self.time());
+        row.tell(&mut listener);
+        (summary, listener.finish())
+    }
+}
+
+impl<L: Listener> Episode<Navigation<L>> {
+    /// The same with a listener of its own, made for a scenario and a number of wheels.
+    pub(crate) fn heard(
+        scenario: Arc<Scenario>,
+        law: Option<&AnyLaw>,
+        built: &Built,
+        listener: impl FnOnce(&Scenario, usize) -> L,
+    ) -> Result<Self> {
+        let robot = robot_of(&scenario, built)?;
+        let clock = clock_of(&scenario, built)?;
+        let scene = Scene::new(Arc::clone(&scenario), 1, false);
+        let bodies = &scene.frames[0];
+        let reading = Reading::at(&built.start_in(&scenario));
+        let sight = Sight::new(&scenario, built, bodies)?;
+        let steering = law.map(|law| law.driven().steering(sight.known(&scenario)));
+        let parts = Navigation {
+            law: steering.transpose()?,
+            listener: listener(&scenario, robot.wheels()),
+            stop_on_contact: built.stop_on_contact,
+            interval: clock.interval,
+            sight,
+            known: Known {
+                robot: reading.robot,
+                fix: None,
+                clear: true,
+            },
+            runs: Runs::new(Arc::clone(&scenario), clock, bodies),
+            reading,
+            energy: 0.0,
+            scene,
+            robot,
+            scenario,
+        };
+        Self::starting(parts, clock)
+    }
+
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &Scenario {
+        &self.parts.scenario
+    }
+
+    /// How the run ended, `None` while it is under way.
+    #[must_use]
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.finished()
+            .then(|| self.parts.runs.totals(0, &()).outcome)
+    }
+
+    /// Present time in s, or when the run ended.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        if self.finished() {
+            self.parts.runs.first_end()
+        } else {
+            self.stepped()
+        }
+    }
+
+    /// What the controller sees now; after the end of the run, at the end of its last motion step.
+    #[must_use]
+    pub fn situation(&self) -> Situation<'_, f64> {
+        self.parts.seen(self.stepped(), Stop::never())
+    }
+
+    /// Runs to the end under the law.
+    ///
+    /// # Errors
+    /// As [`Self::period`].
+    pub(crate) fn completed(self, interrupted: Interrupted<'_>) -> Result<(RunSummary, L)> {
+        let mut ended = self.run(interrupted)?;
+        let (row, summary) = ended.parts.closing(ended.time());
+        row.tell(&mut ended.parts.listener);
+        Ok((summary, ended.parts.listener))
+    }
+}
+
+impl<L: Listener> Parts for Navigation<L> {
+    type Request = Request;
+
+    fn ended(&self) -> bool {
+        !self.runs.running
+    }
+
+    fn decide(
+        &mut self,
+        time: f64,
+        request: Request,
+        interrupted: Interrupted<'_>,
+    ) -> Result<bool> {
+        self.runs.check_finite(time)?;
+        let Some(command) = self.command(time, request, interrupted) else {
+            return Ok(false);
+        };
+        self.runs.check_force(command.force, time)?;
+        self.runs.count_sample();
+        self.robot.hold(&Order {
+            force: command.force,
+            fix: self.known.fix,
+            clear: self.known.clear,
+        });
+        self.listener
+            .sample(&command, self.known.robot.position.lane(0));
+        Ok(true)
+    }
+
+    fn travel(&mut self, clock: &Clock, step: usize) {
+        let (time, later) = (clock.time(step), clock.time(step + 1));
+        let bodies = &self.scene.frames[0];
+        self.listener.row(time, &self.reading, self.energy, bodies);
+        self.reading = self.robot.step();
+        self.energy += self.reading.loss * self.account(clock.step, later);
+        if self.stop_on_contact {
+            self.runs.stop_at_contact(later);
+        }
+    }
+
+    fn look_around(&mut self, clock: &Clock, step: usize) {
+        self.scene.advance(clock, step);
+        self.sight
+            .show(clock.time(step), &self.reading, &self.scene.frames[0]);
+    }
+
+    fn check(&self, time: f64) -> Result<()> {
+        self.runs.check_finite(time)
+    }
+
+    fn time_over(&mut self, time: f64) {
+        self.runs.end(self.runs.running, time);
+    }
+
+    fn sense(&mut self, clock: &Clock, step: usize) {
+        let time = clock.time(step);
+        if self.runs.running {
+            self.runs.rest(time);
+        }
+        let heading = self.robot.known_heading();
+        let bodies = &self.scene.frames[0];
+        let seen = self.sight.look(time, &self.reading, heading, bodies);
+        self.known = Known {
+            robot: seen.robot,
+            fix: seen.fix,
+            clear: seen.clear(),
+        };
+    }
+}
+
+impl<L: Listener> Navigation<L> {
+    fn seen<'a>(&'a self, time: f64, stop: Stop<'a>) -> Situation<'a, f64> {
+        let heading = self.known.fix.and_then(|fix| fix.heading);
+        Situation {
+            time,
+            bodies: self.sight.bodies(&self.scene.frames[0]),
+            robot: self.known.robot,
+            heading: heading.unwrap_or_else(|| self.robot.known_heading()),
+            interval: self.interval,
+            stop,
+        }
+    }
+
+    /// What is asked for until the next sample.
+    fn command(
+        &mut self,
+        time: f64,
+        request: Request,
+        interrupted: Interrupted<'_>,
+    ) -> Option<Command<f64>> {
+        let mut law = self.law.take();
+        let situation = self.seen(time, Stop(interrupted));
+        let command = match request {
+            Request::Law => law.as_mut().map(|law| law.command(&situation)),
+            Request::Force(force) => Some(Command::plain(Vector2::splat(force))),
+            Request::Velocity(desired) => {
+                let mass = self.scenario.robot.mass;
+                let force = force_toward(Vector2::splat(desired), &situation, mass);
+                Some(Command::plain(force))
+            }
+        };
+        self.law = law;
+        command
+    }
+
+    /// Accounts for a motion step in s; returns the share of it that belongs to the run.
+    fn account(&mut self, step: f64, later: f64) -> f64 {
+        let (runs, reading) = (&mut self.runs, &self.reading);
+        let before = runs.position;
+        runs.position = reading.robot.position;
+        runs.velocity = reading.robot.velocity;
+        runs.speed = reading.speed;
+        runs.account(&self.scene.frames[1], before, later, true);
+        if runs.running {
+            return 1.0;
+        }
+        (runs.first_end() - (later - step)) / step
+    }
+
+    /// The present state as the last row at a time in s, and what is left of the run.
+    fn closing(&self, time: f64) -> (LastRow, RunSummary) {
+        let mut reading = self.reading;
+        reading.robot.position = self.runs.position;
+        let row = LastRow {
+            time,
+            reading,
+            energy: self.energy,
+            bodies: bodies_at(&self.scenario, time),
+        };
+        let mut summary = self.runs.summary(0, &());
+        if !self.robot.is_ideal() {
+            summary.energy = self.energy;
+        }
+        (row, summary)
+    }
+}
+
+/// State at the end of what is recorded.
+struct LastRow {
+    time: f64,
+    reading: Reading,
+    energy: f64,
+    bodies: Vec<Body>,
+}
+
+impl LastRow {
+    fn tell(&self, listener: &mut impl Listener) {
+        listener.end(self.time, &self.reading, self.energy, &self.bodies);
+    }
+}
