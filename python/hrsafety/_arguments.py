@@ -26,6 +26,10 @@ LONGEST_SHOWN = 200
 """Characters of a path that a message shows."""
 
 
+# Looked up once: studies construct parameters by the million.
+_assign = object.__setattr__
+
+
 class Parameters:
     """Base of the frozen parameter classes.
 
@@ -39,7 +43,13 @@ class Parameters:
     def _set(self, **values: object) -> None:
         """Write fields of a frozen instance during construction."""
         for name, value in values.items():
-            object.__setattr__(self, name, value)
+            _assign(self, name, value)
+
+    def _converted(self, **values: object) -> None:
+        """Write fields whose checked values are other objects than those given, which is seldom so."""
+        for name, value in values.items():
+            if value is not getattr(self, name):
+                _assign(self, name, value)
 
     def _as_numbers(self, *names: str) -> dict[str, float]:
         """Turn fields into floats, and return them by name."""

@@ -247,8 +247,17 @@ class Obstacle:
         """Return a rectangle at rest."""
 
     @staticmethod
-    def moving(**given: object) -> Obstacle:
+    def moving(
+        motion: tuple[_Pair, _Pair, _Pair],
+        stop: _Pair | None,
+        radius: float,
+        limits: tuple[float | None, float | None, float | None],
+        /,
+    ) -> Obstacle:
         """Return a disc with constant acceleration or a sudden stop."""
+
+    def sized(self, critical_radius: float, active_radius: float) -> Obstacle:
+        """Return the obstacle with the radii that a scenario has found."""
 
     @staticmethod
     def piecewise(**given: object) -> Obstacle:
@@ -268,7 +277,17 @@ class Measurement:
 class Scenario:
     """Scenario."""
 
-    def __new__(cls, **given: object) -> Self: ...
+    def __new__(
+        cls,
+        robot: HolonomicRobot | DifferentialDriveRobot,
+        ends: tuple[_Pair, _Pair],
+        obstacles: Sequence[Obstacle],
+        rules: tuple[float, float, float, float, float],
+        noise: tuple[Measurement | None, int],
+        /,
+    ) -> Self: ...
+    def regions(self) -> list[tuple[float, float]]:
+        """Return critical and active radius of every obstacle."""
     def point_mass(self) -> tuple[float, float, float, float]:
         """Return mass, radius, largest speed and acceleration of the point mass that a law drives."""
     def reseeded(self, seed: int) -> Self:

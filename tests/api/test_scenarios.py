@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -141,3 +143,19 @@ def test_bad_crowds_are_errors(people: object, seed: object, argument: str) -> N
     with pytest.raises(InvalidParameterError) as caught:
         scenarios.random_crowd(people, seed=seed)  # type: ignore[arg-type]  # bad on purpose
     assert caught.value.argument == argument
+
+
+def test_radii_are_filled_in_when_the_obstacles_are_looked_at() -> None:
+    person = nav.Human(start=(2.0, 1.0), velocity=(0.0, -0.5))
+    wall = nav.Rectangle(center=(2.0, -3.0), length=1.0, width=0.4, critical_radius=0.5)
+    given = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=[person, wall], control_period=0.1)
+    for obstacle, original in zip(given.obstacles, (person, wall), strict=True):
+        regions = nav.region_radii(given.robot, original, control_period=0.1)
+        assert obstacle.active_radius == regions.active_radius
+        assert obstacle.critical_radius == (original.critical_radius or regions.critical_radius)
+        assert obstacle.as_given() is original
+        # The native obstacle has them too: its own regions are the given ones.
+        assert nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=[obstacle]).obstacles[0].as_given() == original
+    assert given.obstacles is given.obstacles
+    assert pickle.loads(pickle.dumps(given)) == given == replace(given)
+    assert hash(given) == hash(replace(given))

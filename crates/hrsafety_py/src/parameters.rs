@@ -8,7 +8,7 @@ use vff_core::sensing::measurement::{Distribution, Noisy};
 use vff_core::world::motion::{Motion, Segment};
 use vff_core::world::obstacle::{self, Limits};
 use vff_core::world::region::{self, Sensing};
-use vff_core::world::scenario::{self, Rules};
+use vff_core::world::scenario::{self, Mover, Rules};
 
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, taken};
@@ -74,6 +74,9 @@ impl DifferentialDriveRobot {
     }
 }
 
+/// A pair of numbers.
+type Place = (f64, f64);
+
 /// Obstacle.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Obstacle(obstacle::Obstacle);
@@ -130,16 +133,33 @@ impl Obstacle {
         Ok(Self(rectangle.map_err(CoreError::from)?))
     }
 
-    /// Disc with constant acceleration or a sudden stop.
+    /// Disc with constant acceleration or a sudden stop; positional, since a study makes millions.
     #[staticmethod]
-    #[pyo3(signature = (**given))]
-    fn moving(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let (start, velocity) = (given.take("start")?, given.take("velocity")?);
-        let (acceleration, stop) = (given.take("acceleration")?, given.take("stop")?);
-        Self::moved(&given, || {
-            Motion::moving(start, velocity, acceleration, stop)
-        })
+    fn moving(
+        motion: (Place, Place, Place),
+        stop: Option<Place>,
+        radius: f64,
+        limits: (Option<f64>, Option<f64>, Option<f64>),
+    ) -> Result<Self, CoreError> {
+        let (active_radius, critical_radius, max_speed) = limits;
+        let limits = Limits {
+            active_radius,
+            critical_radius,
+            max_speed,
+        };
+        let (start, velocity, acceleration) = motion;
+        let [start, velocity, acceleration] = [start, velocity, acceleration].map(<[f64; 2]>::from);
+        let motion = Motion::moving(start, velocity, acceleration, stop.map(<[f64; 2]>::from));
+        let disc = motion.and_then(|motion| obstacle::Obstacle::disc(radius, motion, limits));
+        Ok(Self(disc?))
+    }
+
+    /// The obstacle with the critical and the active radius that a scenario has found.
+    fn sized(&self, critical_radius: f64, active_radius: f64) -> Self {
+        let mut sized = self.0.clone();
+        sized.limits.critical_radius = Some(critical_radius);
+        sized.limits.active_radius = Some(active_radius);
+        Self(sized)
     }
 
     /// Disc with piecewise constant acceleration.
@@ -227,40 +247,42 @@ pub struct Scenario(pub scenario::Scenario);
 
 #[pymethods]
 impl Scenario {
+    /// Robot, start and goal, obstacles, rules of the run, measurement and seed; positional, since a
+    /// study makes millions.
     #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let robot: Bound<'_, PyAny> = given.take("robot")?;
-        let (start, goal) = (given.take("start")?, given.take("goal")?);
-        let obstacles: Vec<PyRef<'_, Obstacle>> = given.take("obstacles")?;
-        let obstacles = obstacles
-            .iter()
-            .map(|obstacle| obstacle.0.clone())
-            .collect();
-        let rules = taken!(
-            given,
-            Rules {
-                control_period,
-                time_limit,
-                arrival_tolerance,
-                rest_time,
-                heading,
-            }
-        );
-        let measurement: Option<PyRef<'_, Measurement>> = given.take("measurement")?;
-        let seed = given.take("seed")?;
-        given.done()?;
-        let scenario = if let Ok(robot) = robot.cast::<HolonomicRobot>() {
-            scenario::Scenario::new(robot.get().0, start, goal, obstacles, rules)
-        } else {
-            let robot = robot.cast::<DifferentialDriveRobot>()?.get().0;
-            scenario::Scenario::for_differential(robot, start, goal, obstacles, rules)
+    #[allow(clippy::needless_pass_by_value)] // references to Python objects
+    fn new(
+        robot: &Bound<'_, PyAny>,
+        ends: (Place, Place),
+        obstacles: Vec<PyRef<'_, Obstacle>>,
+        rules: (f64, f64, f64, f64, f64),
+        noise: (Option<PyRef<'_, Measurement>>, u64),
+    ) -> PyResult<Self> {
+        let obstacles = obstacles.iter();
+        let obstacles = obstacles.map(|obstacle| obstacle.0.clone()).collect();
+        let (control_period, time_limit, arrival_tolerance, heading, rest_time) = rules;
+        let rules = Rules {
+            control_period,
+            time_limit,
+            arrival_tolerance,
+            rest_time,
+            heading,
         };
-        let scenario = scenario.map_err(CoreError::from)?;
+        let (measurement, seed) = noise;
         let measurement = measurement.map(|measurement| measurement.0);
-        let measured = scenario.measured(measurement, seed);
-        Ok(Self(measured.map_err(CoreError::from)?))
+        let ends = [ends.0.into(), ends.1.into()];
+        let scenario =
+            scenario::Scenario::sensed(mover_of(robot)?, ends, obstacles, rules, measurement);
+        Ok(Self(scenario.map_err(CoreError::from)?.reseeded(seed)))
+    }
+
+    /// Critical and active radius of every obstacle.
+    fn regions(&self) -> Vec<(f64, f64)> {
+        let radii = |placed: &scenario::PlacedObstacle| {
+            let regions = placed.regions;
+            (regions.critical_radius, regions.active_radius)
+        };
+        self.0.obstacles().iter().map(radii).collect()
     }
 
     /// Mass, radius, largest speed and acceleration of the point mass that a law drives.
@@ -272,6 +294,14 @@ impl Scenario {
     fn reseeded(&self, seed: u64) -> Self {
         Self(self.0.clone().reseeded(seed))
     }
+}
+
+/// A robot of either kind.
+pub fn mover_of(robot: &Bound<'_, PyAny>) -> PyResult<Mover> {
+    Ok(match robot.cast::<HolonomicRobot>() {
+        Ok(robot) => Mover::Holonomic(robot.get().0),
+        Err(_) => Mover::Differential(robot.cast::<DifferentialDriveRobot>()?.get().0),
+    })
 }
 
 /// Critical and active radius of an obstacle for a robot.
@@ -287,9 +317,9 @@ pub fn region_radii(
     position_error: Option<f64>,
     measurement: Option<PyRef<'_, Measurement>>,
 ) -> PyResult<(f64, f64)> {
-    let limits = match robot.cast::<HolonomicRobot>() {
-        Ok(robot) => robot.get().0.limits(),
-        Err(_) => robot.cast::<DifferentialDriveRobot>()?.get().0.limits(),
+    let limits = match mover_of(robot)? {
+        Mover::Holonomic(robot) => robot.limits(),
+        Mover::Differential(robot) => robot.limits(),
     };
     let sensing = Sensing {
         measurement: measurement.map(|measurement| measurement.0),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
@@ -78,6 +78,15 @@ class Obstacle(Parameters):
         object.__setattr__(filled, "_given", self)
         return filled
 
+    def _sized(self, critical_radius: float, active_radius: float) -> Self:
+        """Return `filled_in` with radii that the native scenario has found and checked already."""
+        filled = object.__new__(type(self))
+        for read, write in _slots(type(self)):  # type: ignore[arg-type]  # a class
+            write(filled, read(self))
+        native = self._native.sized(critical_radius, active_radius)
+        filled._set(critical_radius=critical_radius, active_radius=active_radius, _native=native, _given=self)
+        return filled
+
     def _by_clearance(self) -> bool:
         return self.active_clearance is not None or self.critical_clearance is not None
 
@@ -139,8 +148,10 @@ class Obstacle(Parameters):
         return _filled_in, (given, {name: getattr(self, name) for name in _CLEARANCES})
 
     def _limits(self) -> dict[str, float | None]:
+        if self.active_radius is self.critical_radius is self.max_speed is None and not self._by_clearance():
+            return dict(_NO_LIMITS)  # nearly always
         limits = {}
-        for name in ("active_radius", "critical_radius", "max_speed"):
+        for name in _NO_LIMITS:
             value = getattr(self, name)
             limits[name] = None if value is None else number(name, value)
         self._set(**limits)
@@ -166,6 +177,8 @@ class Obstacle(Parameters):
             )
 
 
+# The limits that every obstacle may have.
+_NO_LIMITS = dict.fromkeys(("active_radius", "critical_radius", "max_speed"))
 # The clearance that stands for each radius.
 _CLEARANCES = {"active_radius": "active_clearance", "critical_radius": "critical_clearance"}
 
@@ -174,6 +187,13 @@ _CLEARANCES = {"active_radius": "active_clearance", "critical_radius": "critical
 def _init_names(kind: type[Obstacle]) -> tuple[str, ...]:
     """Return the fields that a class takes; `dataclasses.replace` would look them up for every obstacle."""
     return tuple(each.name for each in dataclasses.fields(kind) if each.init)  # type: ignore[arg-type]  # a dataclass
+
+
+@functools.cache
+def _slots(kind: type[Obstacle]) -> tuple[tuple[Callable[[object], Any], Callable[[object, Any], None]], ...]:
+    """Return what reads and writes the fields of a class, for copies that need no second check."""
+    members = [getattr(kind, each.name) for each in dataclasses.fields(kind)]  # type: ignore[arg-type]  # a dataclass
+    return tuple((member.__get__, member.__set__) for member in members)
 
 
 def _filled_in(given: Obstacle, radii: dict[str, float]) -> Obstacle:
@@ -320,21 +340,19 @@ def _segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]
 
 def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, default_max_speed: float | None) -> None:
     """Build the native counterpart of a moving body from whichever motion it was given."""
-    obstacle._set(radius=number("radius", obstacle.radius), velocity=pair("velocity", obstacle.velocity))
-    if obstacle.stop is not None:
-        obstacle._set(stop=pair("stop", obstacle.stop))
+    radius, velocity = number("radius", obstacle.radius), pair("velocity", obstacle.velocity)
+    stop = None if obstacle.stop is None else pair("stop", obstacle.stop)
+    obstacle._converted(radius=radius, velocity=velocity, stop=stop)
     limits = obstacle._limits()
     if limits["max_speed"] is None:
         limits["max_speed"] = default_max_speed
-    shape: dict[str, Any] = {"radius": obstacle.radius, **limits}
     if obstacle.path is not None:
-        native = _hrsafety.Obstacle.recorded(time=obstacle.path[0], position=obstacle.path[1], **shape)
+        time, position = obstacle.path
+        native = _hrsafety.Obstacle.recorded(time=time, position=position, radius=radius, **limits)
     elif obstacle.segments is not None:
-        native = _hrsafety.Obstacle.piecewise(start=start, segments=obstacle.segments, **shape)
+        native = _hrsafety.Obstacle.piecewise(start=start, segments=obstacle.segments, radius=radius, **limits)
     else:
-        native = _hrsafety.Obstacle.moving(
-            start=start, velocity=obstacle.velocity, acceleration=acceleration, stop=obstacle.stop, **shape
-        )
+        native = _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
     obstacle._set(_native=native)
 
 
@@ -392,8 +410,8 @@ class MovingDisc(Obstacle):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(center=pair("center", self.center), acceleration=pair("acceleration", self.acceleration))
-        if self.path is None and not np.isfinite(self.center).all():
+        self._converted(center=pair("center", self.center), acceleration=pair("acceleration", self.acceleration))
+        if self.path is None and not (math.isfinite(self.center[0]) and math.isfinite(self.center[1])):
             raise InvalidParameterError("center", "be finite", self.center)
         _moving(self, start=self.center, acceleration=self.acceleration, default_max_speed=None)
 
@@ -471,7 +489,7 @@ class Human(Obstacle):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(start=pair("start", self.start))
+        self._converted(start=pair("start", self.start))
         _moving(self, start=self.start, acceleration=(0.0, 0.0), default_max_speed=1.0)
 
     @classmethod

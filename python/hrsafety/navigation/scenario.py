@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+import operator
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, number, pair, sequence
@@ -69,7 +72,7 @@ class Scenario(Parameters):
     start: Pair
     goal: Pair
     obstacles: tuple[Obstacle, ...] = ()
-    robot: HolonomicRobot | DifferentialDriveRobot = field(default_factory=HolonomicRobot)
+    robot: HolonomicRobot | DifferentialDriveRobot = field(default_factory=functools.cache(HolonomicRobot))
     control_period: float = 0.06
     time_limit: float = 60.0
     arrival_tolerance: float = 0.12
@@ -82,29 +85,25 @@ class Scenario(Parameters):
 
     def __post_init__(self) -> None:
         """Check the values and compute the regions that were not given."""
-        self._set(start=pair("start", self.start), goal=pair("goal", self.goal))
-        numbers = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
-        values = {name: number(name, getattr(self, name)) for name in numbers}
-        self._set(**values)
+        ends = (pair("start", self.start), pair("goal", self.goal))
+        values = (self.control_period, self.time_limit, self.arrival_tolerance, self.heading, self.rest_time)
+        rules = tuple(map(number, _RULES, values))
         instance("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
         if self.measurement is not None:
             instance("measurement", self.measurement, Measurement)
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
             raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
-        obstacles = _with_regions(self.robot, self.obstacles, self.control_period, self.measurement)
+        given = _as_given(self.robot, self.obstacles, self.control_period, self.measurement)
+        noise = (None if self.measurement is None else self.measurement._native, self.seed)
         try:
-            native = _hrsafety.Scenario(
-                robot=self.robot._native,
-                start=self.start,
-                goal=self.goal,
-                obstacles=[obstacle._native for obstacle in obstacles],
-                measurement=None if self.measurement is None else self.measurement._native,
-                seed=self.seed,
-                **values,
-            )
+            natives = [obstacle._native for obstacle in given]
+            native = _hrsafety.Scenario(self.robot._native, ends, natives, rules, noise)  # type: ignore[arg-type]  # five
         except InvalidParameterError as error:
-            raise _naming_kinds(error, obstacles) from None
-        self._set(obstacles=obstacles, _native=native)
+            raise _naming_kinds(error, given) from None
+        if any(map(operator.is_not, rules, values)):
+            self._set(**dict(zip(_RULES, rules, strict=True)))
+        self._converted(start=ends[0], goal=ends[1])
+        self._set(obstacles=given, _native=native)
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
@@ -119,7 +118,11 @@ class Scenario(Parameters):
         return "\n".join([f"Scenario({shown})", *map(str, self.warnings)])
 
 
-def _naming_kinds(error: InvalidParameterError, obstacles: tuple[Obstacle, ...]) -> InvalidParameterError:
+# The numbers of a run, in the order of the core.
+_RULES = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
+
+
+def _naming_kinds(error: InvalidParameterError, obstacles: Sequence[Obstacle]) -> InvalidParameterError:
     """Return an error whose rule says of what kind the obstacle is that it names by its index."""
 
     def named(found: re.Match[str]) -> str:
@@ -129,26 +132,64 @@ def _naming_kinds(error: InvalidParameterError, obstacles: tuple[Obstacle, ...])
     return InvalidParameterError(error.argument, rule, error.value, error.remedy)
 
 
-def _with_regions(
+class _Given(list[Obstacle]):
+    """Obstacles without the radii that were not given."""
+
+
+def _as_given(
     robot: HolonomicRobot | DifferentialDriveRobot,
     obstacles: Iterable[Obstacle],
     control_period: float,
     measurement: Measurement | None,
-) -> tuple[Obstacle, ...]:
-    """Return the obstacles with every region radius filled in."""
-    complete = []
-    sensing = None if measurement is None else measurement._native
+) -> _Given:
+    """Return the obstacles as they were given; those with clearances get radii, which the core takes."""
+    found = _Given()
     for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
-        instance(f"obstacles[{index}]", obstacle, Obstacle)
+        if not isinstance(obstacle, Obstacle):
+            instance(f"obstacles[{index}]", obstacle, Obstacle)
         given = getattr(obstacle, "_given", obstacle)  # as `as_given`, in the loop of every construction
-        if None in (given.active_radius, given.critical_radius):
+        if given.active_clearance is not None or given.critical_clearance is not None:
             radii = given.radii_from_clearances(robot.radius)
+            sensing = None if measurement is None else measurement._native
             if len(radii) < 2:
                 # Everything is checked already: the native function without the checks of `region_radii`.
                 critical, active = _hrsafety.region_radii(
                     robot._native, given._native, control_period, None, None, None, sensing
                 )
                 radii = {"critical_radius": critical, "active_radius": active, **radii}
-            obstacle = given.filled_in(**radii)
-        complete.append(obstacle)
-    return tuple(complete)
+            given = given.filled_in(**radii)
+        found.append(given)
+    return found
+
+
+def _with_radii(given: Obstacle, regions: tuple[float, float]) -> Obstacle:
+    """Return an obstacle with the radii of its regions filled in."""
+    if given.active_radius is None or given.critical_radius is None:
+        return given._sized(*regions)
+    return given
+
+
+class _FilledIn:
+    """The obstacles of a scenario, a tuple with the radii that the core has found.
+
+    They are filled in when somebody looks at them: a study that constructs scenarios to run them would
+    copy every obstacle for nothing.
+    """
+
+    def __init__(self, slot: Any) -> None:
+        self.slot = slot
+
+    def __get__(self, scenario: Scenario | None, kind: type | None = None) -> object:
+        if scenario is None:
+            return self
+        found = self.slot.__get__(scenario)
+        if isinstance(found, _Given):
+            found = tuple(map(_with_radii, found, scenario._native.regions()))
+            self.slot.__set__(scenario, found)
+        return found
+
+    def __set__(self, scenario: Scenario, obstacles: object) -> None:
+        self.slot.__set__(scenario, obstacles)
+
+
+Scenario.obstacles = _FilledIn(Scenario.obstacles)  # type: ignore[assignment, misc]  # in place of its slot

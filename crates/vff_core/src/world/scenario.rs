@@ -51,6 +51,16 @@ impl Default for Rules {
     }
 }
 
+/// The robot of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mover {
+    /// A point mass.
+    Holonomic(HolonomicRobot),
+    /// A two-wheel robot: its regions include the time that it needs to turn, and a law drives the
+    /// robot that it follows.
+    Differential(DifferentialDriveRobot),
+}
+
 /// What is simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -79,8 +89,13 @@ impl Scenario {
         obstacles: Vec<Obstacle>,
         rules: Rules,
     ) -> Result<Self> {
-        robot.checked()?;
-        Self::placed(robot, &robot.limits(), [start, goal], obstacles, rules)
+        Self::sensed(
+            Mover::Holonomic(robot),
+            [start, goal],
+            obstacles,
+            rules,
+            None,
+        )
     }
 
     /// The same for a two-wheel robot: its regions include the time that it needs to turn, and a
@@ -95,13 +110,40 @@ impl Scenario {
         obstacles: Vec<Obstacle>,
         rules: Rules,
     ) -> Result<Self> {
-        let limits = robot.checked()?.limits();
-        let scenario = Self::placed(robot.reference(), &limits, [start, goal], obstacles, rules)?;
-        let differential = Some(robot);
-        Ok(Self {
-            differential,
-            ..scenario
-        })
+        let robot = Mover::Differential(robot);
+        Self::sensed(robot, [start, goal], obstacles, rules, None)
+    }
+
+    /// The same for any robot whose regions are sized for noisy or late measurements.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn sensed(
+        robot: Mover,
+        ends: [[f64; 2]; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+        measurement: Option<Measurement>,
+    ) -> Result<Self> {
+        let sensing = Sensing {
+            measurement,
+            ..Sensing::default()
+        };
+        let known = (&rules, &sensing);
+        match robot {
+            Mover::Holonomic(robot) => {
+                let limits = robot.checked()?.limits();
+                Self::placed(robot, &limits, ends, obstacles, known)
+            }
+            Mover::Differential(robot) => {
+                let limits = robot.checked()?.limits();
+                let scenario = Self::placed(robot.reference(), &limits, ends, obstacles, known)?;
+                Ok(Self {
+                    differential: Some(robot),
+                    ..scenario
+                })
+            }
+        }
     }
 
     fn placed(
@@ -109,7 +151,7 @@ impl Scenario {
         limits: &RobotLimits,
         [start, goal]: [[f64; 2]; 2],
         obstacles: Vec<Obstacle>,
-        rules: Rules,
+        (rules, sensing): (&Rules, &Sensing),
     ) -> Result<Self> {
         finite_pair("start", start)?;
         finite_pair("goal", goal)?;
@@ -122,16 +164,15 @@ impl Scenario {
             let rule = "be farther from the start than the arrival tolerance";
             return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
         }
-        let sensing = Sensing::default();
-        let obstacles = place_all(limits, [start, goal], obstacles, &rules, &sensing)?;
+        let obstacles = place_all(limits, [start, goal], obstacles, rules, sensing)?;
         Ok(Self {
             robot,
             differential: None,
             start,
             goal,
             obstacles,
-            rules,
-            measurement: None,
+            rules: *rules,
+            measurement: sensing.measurement,
             seed: 0,
         })
     }
