@@ -44,6 +44,7 @@ __all__ = [
     "Scenario",
     "Sensor",
     "SetPoint",
+    "Shield",
     "SkirtMotion",
     "SkirtScene",
     "Slip",
@@ -56,6 +57,7 @@ __all__ = [
     "VirtualTorque",
     "Vision",
     "WheelDrive",
+    "Yielding",
     "attraction_forces",
     "built_evaluate",
     "built_many",
@@ -119,6 +121,7 @@ __all__ = [
     "region_radii",
     "search_gains",
     "search_gains_globally",
+    "shield_speed_bound",
     "signal_push",
     "simulate",
     "simulate_batch",
@@ -175,6 +178,7 @@ class _TrajectoryFields(TypedDict):
     min_clearance: _Array
     contact_time: _Array
     contact_speed: _Array
+    contact_at_fault: npt.NDArray[np.bool_]
     min_distance: _Array
 
 class _ScoreFields(TypedDict):
@@ -215,6 +219,7 @@ class _BatchFields(TypedDict):
     entered_active: _Counts
     contacts_moving: _Counts
     contacts_standing: _Counts
+    contacts_at_fault: _Counts
     performance_total: _Array
     performance_arrival_time: _Array
     performance_avoidance: _Array
@@ -319,9 +324,42 @@ class Law:
     def named(name: str, **given: object) -> Law:
         """Return a law of the core's registry."""
 
+    def guarded(self, **given: object) -> Law:
+        """Return the law with parts around it."""
+
     @staticmethod
     def virtual_impedance(**given: object) -> Law:
         """Return virtual impedance with ideal sensing."""
+
+@final
+class Yielding:
+    """How a robot gives way."""
+
+    def __new__(cls, **given: object) -> Self: ...
+    clearance: float
+    horizon: float
+    time_weight: float
+    distance_weight: float
+    comfort: float
+    goal_weight: float
+    reach: float
+
+@final
+class Shield:
+    """What the shield assumes."""
+
+    def __new__(cls, **given: object) -> Self: ...
+    def decide(
+        self,
+        limits: tuple[float, float, float, float],
+        state: tuple[_Pair, _Pair],
+        wanted: _Pair,
+        people: list[tuple[_Pair, float, _Pair]],
+    ) -> tuple[list[float], str, list[float]]:
+        """Return the velocity that is commanded, the status, and the gap of wanted and commanded one."""
+
+def shield_speed_bound(gap: float, angle: float, deceleration: float, person_speed: float) -> float:
+    """Return the largest speed at an angle to a person, NaN where there is no limit."""
 
 def region_radii(
     robot: HolonomicRobot | DifferentialDriveRobot,

@@ -81,6 +81,7 @@ pub fn columns<'py>(
     fields.vector("entered_active", table.entered_active)?;
     fields.vector("contacts_moving", table.contacts_moving)?;
     fields.vector("contacts_standing", table.contacts_standing)?;
+    fields.vector("contacts_at_fault", table.contacts_at_fault)?;
     fields.vector("performance_total", table.performance_total)?;
     fields.vector("performance_arrival_time", table.performance_arrival_time)?;
     fields.vector("performance_avoidance", table.performance_avoidance)?;

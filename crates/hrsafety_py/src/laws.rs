@@ -18,6 +18,7 @@ use vff_core::laws::impedance::law::{Form, Impedance};
 use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;
 use crate::python_law::PythonLaw;
+use crate::safe::safe_law;
 
 /// A law of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -124,6 +125,16 @@ impl Law {
         let given = given.unwrap_or_default();
         let law = law_named(name, &given).map_err(CoreError::from)?;
         Self::made(&given, law)
+    }
+
+    /// The law with parts around it.
+    #[pyo3(signature = (**given))]
+    fn guarded(&self, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        Ok(Self {
+            any: safe_law(&self.any, &given.unwrap_or_default())?,
+            field: None,
+            python: self.python,
+        })
     }
 
     #[staticmethod]

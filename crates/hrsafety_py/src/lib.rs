@@ -15,6 +15,7 @@ mod parameters;
 mod python_law;
 mod reactive;
 mod run;
+mod safe;
 mod sensing;
 mod signals;
 mod situation;
@@ -120,6 +121,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, simulate};
+    #[pymodule_export]
+    use crate::safe::{Shield, Yielding, shield_speed_bound};
     #[pymodule_export]
     use crate::sensing::{
         Camera, ErrorSource, Estimator, Sensor, Ultrasonic, Vision, steady_gains,

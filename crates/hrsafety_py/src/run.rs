@@ -98,6 +98,9 @@ pub fn trajectory_fields<'py>(
     };
     fields.vector("contact_time", contact(|touch| touch.time))?;
     fields.vector("contact_speed", contact(|touch| touch.speed))?;
+    let at_fault = |touch: &Option<Contact>| touch.is_some_and(|touch| touch.at_fault);
+    let at_fault: Vec<bool> = summary.contact.iter().map(at_fault).collect();
+    fields.vector("contact_at_fault", at_fault)?;
     fields.vector("min_distance", summary.min_distance)?;
     Ok(fields.finish())
 }

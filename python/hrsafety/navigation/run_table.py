@@ -32,6 +32,7 @@ _UNITS = {
     "entered_active": "",
     "contacts_moving": "",
     "contacts_standing": "",
+    "contacts_at_fault": "",
     "performance_total": "",
     "performance_arrival_time": "",
     "performance_avoidance": "",
@@ -82,6 +83,9 @@ class RunTable(Table):
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
         Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
         contact), and while it stood.
+    contacts_at_fault : ndarray of int, shape (n,)
+        Number of obstacles toward which the robot moved, faster than 0.05 m/s, at some instant of a
+        contact with them.
     performance_total : ndarray, shape (n,)
         H; 0 after a contact or without arrival.
     performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (n,)
@@ -124,6 +128,7 @@ class RunTable(Table):
     entered_active: npt.NDArray[np.int64]
     contacts_moving: npt.NDArray[np.int64]
     contacts_standing: npt.NDArray[np.int64]
+    contacts_at_fault: npt.NDArray[np.int64]
     performance_total: Array
     performance_arrival_time: Array
     performance_avoidance: Array

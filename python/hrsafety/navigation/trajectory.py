@@ -74,6 +74,9 @@ class Trajectory(Table):
         obstacle that was never present.
     contact_time, contact_speed : ndarray, shape (m,)
         First contact with each obstacle in s and the robot's speed then in m/s; NaN without.
+    contact_at_fault : ndarray of bool, shape (m,)
+        Whether the robot moved toward the obstacle, faster than 0.05 m/s, at some instant of a contact
+        with it.
     path_length : float
         Length of the path in m.
     stabilizing : ndarray, shape (n, 2)
@@ -124,6 +127,7 @@ class Trajectory(Table):
     min_clearance: Array
     contact_time: Array
     contact_speed: Array
+    contact_at_fault: npt.NDArray[np.bool_]
     path_length: float
     stabilizing: Array | Any = None
     lyapunov: Array | Any = None

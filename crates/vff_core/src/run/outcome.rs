@@ -31,6 +31,8 @@ pub struct RunTotals {
     pub path_length: f64,
     /// Obstacles touched while the robot was moving, and while it stood.
     pub contacts: [u32; 2],
+    /// Obstacles toward which it moved, faster than [`CONTACT_SPEED`], at some instant of a contact.
+    pub at_fault: u32,
     /// Share of the control periods over which the Lyapunov function did not grow, if counted.
     pub descent_share: f64,
     /// Number of samples of the force.
@@ -44,6 +46,8 @@ pub struct Contact {
     pub time: f64,
     /// Speed of the robot then, in m/s.
     pub speed: f64,
+    /// Whether the robot moved toward the obstacle at any instant of a contact with it.
+    pub at_fault: bool,
 }
 
 /// What is left of a run.
@@ -73,9 +77,10 @@ impl RunSummary {
     /// The same in the numbers that every scenario has.
     #[must_use]
     pub fn totals(&self) -> RunTotals {
-        let mut contacts = [0, 0];
+        let (mut contacts, mut at_fault) = ([0, 0], 0);
         for touch in self.contact.iter().flatten() {
             contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+            at_fault += u32::from(touch.at_fault);
         }
         RunTotals {
             outcome: self.outcome,
@@ -84,6 +89,7 @@ impl RunSummary {
             energy: self.energy,
             path_length: self.path_length,
             contacts,
+            at_fault,
             descent_share: self.descent_share,
             force_evaluations: self.force_evaluations,
         }

@@ -65,6 +65,8 @@ pub(crate) struct Runs<S, R: Real> {
     min_distance_squared: Vec<R>,
     contact_time: Vec<R>,
     contact_speed: Vec<R>,
+    /// One where the robot moved toward the obstacle at some instant of a contact.
+    at_fault: Vec<R>,
 }
 
 impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
@@ -106,6 +108,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             min_distance_squared: vec![R::splat(f64::INFINITY); count],
             contact_time: vec![unset; count],
             contact_speed: vec![unset; count],
+            at_fault: vec![R::zero(); count],
             scenario,
         };
         for (index, body) in bodies.iter().enumerate() {
@@ -166,13 +169,14 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
         if !body.state.present {
             return;
         }
-        let squared = body.offset(self.position).distance_squared;
+        let offset = body.offset(self.position);
+        let squared = offset.distance_squared;
         let least = &mut self.min_distance_squared[index];
         *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
         let reach = self.scenario.obstacles[index].contact_distance;
         let touching = lanes & squared.le(R::splat(reach * reach));
         if touching.any() {
-            self.touch(index, time, touching);
+            self.touch(index, time, touching, offset.vector);
         }
     }
 
@@ -208,7 +212,11 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     }
 
     #[cold]
-    fn touch(&mut self, index: usize, time: f64, touching: R::Mask) {
+    fn touch(&mut self, index: usize, time: f64, touching: R::Mask, offset: Vector2<R>) {
+        let toward = self.velocity.dot(&offset).lt(R::zero());
+        let moving = R::splat(CONTACT_SPEED).lt(self.velocity.dot(&self.velocity).sqrt());
+        let fault = touching & toward & moving;
+        self.at_fault[index] = R::select(fault, R::splat(1.0), self.at_fault[index]);
         for lane in 0..R::WIDTH {
             if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
                 let speed = self.speed.lane(lane);
@@ -364,15 +372,21 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     fn contact(&self, obstacle: usize, lane: usize) -> Option<Contact> {
         let time = self.contact_time[obstacle].lane(lane);
         let speed = self.contact_speed[obstacle].lane(lane);
-        (!time.is_nan()).then_some(Contact { time, speed })
+        let at_fault = self.at_fault[obstacle].lane(lane) > 0.0;
+        (!time.is_nan()).then_some(Contact {
+            time,
+            speed,
+            at_fault,
+        })
     }
 
     /// What is left of the run of a lane, whatever the number of obstacles.
     pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
-        let mut contacts = [0, 0];
+        let (mut contacts, mut at_fault) = ([0, 0], 0);
         for obstacle in 0..self.scenario.obstacle_count() {
             if let Some(touch) = self.contact(obstacle, lane) {
                 contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+                at_fault += u32::from(touch.at_fault);
             }
         }
         let arrival_time = self.arrival_time.lane(lane);
@@ -392,6 +406,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             energy: self.squared_current.lane(lane) * self.wheels.loss_per_square(),
             path_length: self.path.lane(lane),
             contacts,
+            at_fault,
             descent_share: recorder.descent_share(lane),
             force_evaluations: count_of(self.force_evaluations.lane(lane)),
         }

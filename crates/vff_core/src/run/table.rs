@@ -31,6 +31,7 @@ impl Strip {
                 energy: f64::NAN,
                 path_length: f64::NAN,
                 contacts: [0, 0],
+                at_fault: 0,
                 descent_share: f64::NAN,
                 force_evaluations: 0,
             },
@@ -79,6 +80,8 @@ pub struct BatchTable {
     pub contacts_moving: Vec<i64>,
     /// Number of obstacles touched while the robot stood.
     pub contacts_standing: Vec<i64>,
+    /// Number of obstacles toward which the robot moved while it touched them.
+    pub contacts_at_fault: Vec<i64>,
     /// `H`.
     pub performance_total: Vec<f64>,
     /// `H_T`.
@@ -128,6 +131,7 @@ impl BatchTable {
             entered_active: source.of_distances(entered_active),
             contacts_moving: source.column(|cell| i64::from(cell.run.contacts[0])),
             contacts_standing: source.column(|cell| i64::from(cell.run.contacts[1])),
+            contacts_at_fault: source.column(|cell| i64::from(cell.run.at_fault)),
             performance_total: source.column(|cell| cell.performance.total),
             performance_arrival_time: source.column(|cell| cell.performance.arrival_time),
             performance_avoidance: source.column(|cell| cell.performance.avoidance),

@@ -18,7 +18,10 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.laws.python_law import ForceLaw, PythonLaw, VelocityLaw
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.laws.shield import Shield, ShieldDecision, speed_bound
 from hrsafety.navigation.laws.situation import PointMass, Situation
+from hrsafety.navigation.laws.yielding import Yielding
 
 __all__ = [
     "BorensteinKoren",
@@ -35,13 +38,18 @@ __all__ = [
     "PointMass",
     "PythonLaw",
     "RapidlyExploringRandomTree",
+    "SafeNavigation",
+    "Shield",
+    "ShieldDecision",
     "Situation",
     "VelocityLaw",
     "VelocityObstacle",
     "VirtualForceField",
     "VirtualImpedanceLaw",
+    "Yielding",
     "command",
     "force_field",
     "force_terms",
     "lyapunov",
+    "speed_bound",
 ]

@@ -1,0 +1,134 @@
+//! Shield and yielding, and the law that holds them.
+
+use pyo3::prelude::*;
+use vff_core::lanes::Vector2;
+use vff_core::laws::safe::{SafeNavigation, Takeover};
+use vff_core::laws::shield::{self, Friendly, Guard, KnownVelocity, Limits, Person, View, Walls};
+use vff_core::laws::yielding;
+use vff_core::run::AnyLaw;
+use vff_core::world::geometry::RobotState;
+
+use crate::errors::CoreError;
+use crate::keywords::{Keywords, parameter_class};
+
+parameter_class! {
+    /// How a robot gives way.
+    Yielding(yielding::Yielding) {
+        clearance, horizon, time_weight, distance_weight, comfort, goal_weight, reach,
+    }
+}
+
+/// What the shield assumes.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Shield(pub shield::Shield);
+
+/// Radius, largest speed, largest acceleration and control period of a robot.
+type RobotLimits = (f64, f64, f64, f64);
+
+/// Center, radius and velocity of a person; the velocity is NaN where it is not known.
+type PersonState = ([f64; 2], f64, [f64; 2]);
+
+#[pymethods]
+impl Shield {
+    #[new]
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let bounds: (Option<f64>, Option<f64>) = (
+            given.take("velocity_error")?,
+            given.take("person_acceleration")?,
+        );
+        let friendly: (Option<f64>, Option<f64>) = (
+            given.take("reaction_time")?,
+            given.take("person_deceleration")?,
+        );
+        let friendly = friendly.0.zip(friendly.1);
+        let core = shield::Shield {
+            person_speed: given.take("person_speed")?,
+            latency: given.take("latency")?,
+            position_error: given.take("position_error")?,
+            velocity_bounds: bounds.0.zip(bounds.1).map(|(error, most)| [error, most]),
+            margin: given.take("margin")?,
+            wall_margin: given.take("wall_margin")?,
+            friendly: friendly.map(|(reaction_time, deceleration)| Friendly {
+                reaction_time,
+                deceleration,
+            }),
+        };
+        given.done()?;
+        Ok(Self(core.checked().map_err(CoreError::from)?))
+    }
+
+    /// Velocity that is commanded, the status, and the gap of the wanted and of the commanded one.
+    fn decide(
+        &self,
+        limits: RobotLimits,
+        state: ([f64; 2], [f64; 2]),
+        wanted: [f64; 2],
+        people: Vec<PersonState>,
+    ) -> PyResult<([f64; 2], &'static str, [f64; 2])> {
+        let (radius, max_speed, max_acceleration, period) = limits;
+        let limits = Limits {
+            radius,
+            max_speed,
+            max_acceleration,
+            period,
+        };
+        let guard = Guard::new(self.0, limits).map_err(CoreError::from)?;
+        let people: Vec<Person> = people.into_iter().map(|each| self.person(each)).collect();
+        let view = View {
+            robot: RobotState {
+                position: state.0.into(),
+                velocity: state.1.into(),
+            },
+            people: &people,
+            walls: Walls::NONE,
+        };
+        let clipped = guard.clipped(&view.robot, wanted.into());
+        let decision = guard.decide(&view, wanted.into());
+        let gaps = [clipped, decision.velocity].map(|velocity| guard.gap(&view, velocity));
+        let velocity: [f64; 2] = decision.velocity.into();
+        Ok((velocity, decision.status.word(), gaps))
+    }
+}
+
+impl Shield {
+    fn person(&self, (center, radius, velocity): PersonState) -> Person {
+        let known = |[error, acceleration]: [f64; 2]| KnownVelocity {
+            velocity: Vector2::from(velocity),
+            error,
+            acceleration,
+        };
+        let bounds = self.0.velocity_bounds;
+        Person {
+            position_error: self.0.position_error,
+            max_speed: self.0.person_speed.unwrap_or(f64::INFINITY),
+            latency: self.0.latency,
+            known: bounds.filter(|_| !velocity[0].is_nan()).map(known),
+            ..Person::disc(center, radius)
+        }
+    }
+}
+
+/// Largest speed at an angle to a person, NaN where there is no limit.
+#[pyfunction]
+pub fn shield_speed_bound(gap: f64, angle: f64, deceleration: f64, person_speed: f64) -> f64 {
+    shield::speed_bound(gap, angle, deceleration, person_speed).unwrap_or(f64::NAN)
+}
+
+/// A law with its parts, of the keywords of a caller.
+pub fn safe_law(law: &AnyLaw, given: &Keywords<'_>) -> PyResult<AnyLaw> {
+    let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
+    let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
+    let takeover: Option<(f64, f64)> = given.take("takeover")?;
+    let family = SafeNavigation {
+        law: law.clone(),
+        shield: shield.map(|shield| shield.0),
+        yielding: yielding.map(|yielding| yielding.0),
+        takeover: takeover.map(|(progress, window)| Takeover { progress, window }),
+        preferred_speed: given.take("preferred_speed")?,
+        critical_distance: given.take("critical_distance")?,
+    };
+    given.done()?;
+    Ok(family.checked().map_err(CoreError::from)?.into())
+}

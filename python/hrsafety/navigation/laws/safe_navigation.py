@@ -1,0 +1,157 @@
+"""Safe navigation: any law with a shield, yielding and a way out of local minima around it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import instance, number
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import as_law
+from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.laws.yielding import Yielding
+
+__all__ = ["SafeNavigation"]
+
+PROGRESS, WINDOW = 0.6, 0.7
+"""Without a map: progress that counts, in s at the largest speed of the law, and the time for it."""
+CRITICAL_DISTANCE = 0.02
+"""Where force laws brake beside a shield that gives way, in m between the surfaces."""
+
+
+@dataclass(frozen=True, slots=True)
+class SafeNavigation(Law):
+    """A law with parts around it, each of which may be left out; it is a law like any other.
+
+    ``wanted = law -> takeover -> yielding -> shield``: the law wants a velocity, ``V + F T/m`` for a
+    force. If it has not brought the robot nearer to the goal for some time, the robot heads straight
+    for the goal until it has come nearer. A velocity is chosen that gives way to people, and the shield
+    lets through what is safe. What all parts keep is the law's own command, bit for bit. The gains are
+    those of the law.
+
+    Parameters
+    ----------
+    law : law
+        What wants a velocity: any law of the package, or one of your own.
+    shield : Shield or None
+        The shield.
+    yielding : Yielding or None
+        How the robot gives way.
+    preferred_speed : float or None
+        Limit of the wanted velocity in m/s, for which regions are sized; the robot may be faster to give
+        way. ``None``: the largest speed of the robot.
+    takeover : bool or None
+        Whether the law is taken over from where it makes no progress. ``None``: with yielding.
+    critical_distance : float or None or "regions"
+        Distance between the surfaces in m at which force laws brake, in place of the critical regions of
+        the scene; active regions stay. ``None``: 0.02 m with a shield and yielding, else the regions of
+        the scene, as for ``"regions"``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is not of its kind or not positive. A preferred speed above that of the robot is
+        refused when a run begins.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(), yielding=nav.Yielding())
+    >>> nav.simulate(scenarios.random_traffic(12, seed=1), law).outcome
+    'arrived'
+    """
+
+    law: Law
+    shield: Shield | None = field(default=None, kw_only=True)
+    yielding: Yielding | None = field(default=None, kw_only=True)
+    preferred_speed: float | None = field(default=None, kw_only=True)
+    takeover: bool | None = field(default=None, kw_only=True)
+    critical_distance: float | str | None = field(default=None, kw_only=True)
+    _native: _hrsafety.Law = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._set(law=as_law(self.law))
+        if self.shield is not None:
+            instance("shield", self.shield, Shield)
+        if self.yielding is not None:
+            instance("yielding", self.yielding, Yielding)
+        if self.preferred_speed is not None:
+            self._set(preferred_speed=number("preferred_speed", self.preferred_speed))
+        if not (self.takeover is None or isinstance(self.takeover, bool)):
+            raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
+        takes_over = self.yielding is not None if self.takeover is None else self.takeover
+        native = self.law._native.guarded(
+            shield=None if self.shield is None else self.shield._native,
+            yielding=None if self.yielding is None else self.yielding._native,
+            takeover=(PROGRESS, WINDOW) if takes_over else None,
+            preferred_speed=self.preferred_speed,
+            critical_distance=self._critical_distance(),
+        )
+        self._set(_native=native)
+
+    def _critical_distance(self) -> float | None:
+        given = self.critical_distance
+        if given is None:
+            return CRITICAL_DISTANCE if self.shield is not None and self.yielding is not None else None
+        if isinstance(given, str):
+            if given != "regions":
+                raise InvalidParameterError("critical_distance", 'be a number, None or "regions"', given)
+            return None
+        distance = number("critical_distance", given)
+        self._set(critical_distance=distance)
+        return distance
+
+    @property
+    def GAIN_NAMES(self) -> tuple[str, ...]:  # type: ignore[override]  # noqa: N802  # those of the law within
+        """Names of the gains of the law."""
+        return self.law.GAIN_NAMES
+
+    @property
+    def GAIN_BOUNDS(self) -> Mapping[str, tuple[float, float]]:  # type: ignore[override]  # noqa: N802
+        """Where a search looks for them."""
+        return self.law.GAIN_BOUNDS
+
+    @property
+    def GAIN_UNITS(self) -> Mapping[str, str]:  # type: ignore[override]  # noqa: N802
+        """Their units."""
+        return self.law.GAIN_UNITS
+
+    @property
+    def GAIN_SYMBOLS(self) -> Mapping[str, str]:  # type: ignore[override]  # noqa: N802
+        """Their symbols in the source."""
+        return self.law.GAIN_SYMBOLS
+
+    @property
+    def gains(self) -> tuple[float, ...]:
+        """The gains of the law, in the order of `GAIN_NAMES`."""
+        return self.law.gains
+
+    def replaced(self, **changes: object) -> SafeNavigation:
+        """Return it with some fields changed, its own or those of the law.
+
+        Parameters
+        ----------
+        **changes
+            New values by the names of the fields.
+
+        Returns
+        -------
+        SafeNavigation
+            The same with these values.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a value is not allowed.
+        """
+        own = {name: changes.pop(name) for name in list(changes) if name in _FIELDS}
+        if changes:
+            inner = own.get("law", self.law)
+            own["law"] = as_law(inner).replaced(**changes)
+        return replace(self, **own)  # type: ignore[arg-type]  # checked at construction
+
+
+_FIELDS = frozenset({"law", "shield", "yielding", "preferred_speed", "takeover", "critical_distance"})
