@@ -90,9 +90,7 @@ __all__ = [
     "front_hypervolume",
     "gain_front",
     "hic",
-    "hic_half_sine",
-    "hic_square",
-    "hic_triangle",
+    "hic_of_pulse",
     "holonomic_wheels",
     "identify_direct_drive",
     "identify_foam",
@@ -826,14 +824,8 @@ def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Tri
 def recorded_metrics(time: _Array, acceleration_g: _Array, **given: object) -> _Row:
     """Return numbers, status and whether the foam leaves its linear range, of a recorded impact."""
 
-def hic_half_sine(peak_g: float, duration: float, window: float) -> float:
-    """Return the head injury criterion of a half sine."""
-
-def hic_square(peak_g: float, duration: float, window: float) -> float:
-    """Return the head injury criterion of a square pulse."""
-
-def hic_triangle(peak_g: float, duration: float, window: float) -> float:
-    """Return the head injury criterion of a triangle."""
+def hic_of_pulse(shape: str, peak_g: float, duration: float, window: float) -> float:
+    """Return the head injury criterion of a pulse of a known shape."""
 
 def identify_foam(
     static_force: _Array, static_compression: _Array, drops: Sequence[tuple[_Array, _Array]], **given: object

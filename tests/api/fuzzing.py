@@ -128,7 +128,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "gradients": (impact.gradients, dict(PARTS)),
     "hic": (impact.hic, {"time": TIME, "acceleration_g": PULSE}),
     "channel_filter": (impact.criteria.channel_filter, {"time": FLIGHT, "signal": np.sin(FLIGHT), "channel_class": 60}),
-    "hic_half_sine": (impact.criteria.hic_half_sine, {"peak_g": 50.0, "duration": 0.01}),
+    "hic_of_pulse": (impact.criteria.hic_of_pulse, {"shape": "half_sine", "peak_g": 50.0, "duration": 0.01}),
     "identify_foam": (
         impact.identify_foam,
         {

@@ -171,14 +171,11 @@ CALLS: dict[str, Call] = {
         )
         for function in (impact.criteria.average_3ms, impact.criteria.clip_3ms)
     },
-    **{
-        function.__name__: (
-            function,
-            {"peak_g": 100.0, "duration": 0.005},
-            {"peak_g": NOT_NEGATIVE, "duration": POSITIVE, "window": POSITIVE},
-        )
-        for function in (impact.criteria.hic_half_sine, impact.criteria.hic_square, impact.criteria.hic_triangle)
-    },
+    "hic_of_pulse": (
+        impact.criteria.hic_of_pulse,
+        {"shape": "square", "peak_g": 100.0, "duration": 0.005},
+        {"shape": WORD, "peak_g": NOT_NEGATIVE, "duration": POSITIVE, "window": POSITIVE},
+    ),
     "pd_gains": (
         impact.identification.pd_gains,
         {"stiffness": 20e3, "damping": 250.0, "lever_arm": 0.078, "torque_constant": 0.27},

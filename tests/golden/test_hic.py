@@ -97,7 +97,7 @@ def test_half_sines_reach_their_formula(window: float, duration: float) -> None:
     time = np.linspace(0.0, duration, 100_001)
     value = 80.0 * np.sin(np.pi * time / duration)
     found = impact.hic(time, value, window, interpolate=True)
-    assert found.value == pytest.approx(impact.criteria.hic_half_sine(80.0, duration, window), rel=FORMULA)
+    assert found.value == pytest.approx(impact.criteria.hic_of_pulse("half_sine", 80.0, duration, window), rel=FORMULA)
 
 
 @pytest.mark.parametrize("window", [*WINDOWS, 0.004])
@@ -107,7 +107,7 @@ def test_triangles_reach_their_formula(window: float, peak_at: float) -> None:
         time = np.union1d(np.linspace(0.0, 0.03, inner + 2), [0.03 * peak_at])
         value = np.interp(time, [0.0, 0.03 * peak_at, 0.03], [0.0, 60.0, 0.0])
         found = impact.hic(time, value, window, interpolate=True)
-        assert found.value == pytest.approx(impact.criteria.hic_triangle(60.0, 0.03, window), rel=FORMULA)
+        assert found.value == pytest.approx(impact.criteria.hic_of_pulse("triangle", 60.0, 0.03, window), rel=FORMULA)
 
 
 @pytest.mark.parametrize("window", [*WINDOWS, 0.004])
@@ -115,7 +115,7 @@ def test_squares_reach_their_formula(window: float) -> None:
     for samples in (2, 50, 5000):
         time = np.linspace(1.0, 1.03, samples)
         found = impact.hic(time, np.full(samples, 60.0), window, interpolate=True)
-        assert found.value == pytest.approx(impact.criteria.hic_square(60.0, 0.03, window), rel=FORMULA)
+        assert found.value == pytest.approx(impact.criteria.hic_of_pulse("square", 60.0, 0.03, window), rel=FORMULA)
 
 
 def test_signals_without_a_positive_mean_count_0() -> None:

@@ -59,7 +59,7 @@ def test_triangle_has_the_loads_that_can_be_written_down() -> None:
     assert found.impact_duration == pytest.approx(0.010, rel=EXACT)
     assert found.peak_head_acceleration_g == pytest.approx(30.0, rel=EXACT)
     assert found.mean_head_acceleration_g == pytest.approx(15.0, rel=EXACT)
-    assert found.hic15 == pytest.approx(impact.criteria.hic_triangle(30.0, 0.010), rel=1e-9)  # free ends
+    assert found.hic15 == pytest.approx(impact.criteria.hic_of_pulse("triangle", 30.0, 0.010), rel=1e-9)  # free ends
     assert found.hic36 == pytest.approx(found.hic15, rel=EXACT)
     assert found.average_3ms_g == pytest.approx(30.0 * (1.0 - 0.15), rel=EXACT)
     assert found.clip_3ms_g == pytest.approx(30.0 * (1.0 - 0.3), rel=EXACT)

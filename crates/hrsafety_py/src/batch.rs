@@ -17,7 +17,6 @@ use crate::watch::{Report, watched_law};
 /// Summary columns of every gain set in every scenario.
 #[pyfunction]
 #[pyo3(signature = (scenarios, law, gains, weights, **given))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn simulate_batch<'py>(
     py: Python<'py>,
     scenarios: Vec<PyRef<'py, Scenario>>,

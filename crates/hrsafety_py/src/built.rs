@@ -14,6 +14,7 @@ use crate::arrays::Fields;
 use crate::batch::columns;
 use crate::differential::{Tracking, VirtualTorque};
 use crate::errors::InvalidParameterError;
+use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{trajectory_fields, weights_of};
@@ -28,35 +29,31 @@ pub struct AsBuilt(Built);
 #[pymethods]
 impl AsBuilt {
     #[new]
-    #[pyo3(signature = (*, wheels, kinematics, slip, tracking, sensors,
-        position_share, heading_share, mark_distance))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    #[allow(clippy::needless_pass_by_value)] // references to Python objects
-    fn new(
-        wheels: Option<Vec<PyRef<'_, WheelDrive>>>,
-        kinematics: PyRef<'_, OmniKinematics>,
-        slip: PyRef<'_, Slip>,
-        tracking: &Bound<'_, PyAny>,
-        sensors: Vec<PyRef<'_, Sensor>>,
-        position_share: f64,
-        heading_share: f64,
-        mark_distance: f64,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let wheels: Option<Vec<PyRef<'_, WheelDrive>>> = given.take("wheels")?;
+        let kinematics: PyRef<'_, OmniKinematics> = given.take("kinematics")?;
+        let slip: PyRef<'_, Slip> = given.take("slip")?;
+        let tracking: Bound<'_, PyAny> = given.take("tracking")?;
+        let sensors: Vec<PyRef<'_, Sensor>> = given.take("sensors")?;
         let steered = match tracking.cast::<Tracking>() {
             Ok(law) => Steered::Following(law.get().0),
             Err(_) => Steered::Torque(tracking.cast::<VirtualTorque>()?.get().0),
         };
+        let fusion = PoseFusion {
+            position: given.take("position_share")?,
+            heading: given.take("heading_share")?,
+            mark: given.take("mark_distance")?,
+        };
+        given.done()?;
         Ok(Self(Built {
             wheels: wheels.map(|wheels| wheels.iter().map(|wheel| *wheel.core()).collect()),
             omni: kinematics.0,
             slip: slip.0,
             steered,
             sensors: sensors.iter().map(|sensor| sensor.0.clone()).collect(),
-            fusion: PoseFusion {
-                position: position_share,
-                heading: heading_share,
-                mark: mark_distance,
-            },
+            fusion,
             ..Built::default()
         }))
     }
@@ -142,11 +139,7 @@ pub fn built_evaluate<'py>(
 
 /// Runs of every law in every scenario: columns of a batch, and histories padded with NaN if asked for.
 #[pyfunction]
-#[pyo3(signature = (scenarios, laws, gains, built, weights, *, step, stop_on_contact, histories,
-    threads, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
-#[allow(clippy::fn_params_excessive_bools)] // keyword-only in Python
-#[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
+#[pyo3(signature = (scenarios, laws, gains, built, weights, **given))]
 pub fn built_many<'py>(
     py: Python<'py>,
     scenarios: Vec<PyRef<'py, Scenario>>,
@@ -154,13 +147,13 @@ pub fn built_many<'py>(
     gains: PyReadonlyArray2<'py, f64>,
     built: &AsBuilt,
     weights: (f64, f64, f64),
-    step: f64,
-    stop_on_contact: bool,
-    histories: bool,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let built = built.run(step, stop_on_contact);
+    let given = given.unwrap_or_default();
+    let built = built.run(given.take("step")?, given.take("stop_on_contact")?);
+    let (histories, threads) = (given.take("histories")?, given.take("threads")?);
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
+    given.done()?;
     // Laws in Python run in the thread of their caller, and so do all beside them.
     let lead = laws.iter().find(|law| law.is_python()).or(laws.first());
     let lead: &Law = lead.ok_or_else(|| {

@@ -173,7 +173,6 @@ impl ReferencePath {
     /// Cubic between samples.
     #[staticmethod]
     #[pyo3(signature = (*, time, position, velocity))]
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn samples(
         time: PyReadonlyArray1<'_, f64>,
         position: PyReadonlyArray2<'_, f64>,
@@ -188,7 +187,6 @@ impl ReferencePath {
     }
 
     /// Positions, velocities and accelerations at instants.
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn at<'py>(
         &self,
         py: Python<'py>,
@@ -275,7 +273,6 @@ fn history(py: Python<'_>, run: TrackRun) -> PyResult<Bound<'_, PyDict>> {
 /// Summary columns of many runs.
 #[pyfunction]
 #[pyo3(signature = (references, tracking, robot, **given))]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn track_batch<'py>(
     py: Python<'py>,
     references: Vec<PyRef<'py, ReferencePath>>,

@@ -46,7 +46,7 @@ impl From<CoreError> for PyErr {
             },
             Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
             Failure::NonFinite { run, .. } => SimulationError::new_err((failure.to_string(), run)),
-            other => SimulationError::new_err(other.to_string()),
+            Failure::Threads { .. } => SimulationError::new_err(failure.to_string()),
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Python binding: registration. The module is private; `hrsafety.navigation`,
 //! `hrsafety.impact` and `hrsafety.reactive` are its faces.
 
+// Whatever comes from Python is converted, or borrowed by a guard that is itself owned.
+#![allow(clippy::needless_pass_by_value)]
+
 mod arrays;
 mod batch;
 mod built;
@@ -77,8 +80,7 @@ mod _hrsafety {
     use crate::impact::parameters::{ConstrainedHead, Foam, Head, Manipulator};
     #[pymodule_export]
     use crate::impact::signal::{
-        contiguous_level, hic, hic_half_sine, hic_square, hic_triangle, moving_average,
-        recorded_metrics, signal_push,
+        contiguous_level, hic, hic_of_pulse, moving_average, recorded_metrics, signal_push,
     };
     #[pymodule_export]
     use crate::impact::single::{

@@ -307,7 +307,6 @@ pub fn mover_of(robot: &Bound<'_, PyAny>) -> PyResult<Mover> {
 /// Critical and active radius of an obstacle for a robot.
 #[pyfunction]
 #[pyo3(signature = (robot, obstacle, control_period, faced_side, latency, position_error, measurement))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn region_radii(
     robot: &Bound<'_, PyAny>,
     obstacle: &Obstacle,

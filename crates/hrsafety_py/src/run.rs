@@ -230,7 +230,6 @@ pub fn force_terms<'py>(
 
 /// Forces and Lyapunov function at many states.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn force_field<'py>(
     py: Python<'py>,
     law: &Law,

@@ -14,6 +14,7 @@ use vff_core::world::frame::Frame;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, taken};
 use crate::parameters::{Scenario, word};
 use crate::watch::{Control, Report, watched};
 
@@ -34,29 +35,25 @@ pub struct Camera(pub sensing::Camera);
 #[pymethods]
 impl Camera {
     #[new]
-    #[pyo3(signature = (*, focal_length, radial_distortion, horizontal_scale, image_center, pixel_size,
-        image_size, rotation, translation))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        focal_length: f64,
-        radial_distortion: f64,
-        horizontal_scale: f64,
-        image_center: [f64; 2],
-        pixel_size: [f64; 2],
-        image_size: [u32; 2],
-        rotation: [[f64; 3]; 3],
-        translation: [f64; 3],
-    ) -> CoreResult<Self> {
-        let lens = Lens {
-            focal_length,
-            radial_distortion,
-            horizontal_scale,
-            image_center,
-            pixel_size,
-            image_size,
-        };
-        let pose = CameraPose::from_rows(rotation, translation);
-        Ok(Self(sensing::Camera::new(lens, pose)?))
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let lens = taken!(
+            given,
+            Lens {
+                focal_length,
+                radial_distortion,
+                horizontal_scale,
+                image_center,
+                pixel_size,
+                image_size
+            }
+        );
+        let pose = CameraPose::from_rows(given.take("rotation")?, given.take("translation")?);
+        given.done()?;
+        Ok(Self(
+            sensing::Camera::new(lens, pose).map_err(CoreError::from)?,
+        ))
     }
 
     /// Where the camera is.
@@ -289,37 +286,34 @@ pub struct Ultrasonic(pub sensing::Ultrasonic);
 #[pymethods]
 impl Ultrasonic {
     #[new]
-    #[pyo3(signature = (*, mounts, beam_width, rays, least_range, most_range, range_noise, firing,
-        max_speed, assumed_speed))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        mounts: Vec<[f64; 3]>,
-        beam_width: f64,
-        rays: usize,
-        least_range: f64,
-        most_range: f64,
-        range_noise: f64,
-        firing: &str,
-        max_speed: f64,
-        assumed_speed: f64,
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let ranging = Ranging {
-            least: least_range,
-            most: most_range,
-            noise: range_noise,
+            least: given.take("least_range")?,
+            most: given.take("most_range")?,
+            noise: given.take("range_noise")?,
             ..Ranging::default()
         };
+        let mounts: Vec<[f64; 3]> = given.take("mounts")?;
         let mounts = mounts
             .into_iter()
             .map(|[x, y, axis]| Frame::at([x, y], axis));
-        let beam = Beam::new(beam_width, rays)?;
-        let array = SonarArray::new(mounts.collect(), beam, ranging, firing_of(firing)?)?;
-        let ultrasonic = sensing::Ultrasonic {
-            array,
-            max_speed,
-            assumed_speed,
-        };
-        Ok(Self(ultrasonic.checked()?))
+        let beam = Beam::new(given.take("beam_width")?, given.take("rays")?);
+        let firing = firing_of(&given.take::<String>("firing")?)?;
+        let (max_speed, assumed_speed) = (given.take("max_speed")?, given.take("assumed_speed")?);
+        given.done()?;
+        let made = beam
+            .and_then(|beam| SonarArray::new(mounts.collect(), beam, ranging, firing))
+            .and_then(|array| {
+                let ultrasonic = sensing::Ultrasonic {
+                    array,
+                    max_speed,
+                    assumed_speed,
+                };
+                ultrasonic.checked()
+            });
+        Ok(Self(made.map_err(CoreError::from)?))
     }
 
     /// Critical and active radius of an echo in a scenario, and the distance from the center of the

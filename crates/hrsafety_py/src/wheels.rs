@@ -117,7 +117,6 @@ impl WheelDrive {
 
     /// Histories of the wheel after a wanted motion, one row per wheel period.
     #[pyo3(signature = (*, angle, speed, acceleration, start_angle, start_speed))]
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn follow<'py>(
         &self,
         py: Python<'py>,
@@ -227,7 +226,6 @@ parameter_class! {
     OmniKinematics(wheels::OmniKinematics) { wheel_radius, center_distance }
 
     /// Wheel speeds from velocities and turn rates in the world.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn wheel_speeds<'py>(
         &self,
         py: Python<'py>,
@@ -240,7 +238,6 @@ parameter_class! {
     }
 
     /// Velocities and turn rates in the world from wheel speeds.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn body_velocity<'py>(
         &self,
         py: Python<'py>,
@@ -258,7 +255,6 @@ parameter_class! {
     DifferentialKinematics(wheels::DifferentialKinematics) { wheel_radius, span }
 
     /// Wheel speeds from speeds and turn rates.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn wheel_speeds<'py>(
         &self,
         py: Python<'py>,
@@ -269,7 +265,6 @@ parameter_class! {
     }
 
     /// Speeds and turn rates from wheel speeds.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn body_velocity<'py>(
         &self,
         py: Python<'py>,
@@ -280,7 +275,6 @@ parameter_class! {
     }
 
     /// Velocities and turn rates in the world from wheel speeds.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn world_velocity<'py>(
         &self,
         py: Python<'py>,
@@ -299,7 +293,6 @@ parameter_class! {
 
     /// Ground speed after every period.
     #[pyo3(signature = (rim_speed, *, start, period))]
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn ground_speeds<'py>(
         &self,
         py: Python<'py>,
@@ -318,7 +311,6 @@ parameter_class! {
 
 /// Wanted angle and acceleration from wanted speeds, one for each wheel period.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn wheel_reference<'py>(
     py: Python<'py>,
     speed: Column<'py>,
@@ -340,7 +332,6 @@ pub fn wheel_reference<'py>(
 /// Angles of a wheel that starts at rest under a held current.
 #[pyfunction]
 #[pyo3(signature = (time, *, dynamics, current))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn wheel_response<'py>(
     py: Python<'py>,
     time: Column<'py>,

@@ -117,7 +117,6 @@ impl GainProblem {
 
     /// Values as maximized, violations and failures of gain sets.
     #[pyo3(signature = (points, *, threads))]
-    #[allow(clippy::needless_pass_by_value)] // a reference to a Python object
     fn evaluate<'py>(
         &self,
         py: Python<'py>,

@@ -24,7 +24,6 @@ fn state_of(given: &Keywords<'_>) -> PyResult<Option<SearchState>> {
 /// Coarse-to-fine grids, then local searches from their best points.
 #[pyfunction]
 #[pyo3(signature = (problem, lower, upper, **given))]
-#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn search_gains<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
@@ -67,7 +66,6 @@ pub fn search_gains<'py>(
 /// Global search with a budget.
 #[pyfunction]
 #[pyo3(signature = (problem, lower, upper, **given))]
-#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn search_gains_globally<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
@@ -108,7 +106,6 @@ pub fn search_gains_globally<'py>(
 /// Gain sets that no other one beats in every objective.
 #[pyfunction]
 #[pyo3(signature = (problem, lower, upper, **given))]
-#[allow(clippy::needless_pass_by_value)] // a reference to a Python object
 pub fn gain_front<'py>(
     py: Python<'py>,
     problem: PyRef<'py, GainProblem>,
@@ -140,7 +137,6 @@ pub fn gain_front<'py>(
 
 /// Volume between points, all objectives maximized, and a reference below them.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
 pub fn front_hypervolume(values: Vec<f64>, objectives: usize, reference: Vec<f64>) -> f64 {
     hypervolume(&values, objectives, &reference)
 }

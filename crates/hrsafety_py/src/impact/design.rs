@@ -55,7 +55,6 @@ fn design_problem(
 /// Upper or lower boundary at each damping.
 #[pyfunction]
 #[pyo3(signature = (manipulator, limits, damping, *, closing_speed, horizon, upper))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn foam_boundary<'py>(
     py: Python<'py>,
     manipulator: &Manipulator,
@@ -133,7 +132,6 @@ pub fn foam_ratios(
 /// Largest closing speed at each damping, and the stiffness that allows it.
 #[pyfunction]
 #[pyo3(signature = (manipulator, limits, damping, *, closing_speed, horizon))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn foam_fastest<'py>(
     py: Python<'py>,
     manipulator: &Manipulator,

@@ -72,7 +72,6 @@ pub fn stopping_segments(
 /// Columns of the response, and the row of its metrics.
 #[pyfunction]
 #[pyo3(signature = (manipulator, foam, head, **given))]
-#[allow(clippy::needless_pass_by_value)] // extracted from a Python object
 pub fn impact_simulate<'py>(
     py: Python<'py>,
     manipulator: &Manipulator,

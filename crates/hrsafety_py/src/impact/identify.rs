@@ -32,7 +32,6 @@ fn rows<const N: usize, const M: usize>(matrix: &[[f64; M]; N]) -> Vec<f64> {
 /// Stiffness, damping ratio and friction from static and drop tests.
 #[pyfunction]
 #[pyo3(signature = (static_force, static_compression, drops, **given))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn identify_foam<'py>(
     py: Python<'py>,
     static_force: Samples<'py>,
@@ -82,7 +81,6 @@ pub fn identify_foam<'py>(
 
 /// Stiffness of a foam from a static test.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn fit_static<'py>(
     py: Python<'py>,
     static_force: Samples<'py>,
@@ -105,7 +103,6 @@ pub fn fit_static<'py>(
 /// Height of a mass that is dropped on foam.
 #[pyfunction]
 #[pyo3(signature = (time, **given))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn drop_trajectory<'py>(
     py: Python<'py>,
     time: Samples<'py>,
@@ -140,7 +137,6 @@ pub fn drop_trajectory<'py>(
 
 /// Acceleration and decay of an open-loop test.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn fit_open_loop<'py>(
     py: Python<'py>,
     time: Samples<'py>,
@@ -161,7 +157,6 @@ pub fn fit_open_loop<'py>(
 
 /// Constants of a direct-drive joint from open-loop tests.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn identify_direct_drive<'py>(
     py: Python<'py>,
     voltage: Samples<'py>,

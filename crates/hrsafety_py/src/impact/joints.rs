@@ -28,7 +28,6 @@ parameter_class! {
     }
 
     /// Error of the reduced joint at frequencies.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn model_error<'py>(
         &self,
         py: Python<'py>,

@@ -141,7 +141,6 @@ fn name_bad_numbers(
 /// Columns of metrics, those that were asked for.
 #[pyfunction]
 #[pyo3(signature = (given, *, horizon, peaks_only, threads, lanes, progress))]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn impact_metrics_batch<'py>(
     py: Python<'py>,
     given: Given<'py>,

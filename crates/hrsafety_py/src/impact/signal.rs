@@ -12,12 +12,15 @@ use pyo3::types::PyTuple;
 use crate::errors::CoreError;
 use crate::impact::single::row_tuple;
 use crate::keywords::Keywords;
+use crate::parameters::word;
 use crate::watch::{Report, watched};
 
 /// Samples whose work ends within a tenth of the time that Ctrl-C may take.
 const SHORT: usize = 1_000_000;
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
+/// Criterion from peak (g), duration and longest window (s).
+type ClosedForm = fn(f64, f64, f64) -> Result<f64, Failure>;
 /// Value, start, end.
 type Window = (f64, f64, f64);
 
@@ -37,7 +40,6 @@ fn stopped<T: Send>(
 
 /// Head injury criterion of a signal: value, start, end.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn hic(
     py: Python<'_>,
     time: Samples<'_>,
@@ -59,7 +61,6 @@ pub fn hic(
 
 /// Extremes of a signal and the area of the push around a window.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn signal_push(
     time: Samples<'_>,
     acceleration_g: Samples<'_>,
@@ -72,7 +73,6 @@ pub fn signal_push(
 
 /// Largest moving average of a signal: value, start, end.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn moving_average(
     py: Python<'_>,
     time: Samples<'_>,
@@ -88,7 +88,6 @@ pub fn moving_average(
 
 /// Level that a signal exceeds without a break: value, start, end.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn contiguous_level(
     py: Python<'_>,
     time: Samples<'_>,
@@ -102,22 +101,22 @@ pub fn contiguous_level(
     Ok((found.value, found.start, found.end))
 }
 
-/// Head injury criterion of a half sine.
+/// Head injury criterion of a pulse of a known shape.
 #[pyfunction]
-pub fn hic_half_sine(peak_g: f64, duration: f64, window: f64) -> PyResult<f64> {
-    Ok(signal::hic_half_sine(peak_g, duration, window).map_err(CoreError::from)?)
-}
-
-/// Head injury criterion of a square pulse.
-#[pyfunction]
-pub fn hic_square(peak_g: f64, duration: f64, window: f64) -> PyResult<f64> {
-    Ok(signal::hic_square(peak_g, duration, window).map_err(CoreError::from)?)
-}
-
-/// Head injury criterion of a triangle.
-#[pyfunction]
-pub fn hic_triangle(peak_g: f64, duration: f64, window: f64) -> PyResult<f64> {
-    Ok(signal::hic_triangle(peak_g, duration, window).map_err(CoreError::from)?)
+pub fn hic_of_pulse(
+    shape: &Bound<'_, PyAny>,
+    peak_g: f64,
+    duration: f64,
+    window: f64,
+) -> PyResult<f64> {
+    let kinds: [(&str, ClosedForm); 3] = [
+        ("half_sine", signal::hic_half_sine),
+        ("square", signal::hic_square),
+        ("triangle", signal::hic_triangle),
+    ];
+    let rule = "be one of \"half_sine\", \"square\", \"triangle\"";
+    let of = word("shape", shape, rule, &kinds)?;
+    Ok(of(peak_g, duration, window).map_err(CoreError::from)?)
 }
 
 fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
@@ -127,7 +126,6 @@ fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
 /// Numbers, status and whether the foam leaves its linear range, of a recorded impact.
 #[pyfunction]
 #[pyo3(signature = (time, acceleration_g, **given))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn recorded_metrics<'py>(
     py: Python<'py>,
     time: Samples<'py>,

@@ -12,7 +12,6 @@ use crate::impact::parameters::{Foam, Manipulator, Target, system};
 
 /// Numbers, status and whether the foam leaves its linear range.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // extracted from a Python object
 pub fn impact_metrics<'py>(
     py: Python<'py>,
     manipulator: &Manipulator,
@@ -67,7 +66,6 @@ pub fn impact_parameter_names() -> Vec<&'static str> {
 
 /// The row of metrics and the matrix of their derivatives.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // extracted from a Python object
 #[allow(clippy::type_complexity)] // a pair
 pub fn impact_gradients<'py>(
     py: Python<'py>,

@@ -22,6 +22,7 @@ use vff_core::world::obstacle::Obstacle;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::{Keywords, taken};
 use crate::sensing::Vision;
 use echoes::{EchoShape, Sonar};
 
@@ -74,56 +75,45 @@ pub struct VirtualImpedance {
 #[pymethods]
 impl VirtualImpedance {
     #[new]
-    #[pyo3(signature = (*, form, stiffness, damping, safe_distance, speed_limit,
-        reference_stiffness, reference_damping, clamp, speed, filter_time, largest_rate,
-        outlives_gaps, pairing_gap, pairing_share, rotation, translated_by))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        form: &str,
-        stiffness: f64,
-        damping: f64,
-        safe_distance: f64,
-        speed_limit: f64,
-        reference_stiffness: f64,
-        reference_damping: f64,
-        clamp: bool,
-        speed: &str,
-        filter_time: f64,
-        largest_rate: f64,
-        outlives_gaps: bool,
-        pairing_gap: f64,
-        pairing_share: f64,
-        rotation: &str,
-        translated_by: Option<[f64; 2]>,
-    ) -> CoreResult<Self> {
-        let law = Impedance {
-            form: form_of(form)?,
-            stiffness,
-            damping,
-            safe_distance,
-            speed_limit,
-            reference_stiffness,
-            reference_damping,
-            clamp,
-        };
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let law = taken!(
+            given,
+            Impedance {
+                stiffness,
+                damping,
+                safe_distance,
+                speed_limit,
+                reference_stiffness,
+                reference_damping,
+                clamp
+            },
+            ..Impedance {
+                form: form_of(&given.take::<String>("form")?)?,
+                ..Impedance::default()
+            }
+        );
         let speeds = [("closing", Speed::Closing), ("norm", Speed::Norm)];
+        let speed: String = given.take("speed")?;
         let bank = BankOptions {
             pairing: Pairing {
-                gap: pairing_gap,
-                share: pairing_share,
+                gap: given.take("pairing_gap")?,
+                share: given.take("pairing_share")?,
             },
             rate: RateFilter {
-                speed: word("speed", "be \"closing\" or \"norm\"", speed, &speeds)?,
-                time_constant: filter_time,
-                largest: largest_rate,
-                outlives_gaps,
+                speed: word("speed", "be \"closing\" or \"norm\"", &speed, &speeds)?,
+                time_constant: given.take("filter_time")?,
+                largest: given.take("largest_rate")?,
+                outlives_gaps: given.take("outlives_gaps")?,
             },
-            rotation: rotation_of(rotation)?,
-            translated_by,
+            rotation: rotation_of(&given.take::<String>("rotation")?)?,
+            translated_by: given.take("translated_by")?,
         };
+        given.done()?;
         Ok(Self {
-            law: law.checked()?,
-            bank: bank.checked()?,
+            law: law.checked().map_err(CoreError::from)?,
+            bank: bank.checked().map_err(CoreError::from)?,
         })
     }
 }

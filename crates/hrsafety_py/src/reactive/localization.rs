@@ -41,7 +41,6 @@ pub fn fix_status_words() -> Vec<&'static str> {
 
 /// Exact delays of M2 and M3 against M1.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn microphone_delays<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -59,7 +58,6 @@ pub fn microphone_delays<'py>(
 
 /// Bearings by parallel rays from the delays of one pair.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn parallel_ray_bearings<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -86,7 +84,6 @@ pub fn parallel_ray_bearings<'py>(
 
 /// Angles at the three microphones between the row and sources.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn microphone_elevations<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -105,7 +102,6 @@ pub fn microphone_elevations<'py>(
 
 /// Ranges by the printed formula.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn printed_ranges<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -122,7 +118,6 @@ pub fn printed_ranges<'py>(
 /// Fixes from delays; the covariance of the delays is variance, covariance, variance.
 #[pyfunction]
 #[pyo3(signature = (array, delay_12, delay_13, *, covariance, threads, progress))]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn locate_sounds<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,

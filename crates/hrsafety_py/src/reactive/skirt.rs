@@ -17,6 +17,7 @@ use vff_core::run::skirt::{
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::Keywords;
 use crate::watch::{Report, watched};
 
 /// Word of an action.
@@ -49,59 +50,51 @@ pub fn skirt_closing_gap(sensors: usize, wheel_gap: f64) -> CoreResult<f64> {
     Ok(closing_gap(sensors, wheel_gap)?)
 }
 
+/// Lengths of the printed equations, the radius of the chassis if it is known.
+fn circumference(given: &Keywords<'_>, chassis_radius: Option<f64>) -> PyResult<Circumference> {
+    let sensor_radius = given.take("sensor_radius")?;
+    let lengths = Circumference {
+        chassis_radius: chassis_radius.unwrap_or(sensor_radius),
+        sensor_radius,
+        wheel_sensor_radius: given.take("wheel_sensor_radius")?,
+        sensor_length: given.take("sensor_length")?,
+        correction: given.take("correction")?,
+    };
+    given.done()?;
+    Ok(lengths.checked().map_err(CoreError::from)?)
+}
+
 /// Gaps by the printed (3) and (5) in rad, and the factor with which (3) closes the ring.
 #[pyfunction]
-#[pyo3(signature = (*, sensors, wheel_gap, chassis_radius, sensor_radius, wheel_sensor_radius,
-    sensor_length, correction))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (*, sensors, wheel_gap, **lengths))]
 pub fn skirt_printed_gaps(
     sensors: usize,
     wheel_gap: f64,
-    chassis_radius: f64,
-    sensor_radius: f64,
-    wheel_sensor_radius: f64,
-    sensor_length: f64,
-    correction: f64,
-) -> CoreResult<(f64, f64, f64)> {
-    let lengths = Circumference {
-        chassis_radius,
-        sensor_radius,
-        wheel_sensor_radius,
-        sensor_length,
-        correction,
-    }
-    .checked()?;
-    Ok((
-        lengths.printed_gap(sensors, wheel_gap)?,
-        lengths.printed_gap_closed(sensors)?,
-        lengths.closing_correction(sensors, wheel_gap)?,
-    ))
+    lengths: Option<Keywords<'_>>,
+) -> PyResult<(f64, f64, f64)> {
+    let lengths = lengths.unwrap_or_default();
+    let radius = lengths.take("chassis_radius")?;
+    let lengths = circumference(&lengths, Some(radius))?;
+    let gap = lengths.printed_gap(sensors, wheel_gap);
+    let closed = lengths.printed_gap_closed(sensors);
+    let correction = lengths.closing_correction(sensors, wheel_gap);
+    let found = gap.and_then(|gap| Ok((gap, closed?, correction?)));
+    Ok(found.map_err(CoreError::from)?)
 }
 
 /// Radius of the chassis that the printed (1) closes, in m.
 #[pyfunction]
-#[pyo3(signature = (*, sensors, wheel_gap, gap, sensor_radius, wheel_sensor_radius,
-    sensor_length, correction))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (*, sensors, wheel_gap, gap, **lengths))]
 pub fn skirt_closing_radius(
     sensors: usize,
     wheel_gap: f64,
     gap: f64,
-    sensor_radius: f64,
-    wheel_sensor_radius: f64,
-    sensor_length: f64,
-    correction: f64,
-) -> CoreResult<f64> {
-    let lengths = Circumference {
-        // The radius is what is asked for.
-        chassis_radius: sensor_radius,
-        sensor_radius,
-        wheel_sensor_radius,
-        sensor_length,
-        correction,
-    }
-    .checked()?;
-    Ok(lengths.closing_radius(sensors, wheel_gap, gap)?)
+    lengths: Option<Keywords<'_>>,
+) -> PyResult<f64> {
+    // The radius of the chassis is what is asked for.
+    let lengths = circumference(&lengths.unwrap_or_default(), None)?;
+    let radius = lengths.closing_radius(sensors, wheel_gap, gap);
+    Ok(radius.map_err(CoreError::from)?)
 }
 
 /// Least number of sensors by (6), and the next multiple of three.
@@ -174,6 +167,20 @@ impl TriOmniKinematics {
     }
 }
 
+/// Places of the sensors around the chassis.
+fn ring_of(given: &Keywords<'_>) -> PyResult<Ring> {
+    let (sensors, wheel_gap) = (given.take("sensors")?, given.take("wheel_gap")?);
+    let layout: String = given.take("layout")?;
+    let bearings = match layout.as_str() {
+        "wheels" => Ring::beside_wheels(sensors, wheel_gap),
+        "even" => Ring::even(sensors),
+        other => return Err(unknown("layout", "be \"wheels\" or \"even\"", other).into()),
+    };
+    let (radius, inset) = (given.take("chassis_radius")?, given.take("sensor_inset")?);
+    let ring = bearings.and_then(|bearings| Ring::new(radius, inset, bearings));
+    Ok(ring.map_err(CoreError::from)?)
+}
+
 /// Ring of sensors with its decisions.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct UltrasonicSkirt(Skirt);
@@ -181,44 +188,24 @@ pub struct UltrasonicSkirt(Skirt);
 #[pymethods]
 impl UltrasonicSkirt {
     #[new]
-    #[pyo3(signature = (*, chassis_radius, sensor_inset, sensors, layout, wheel_gap, safe_distance,
-        triggering, policy, beam_width, rays, least_range, most_range, range_noise, firing_period))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        chassis_radius: f64,
-        sensor_inset: f64,
-        sensors: usize,
-        layout: &str,
-        wheel_gap: f64,
-        safe_distance: Option<f64>,
-        triggering: &str,
-        policy: &str,
-        beam_width: f64,
-        rays: usize,
-        least_range: f64,
-        most_range: f64,
-        range_noise: f64,
-        firing_period: f64,
-    ) -> CoreResult<Self> {
-        let bearings = match layout {
-            "wheels" => Ring::beside_wheels(sensors, wheel_gap)?,
-            "even" => Ring::even(sensors)?,
-            other => return Err(unknown("layout", "be \"wheels\" or \"even\"", other)),
-        };
-        let ring = Ring::new(chassis_radius, sensor_inset, bearings)?;
-        let safe_distance = safe_distance.unwrap_or_else(|| ring.safe_distance());
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let ring = ring_of(&given)?;
+        let safe_distance: Option<f64> = given.take("safe_distance")?;
         let options = SkirtOptions {
-            safe_distance,
-            rule: rule_of(triggering)?,
-            policy: policy_of(policy)?,
-            beam_width,
-            rays,
-            least_range,
-            most_range,
-            range_noise,
-            firing_period,
+            safe_distance: safe_distance.unwrap_or_else(|| ring.safe_distance()),
+            rule: rule_of(&given.take::<String>("triggering")?)?,
+            policy: policy_of(&given.take::<String>("policy")?)?,
+            beam_width: given.take("beam_width")?,
+            rays: given.take("rays")?,
+            least_range: given.take("least_range")?,
+            most_range: given.take("most_range")?,
+            range_noise: given.take("range_noise")?,
+            firing_period: given.take("firing_period")?,
         };
-        Ok(Self(Skirt::new(ring, options)?))
+        given.done()?;
+        Ok(Self(Skirt::new(ring, options).map_err(CoreError::from)?))
     }
 
     /// Bearings of the sensors, in rad.
@@ -304,31 +291,22 @@ pub struct SkirtScene(DiscSceneOptions);
 #[pymethods]
 impl SkirtScene {
     #[new]
-    #[pyo3(signature = (*, obstacles, disc_radius, course_distance, course_offset, half_size,
-        start_clearance, spacing, unseen_share))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        obstacles: usize,
-        disc_radius: [f64; 2],
-        course_distance: [f64; 2],
-        course_offset: f64,
-        half_size: f64,
-        start_clearance: f64,
-        spacing: f64,
-        unseen_share: f64,
-    ) -> CoreResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let options = DiscSceneOptions {
-            obstacles,
-            radius: disc_radius,
-            course_distance,
-            course_offset,
-            half_size,
-            start_clearance,
-            spacing,
-            unseen_share,
+            radius: given.take("disc_radius")?,
+            obstacles: given.take("obstacles")?,
+            course_distance: given.take("course_distance")?,
+            course_offset: given.take("course_offset")?,
+            half_size: given.take("half_size")?,
+            start_clearance: given.take("start_clearance")?,
+            spacing: given.take("spacing")?,
+            unseen_share: given.take("unseen_share")?,
         };
+        given.done()?;
         // With a robot of no size: that of the test is checked there.
-        Ok(Self(options.checked(0.0)?))
+        Ok(Self(options.checked(0.0).map_err(CoreError::from)?))
     }
 }
 

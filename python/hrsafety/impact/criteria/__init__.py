@@ -8,9 +8,7 @@ from hrsafety.impact.criteria.loads import (
     average_3ms,
     clip_3ms,
     hic,
-    hic_half_sine,
-    hic_square,
-    hic_triangle,
+    hic_of_pulse,
     metrics,
 )
 from hrsafety.impact.criteria.recorded import recorded_metrics
@@ -25,9 +23,7 @@ __all__ = [
     "channel_filter",
     "clip_3ms",
     "hic",
-    "hic_half_sine",
-    "hic_square",
-    "hic_triangle",
+    "hic_of_pulse",
     "metrics",
     "recorded_metrics",
 ]

@@ -75,9 +75,9 @@ if TYPE_CHECKING:
         def _make(cls, iterable: Iterable[object]) -> Self: ...
         def _replace(self, /, **kwargs: object) -> Self: ...
         def _asdict(self) -> dict[str, Any]: ...
-        def __iter__(self) -> Iterator[Any]: ...  # noqa: D105
-        def __len__(self) -> int: ...  # noqa: D105
-        def __getitem__(self, index: int, /) -> Any: ...  # noqa: D105
+        def __iter__(self) -> Iterator[Any]: ...  # noqa: D105  # those of a tuple
+        def __len__(self) -> int: ...  # noqa: D105  # those of a tuple
+        def __getitem__(self, index: int, /) -> Any: ...  # noqa: D105  # those of a tuple
 
 else:
     LoadRow = namedtuple("LoadRow", (*CRITERIA, "status", "beyond_linear_range"))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple, Self
+from typing import Literal, NamedTuple, Self, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, columns, flag, instance, number
+from hrsafety._arguments import Array, columns, flag, instance, number, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import LoadRow, with_criteria
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
@@ -23,9 +23,7 @@ __all__ = [
     "average_3ms",
     "clip_3ms",
     "hic",
-    "hic_half_sine",
-    "hic_square",
-    "hic_triangle",
+    "hic_of_pulse",
     "metrics",
 ]
 
@@ -34,6 +32,7 @@ STANDARD_GRAVITY = 9.80665
 """In m/s^2."""
 
 Doubts = tuple[ResultWarning, ...]
+PulseShape = Literal["half_sine", "square", "triangle"]
 
 
 @with_criteria("float")
@@ -394,11 +393,13 @@ def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doub
     )
 
 
-def hic_half_sine(peak_g: float, duration: float, window: float = 0.015) -> float:
-    """Return the head injury criterion of a half sine in closed form.
+def hic_of_pulse(shape: PulseShape, peak_g: float, duration: float, window: float = 0.015) -> float:
+    """Return the head injury criterion of a pulse of a known shape in closed form.
 
     Parameters
     ----------
+    shape : {"half_sine", "square", "triangle"}
+        Shape over the time; the triangle is symmetric.
     peak_g : float
         Peak in g.
     duration : float
@@ -414,74 +415,14 @@ def hic_half_sine(peak_g: float, duration: float, window: float = 0.015) -> floa
     Raises
     ------
     InvalidParameterError
-        If a value is not finite, the peak negative, or a time not positive.
+        If the shape is unknown, a value not finite, the peak negative, or a time not positive.
 
     Examples
     --------
     >>> from hrsafety import impact
-    >>> round(impact.criteria.hic_half_sine(100.0, 0.005), 1)
-    207.3
+    >>> [round(impact.criteria.hic_of_pulse(shape, 100.0, 0.005), 1) for shape in ("half_sine", "square", "triangle")]
+    [207.3, 500.0, 123.2]
     """
-    return _hrsafety.hic_half_sine(number("peak_g", peak_g), number("duration", duration), number("window", window))
-
-
-def hic_square(peak_g: float, duration: float, window: float = 0.015) -> float:
-    """Return the head injury criterion of a square pulse in closed form.
-
-    Parameters
-    ----------
-    peak_g : float
-        Height in g.
-    duration : float
-        Length of the pulse in s.
-    window : float
-        Longest window in s.
-
-    Returns
-    -------
-    float
-        The criterion, in s.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is not finite, the peak negative, or a time not positive.
-
-    Examples
-    --------
-    >>> from hrsafety import impact
-    >>> round(impact.criteria.hic_square(100.0, 0.005), 9)
-    500.0
-    """
-    return _hrsafety.hic_square(number("peak_g", peak_g), number("duration", duration), number("window", window))
-
-
-def hic_triangle(peak_g: float, duration: float, window: float = 0.015) -> float:
-    """Return the head injury criterion of a symmetric triangle in closed form.
-
-    Parameters
-    ----------
-    peak_g : float
-        Peak in g.
-    duration : float
-        Length of the pulse in s.
-    window : float
-        Longest window in s.
-
-    Returns
-    -------
-    float
-        The criterion, in s.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a value is not finite, the peak negative, or a time not positive.
-
-    Examples
-    --------
-    >>> from hrsafety import impact
-    >>> round(impact.criteria.hic_triangle(100.0, 0.005), 1)
-    123.2
-    """
-    return _hrsafety.hic_triangle(number("peak_g", peak_g), number("duration", duration), number("window", window))
+    word("shape", shape, get_args(PulseShape))
+    numbers = number("peak_g", peak_g), number("duration", duration), number("window", window)
+    return _hrsafety.hic_of_pulse(shape, *numbers)

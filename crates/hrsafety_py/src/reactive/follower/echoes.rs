@@ -13,6 +13,7 @@ use vff_core::world::shape::PlacedShape;
 use super::{Column, Rows, pairs};
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::Keywords;
 use crate::sensing::firing_of;
 
 /// Stream of a seed for readings outside a run.
@@ -57,40 +58,28 @@ pub struct Sonar(pub Sensors);
 #[pymethods]
 impl Sonar {
     #[new]
-    #[pyo3(signature = (*, forward, spacing, fan, beam_width, rays, least_range, most_range,
-        range_noise, temperature, assumed_temperature, firing, rear))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        forward: f64,
-        spacing: f64,
-        fan: f64,
-        beam_width: f64,
-        rays: usize,
-        least_range: f64,
-        most_range: f64,
-        range_noise: f64,
-        temperature: f64,
-        assumed_temperature: f64,
-        firing: &str,
-        rear: bool,
-    ) -> CoreResult<Self> {
-        let sensors = Sensors {
-            forward,
-            spacing,
-            fan,
-            beam_width,
-            rays,
-            ranging: Ranging {
-                least: least_range,
-                most: most_range,
-                noise: range_noise,
-                temperature,
-                assumed_temperature,
-            },
-            firing: firing_of(firing)?,
-            rear,
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let ranging = Ranging {
+            least: given.take("least_range")?,
+            most: given.take("most_range")?,
+            noise: given.take("range_noise")?,
+            temperature: given.take("temperature")?,
+            assumed_temperature: given.take("assumed_temperature")?,
         };
-        sensors.array()?;
+        let sensors = Sensors {
+            forward: given.take("forward")?,
+            spacing: given.take("spacing")?,
+            fan: given.take("fan")?,
+            beam_width: given.take("beam_width")?,
+            rays: given.take("rays")?,
+            ranging,
+            firing: firing_of(&given.take::<String>("firing")?)?,
+            rear: given.take("rear")?,
+        };
+        given.done()?;
+        sensors.array().map_err(CoreError::from)?;
         Ok(Self(sensors))
     }
 }

@@ -197,7 +197,6 @@ fn in_samples<T: Send>(
 
 /// Delays of M2 and M3 against M1 from samples.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn sound_delays<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -223,7 +222,6 @@ pub fn sound_delays<'py>(
 
 /// Likeness over lag from samples.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn likeness_curves<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -256,7 +254,6 @@ fn trial_columns(py: Python<'_>, found: TrialDelays) -> PyResult<Bound<'_, PyDic
 /// Delays with jitter of the arrivals, the runs of a source side by side.
 #[pyfunction]
 #[pyo3(signature = (array, sources, **given))]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn jittered_sound_delays<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
@@ -286,7 +283,6 @@ pub fn jittered_sound_delays<'py>(
 /// Delays from full waveforms, the runs of a source side by side.
 #[pyfunction]
 #[pyo3(signature = (burst, array, converter, places, options, **given))]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn burst_trial_delays<'py>(
     py: Python<'py>,
     burst: &Burst,
