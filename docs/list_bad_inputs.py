@@ -14,7 +14,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "tests"))
 
 from bad_inputs import BAD_INPUTS, message  # noqa: E402  # from the folder of the line above
-from page_tables import print_or_write  # noqa: E402
+from page_tables import print_or_write  # noqa: E402  # sorted with it
 
 PAGE = REPOSITORY / "docs" / "bad_inputs.md"
 MARKS = "tables of list_bad_inputs.py"

@@ -57,21 +57,8 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_LAZY = frozenset(
-    {
-        "cli",
-        "datasets",
-        "impact",
-        "navigation",
-        "pages",
-        "plausibility",
-        "plotting",
-        "reactive",
-        "reproduce",
-        "scenarios",
-        "sweep",
-    }
-)
+# The sub-modules, which alone are named in small letters.
+_LAZY = frozenset(name for name in __all__ if name.islower() and name != "__version__")
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -12,13 +12,13 @@ import pytest
 
 matplotlib = pytest.importorskip("matplotlib")
 
-from api import namespaces  # noqa: E402
-from api.namespaces import public  # noqa: E402
+from api import namespaces  # noqa: E402  # needs the check above
+from api.namespaces import public  # noqa: E402  # needs the check above
 from hrsafety import impact, plotting, reactive, scenarios, sweep  # noqa: E402  # needs the check above
-from hrsafety import navigation as nav  # noqa: E402
-from hrsafety.plausibility import ResultWarning  # noqa: E402
-from hrsafety.plotting import labels, notes, style  # noqa: E402
-from pictures import assert_readable, box_of, laid_out, legends_of, struck_labels  # noqa: E402
+from hrsafety import navigation as nav  # noqa: E402  # needs the check above
+from hrsafety.plausibility import ResultWarning  # noqa: E402  # needs the check above
+from hrsafety.plotting import labels, notes, style  # noqa: E402  # needs the check above
+from pictures import assert_readable, box_of, laid_out, legends_of, struck_labels  # noqa: E402  # needs the check above
 
 DOUBT = ResultWarning("implausible", "heading", "heading is 90 rad, outside the plausible -6.28 to 6.28 rad")
 LAW = nav.VirtualForceField()

@@ -20,7 +20,7 @@ from matplotlib.colors import to_rgb  # noqa: E402  # needs the check above
 from matplotlib.patches import Circle  # noqa: E402  # needs the check above
 
 from hrsafety.plotting import style  # noqa: E402  # needs the check above
-from hrsafety.plotting.comparisons import law_looks  # noqa: E402
+from hrsafety.plotting.comparisons import law_looks  # noqa: E402  # needs the check above
 
 LAWS: dict[str, nav.Law] = {
     "field": LAW,

@@ -113,8 +113,8 @@ def _obstacle_table(run: nav.Trajectory) -> RunTable:
         (
             index,
             type(obstacle).__name__,
-            decimal(obstacle.critical_radius, 3),  # type: ignore[arg-type]  # every obstacle has regions
-            decimal(obstacle.active_radius, 3),  # type: ignore[arg-type]  # every obstacle has regions
+            decimal(obstacle.critical_radius, 3),
+            decimal(obstacle.active_radius, 3),
             decimal(float(run.min_distance[index]), 3),
             decimal(float(run.min_clearance[index]), 3),
             decimal(float(run.contact_time[index])),

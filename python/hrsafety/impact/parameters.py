@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy.typing as npt
@@ -36,6 +37,12 @@ class _Part(Parameters):
     """A part of an impact: its numbers are looked at when it is made, so that results only pass the doubts on."""
 
     __slots__ = ()
+
+    def _check(self, native: Callable[..., object], owner: str) -> None:
+        """Check mass, damping and stiffness of a mass on a spring, and doubt them."""
+        names = ("mass", "damping", "stiffness")
+        self._set(_native=native(**self._as_numbers(*names)))
+        self._set(warnings=self._doubts(owner, **{name: f"{owner}_{name}" for name in names}))
 
     def _doubts(self, owner: str, **quantities: str) -> tuple[ResultWarning, ...]:
         """Return warnings of its own numbers; zero stiffness and damping are none rather than little."""
@@ -81,9 +88,7 @@ class Manipulator(_Part):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(_native=_hrsafety.Manipulator(**self._as_numbers("mass", "damping", "stiffness")))
-        names = {name: f"manipulator_{name}" for name in ("mass", "damping", "stiffness")}
-        self._set(warnings=self._doubts("manipulator", **names))
+        self._check(_hrsafety.Manipulator, "manipulator")
 
     @classmethod
     def from_joint(cls, *, inertia: float, damping: float, stiffness: float, lever_arm: float) -> Manipulator:
@@ -224,9 +229,7 @@ class Head(_Part):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(_native=_hrsafety.Head(**self._as_numbers("mass", "damping", "stiffness")))
-        names = {name: f"head_{name}" for name in ("mass", "damping", "stiffness")}
-        self._set(warnings=self._doubts("head", **names))
+        self._check(_hrsafety.Head, "head")
 
     @classmethod
     def minimum(cls) -> Head:

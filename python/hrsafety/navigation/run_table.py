@@ -106,6 +106,12 @@ class RunTable(Table):
         Distances to the obstacles at these instants, in m.
     built : AsBuilt or None
         How the robots are built.
+
+    See Also
+    --------
+    Comparison : laws in the same episodes.
+    hrsafety.plotting.repeated_paths : draws the paths of one law in one scenario.
+    hrsafety.plotting.clearances : draws the distribution of the clearances.
     """
 
     law_names: tuple[str, ...]
@@ -381,5 +387,5 @@ def table_of_batch(
         gain_names=law.GAIN_NAMES,
         law_index=np.zeros(rows, dtype=np.int64),
         seed=np.tile(np.array(own, dtype=np.uint64), rows // len(own)),
-        **columns,
+        **columns,  # type: ignore[arg-type]  # each under its own name
     )

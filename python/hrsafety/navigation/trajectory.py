@@ -107,6 +107,12 @@ class Trajectory(Table):
         What was followed.
     tracking : FullSpeedTracking, NonlinearTracking, ExponentialTracking or None
         The law that followed it.
+
+    See Also
+    --------
+    hrsafety.plotting.paths : draws runs.
+    hrsafety.plotting.distances : draws distances to goal and obstacles over time.
+    RunTable : many runs.
     """
 
     # `X | Any`: None in a run after a reference only, which callers that made an episode need not ask.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from hrsafety.errors import HrsafetyError, InvalidParameterError
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from PIL.Image import Image
 
 Frame = npt.NDArray[np.uint8]
@@ -29,6 +32,32 @@ GIF_TICK_MS = 10  # a GIF counts time in hundredths of a second
 COLORS = 64
 NEARLY_WHITE = 244  # pixels from here on are background to the palette
 KEPT_COLORS = (style.RUN_COLORS[0], style.GOAL_COLOR, style.CONTACT_COLOR, style.PERSON_COLORS[0], "#000000", "#FFFFFF")
+
+
+def drawn(figure: Figure, axes: Axes, rows: Iterable[int], shown: Callable[[int], Iterable[Artist]]) -> Iterator[Frame]:
+    """Yield pictures, shape (height, width, 3), in which only what moves is drawn again.
+
+    Parameters
+    ----------
+    figure : Figure
+        With everything that does not move.
+    axes : Axes
+        Where what moves is drawn.
+    rows : iterable of int
+        Rows of the run, one for each picture.
+    shown : callable
+        Puts what moves where it is at a row, and returns its artists from back to front.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    empty = canvas.copy_from_bbox(figure.bbox)
+    for row in rows:
+        canvas.restore_region(empty)
+        for artist in shown(row):
+            axes.draw_artist(artist)
+        yield np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]
 
 
 def checked_target(path: str | os.PathLike[str]) -> Path:

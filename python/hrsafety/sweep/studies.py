@@ -89,7 +89,7 @@ class Study(ABC):
             A column for each of `columns`.
         """
 
-    def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:  # noqa: ARG002 - for studies that look
+    def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:  # noqa: ARG002  # for studies that look
         """Return why rows may not mean what they seem to.
 
         Parameters

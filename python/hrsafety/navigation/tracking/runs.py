@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -152,7 +153,7 @@ def track(
         duration=number("duration", duration),
         goal=_goal(law, goal),
     )
-    return _trajectory(path, law, history)
+    return _trajectory(path, law, dict(history))
 
 
 def track_batch(
@@ -238,7 +239,7 @@ def track_batch(
     return TrackingSummary(levels=heights, **columns)
 
 
-def _trajectory(path: Reference, law: Tracking, history: Mapping[str, Array]) -> Trajectory:
+def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Trajectory:
     """Return the record of a run, in which there are no obstacles."""
     heading, rows = history["heading"], len(history["time"])
     forward = np.stack([np.cos(heading), np.sin(heading)], axis=1)

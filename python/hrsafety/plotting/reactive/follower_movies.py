@@ -87,9 +87,7 @@ def animate_follower(
 
 
 def _frames(run: FollowerRun, rows: Sequence[int], title: str | None) -> Iterator[movies.Frame]:
-    """Yield pictures, shape (height, width, 3): only what moves is drawn again."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
+    """Return the pictures: only what moves is drawn again."""
     limits = view_of([run])
     figure = style.new_figure(
         style.scene_height(limits, titled=title is not None), title=title, dpi=DPI, compressed=True
@@ -97,15 +95,13 @@ def _frames(run: FollowerRun, rows: Sequence[int], title: str | None) -> Iterato
     axes = figure.subplots()
     style.frame_scene(axes, limits)
     axes.plot(*run.source.T, color=LEADER_COLOR, linewidth=1.0, linestyle=":")
-    canvas: Any = FigureCanvasAgg(figure)
-    canvas.draw()
-    empty = canvas.copy_from_bbox(figure.bbox)
-    for row in rows:
-        canvas.restore_region(empty)
+
+    def shown(row: int) -> Iterator[Artist]:
         for artist in _moving(axes, run, row):
-            axes.draw_artist(artist)
+            yield artist
             artist.remove()
-        yield np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]
+
+    return movies.drawn(figure, axes, rows, shown)
 
 
 def _moving(axes: Axes, run: FollowerRun, row: int) -> list[Artist]:

@@ -227,18 +227,13 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
 def _frames(
     run: Trajectory, rows: Sequence[int], ids: Sequence[str], *, regions: bool, title: str | None
 ) -> Iterator[movies.Frame]:
-    """Yield pictures, shape (height, width, 3): only what moves is drawn again."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
+    """Return the pictures: only what moves is drawn again."""
     figure, axes = _background(run, regions=regions, title=title)
-    canvas: Any = FigureCanvasAgg(figure)
     stage = _Stage(axes, run, ids, regions=regions)
     artists = stage.artists()
-    canvas.draw()
-    empty = canvas.copy_from_bbox(figure.bbox)
-    for row in rows:
-        canvas.restore_region(empty)
+
+    def shown(row: int) -> list[Artist]:
         stage.show(row)
-        for artist in artists:
-            axes.draw_artist(artist)
-        yield np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]
+        return artists
+
+    return movies.drawn(figure, axes, rows, shown)
