@@ -4,6 +4,7 @@
 // Whatever comes from Python is converted, or borrowed by a guard that is itself owned.
 #![allow(clippy::needless_pass_by_value)]
 
+mod arm;
 mod arrays;
 mod batch;
 mod built;
@@ -20,6 +21,7 @@ mod reactive;
 mod run;
 mod safe;
 mod sensing;
+mod separation;
 mod signals;
 mod situation;
 mod watch;
@@ -42,6 +44,8 @@ mod _hrsafety {
         module.add("CONTACT_SPEED", vff_core::run::CONTACT_SPEED)
     }
 
+    #[pymodule_export]
+    use crate::arm::{Arm, bare_forces};
     #[pymodule_export]
     use crate::batch::simulate_batch;
     #[pymodule_export]
@@ -128,6 +132,10 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::sensing::{
         Camera, ErrorSource, Estimator, Sensor, Ultrasonic, Vision, steady_gains,
+    };
+    #[pymodule_export]
+    use crate::separation::{
+        StoppingCurve, guard_distance, separation_distances, separation_speeds,
     };
     #[pymodule_export]
     use crate::wheels::{

@@ -8,6 +8,8 @@
 
 pub use numeric::error;
 
+pub mod arm;
+pub mod bare;
 pub mod batch;
 pub mod columns;
 pub mod contact;
@@ -26,6 +28,7 @@ pub mod motion;
 pub mod parameters;
 pub mod response;
 pub mod roots;
+pub mod separation;
 pub mod series;
 pub mod signal;
 pub mod windows;

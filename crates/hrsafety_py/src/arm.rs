@@ -1,0 +1,231 @@
+//! Arms: conversions only, everything is computed by the core.
+
+use impact_core::arm::batch::PointState;
+use impact_core::arm::body::Body;
+use impact_core::arm::mobility::Extremes;
+use impact_core::arm::{self, Broadcast, JointKind, Options, Places};
+use impact_core::bare;
+use nalgebra::{Matrix3, Vector3};
+use numeric::error::Result;
+use numeric::parallel::Work;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::Fields;
+use crate::errors::CoreError;
+use crate::watch::{Control, Report, here, watched};
+
+/// Results that are computed in the calling thread.
+const FEW: usize = 1000;
+
+/// An arm on a base that stands still.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Arm(arm::Arm);
+
+/// Link, mass, center and inertia by rows.
+type Load = (String, f64, [f64; 3], [[f64; 3]; 3]);
+
+#[pymethods]
+impl Arm {
+    #[new]
+    fn new(
+        urdf: &str,
+        payloads: Vec<Load>,
+        armature: Vec<(String, f64)>,
+        locked: Vec<String>,
+    ) -> PyResult<Self> {
+        let payload = |(link, mass, center, rows): Load| arm::Payload {
+            link,
+            body: Body {
+                mass,
+                center: Vector3::from(center),
+                inertia: Matrix3::from_fn(|row, column| rows[row][column]),
+            },
+        };
+        let options = Options {
+            payloads: payloads.into_iter().map(payload).collect(),
+            armature,
+            locked,
+        };
+        let arm = arm::Arm::from_urdf(urdf, &options).map_err(CoreError::from)?;
+        Ok(Self(arm))
+    }
+
+    /// What is known of the arm without a pose.
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (arm, fields) = (&self.0, Fields::new(py));
+        let kind = |kind| match kind {
+            JointKind::Turning => "turning",
+            JointKind::Sliding => "sliding",
+        };
+        let joints = || arm.joints.iter();
+        fields.value("name", &arm.name)?;
+        let names: Vec<&str> = joints().map(|joint| joint.name.as_str()).collect();
+        fields.value("joint_names", names)?;
+        let kinds: Vec<&str> = joints().map(|joint| kind(joint.kind)).collect();
+        fields.value("joint_kinds", kinds)?;
+        fields.vector("lower", joints().map(|joint| joint.limits[0]).collect())?;
+        fields.vector("upper", joints().map(|joint| joint.limits[1]).collect())?;
+        let free: Vec<bool> = joints().map(|joint| joint.column.is_some()).collect();
+        fields.value("free", free)?;
+        let links: Vec<&str> = arm.links.iter().map(|link| link.name.as_str()).collect();
+        fields.value("link_names", links)?;
+        let moved: Vec<bool> = arm
+            .links
+            .iter()
+            .map(|link| link.segment.is_some())
+            .collect();
+        fields.value("moved", moved)?;
+        fields.value("moving_mass", arm.moving_mass)?;
+        fields.value("payload_mass", arm.payload_mass)?;
+        fields.value("iso_mass", arm.iso_mass())?;
+        fields.value("suspicious_links", &arm.suspicious)?;
+        fields.value("has_armature", arm.has_armature)?;
+        Ok(fields.finish())
+    }
+
+    /// Effective masses along directions.
+    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+    fn effective_mass<'py>(
+        &self,
+        py: Python<'py>,
+        given: Given<'py>,
+        directions: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let directions = directions.broadcast(3)?;
+        let found = given.compute(py, &self.0, |places, work| {
+            self.0.effective_masses(places, &directions, work)
+        })?;
+        Ok(found.into_pyarray(py))
+    }
+
+    /// Positions, mobilities, heaviest and lightest directions of points.
+    #[allow(clippy::needless_pass_by_value)] // extracted from a Python object
+    fn point_states<'py>(
+        &self,
+        py: Python<'py>,
+        given: Given<'py>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let found = given.compute(py, &self.0, |places, work| {
+            self.0.point_states(places, work)
+        })?;
+        let (fields, count) = (Fields::new(py), found.len());
+        let vectors = |of: fn(&PointState) -> Vector3<f64>| -> Vec<f64> {
+            found
+                .iter()
+                .flat_map(|state| <[f64; 3]>::from(of(state)))
+                .collect()
+        };
+        let masses = |of: fn(&Extremes) -> f64| -> Vec<f64> {
+            found.iter().map(|state| of(&state.extremes)).collect()
+        };
+        fields.matrix("position", vectors(|state| state.position), count, 3)?;
+        let mobility = found
+            .iter()
+            .flat_map(|state| state.mobility.0.iter().copied());
+        fields.cube("mobility", mobility.collect(), [count, 3, 3])?;
+        fields.vector("worst_mass", masses(|extremes| extremes.worst_mass))?;
+        fields.vector("least_mass", masses(|extremes| extremes.least_mass))?;
+        let worst = vectors(|state| state.extremes.worst_direction);
+        fields.matrix("worst_direction", worst, count, 3)?;
+        let least = vectors(|state| state.extremes.least_direction);
+        fields.matrix("least_direction", least, count, 3)?;
+        Ok(fields.finish())
+    }
+
+    /// Velocities of points for rates of all joints.
+    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+    fn velocities<'py>(
+        &self,
+        py: Python<'py>,
+        given: Given<'py>,
+        rates: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let rates = rates.broadcast(self.0.joints.len())?;
+        let found = given.compute(py, &self.0, |places, work| {
+            self.0.velocities(places, &rates, work)
+        })?;
+        let numbers: Vec<f64> = found.into_iter().flat_map(<[f64; 3]>::from).collect();
+        Ok(numbers.into_pyarray(py))
+    }
+}
+
+/// Numbers by rows, and how many rows apart neighbors along each axis of the result are.
+#[derive(FromPyObject)]
+pub struct Rows<'py>(PyReadonlyArray1<'py, f64>, Vec<usize>);
+
+impl Rows<'_> {
+    fn broadcast(&self, width: usize) -> PyResult<Broadcast<'_>> {
+        Ok(Broadcast {
+            rows: self.0.as_slice()?,
+            width,
+            strides: &self.1,
+        })
+    }
+}
+
+/// Arguments of all functions of points.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Given<'py> {
+    link: String,
+    joints: Rows<'py>,
+    points: Rows<'py>,
+    shape: Vec<usize>,
+    check_limits: bool,
+    threads: Option<usize>,
+}
+
+impl Given<'_> {
+    /// Computes without the interpreter, which is asked for Ctrl-C meanwhile.
+    fn compute<T: Send>(
+        &self,
+        py: Python<'_>,
+        arm: &arm::Arm,
+        of: impl FnOnce(&Places<'_>, Work<'_>) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        let places = Places {
+            link: arm.link(&self.link).map_err(CoreError::from)?,
+            joints: self.joints.broadcast(arm.joints.len())?,
+            points: self.points.broadcast(3)?,
+            shape: &self.shape,
+            check_limits: self.check_limits,
+        };
+        let threads = self.threads;
+        let count: usize = self.shape.iter().product();
+        let run = |control: &Control<'_>| {
+            let work = Work {
+                threads,
+                interrupted: &|| control.interrupted(),
+                progress: &|done| control.count(done),
+            };
+            of(&places, work)
+        };
+        // A few poses take less time than a thread.
+        if count <= FEW {
+            here(py, Report::none(), run)
+        } else {
+            watched(py, Report::none(), run)
+        }
+    }
+}
+
+/// Contact forces of closing speeds on a linear region without a covering.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
+pub fn bare_forces<'py>(
+    py: Python<'py>,
+    closing_speed: PyReadonlyArray1<'py, f64>,
+    robot_mass: PyReadonlyArray1<'py, f64>,
+    body_mass: f64,
+    stiffness: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let pairs = closing_speed.as_slice()?.iter().zip(robot_mass.as_slice()?);
+    let forces: Vec<f64> = pairs
+        .map(|(speed, mass)| {
+            bare::peak_force(*speed, bare::reduced_mass(*mass, body_mass), stiffness)
+        })
+        .collect();
+    Ok(forces.into_pyarray(py))
+}

@@ -1,0 +1,272 @@
+//! Makes an arm of what a URDF says and of what it does not hold.
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
+use numeric::error::{Failure, Given, Result, not_negative};
+
+use super::body::{Body, LEAST_GYRATION};
+use super::description::{Description, Kind};
+use super::model::{Arm, Joint, JointKind, Link, Segment};
+use super::pose;
+use super::tree::Tree;
+
+/// Most joints that move: their mass matrix is kept whole.
+pub const MOST_MOVING: usize = 256;
+
+/// Something that a link carries.
+#[derive(Clone, Debug)]
+pub struct Payload {
+    /// The link.
+    pub link: String,
+    /// Mass, center of mass in the frame of the link, inertia about it along its axes.
+    pub body: Body,
+}
+
+/// What a URDF does not hold.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// What the arm carries.
+    pub payloads: Vec<Payload>,
+    /// Reflected motor inertia `n^2 J_m` by joint (kg m^2, or kg where the joint slides).
+    pub armature: Vec<(String, f64)>,
+    /// Joints that keep their value.
+    pub locked: Vec<String>,
+}
+
+impl Arm {
+    /// Makes an arm of what a URDF says.
+    ///
+    /// # Errors
+    /// An element of the URDF or an option breaks a rule, which the error names.
+    pub fn from_urdf(text: &str, options: &Options) -> Result<Self> {
+        let description = Description::read(text)?;
+        let tree = Tree::of(&description)?;
+        let mut builder = Builder::new(&description, &tree, options)?;
+        builder.hang()?;
+        let mut arm = builder.finish()?;
+        arm.load(&options.payloads)?;
+        pose::refuse_massless(&arm)?;
+        Ok(arm)
+    }
+
+    /// Adds what the arm carries.
+    fn load(&mut self, payloads: &[Payload]) -> Result<()> {
+        for (index, payload) in payloads.iter().enumerate() {
+            let owner = if payloads.len() == 1 {
+                "payload".to_owned()
+            } else {
+                format!("payload[{index}]")
+            };
+            let link = self
+                .link(&payload.link)
+                .map_err(|failure| failure.within(&owner))?;
+            let link = &self.links[link];
+            let body = payload
+                .body
+                .checked()
+                .map_err(|failure| failure.within(&owner))?;
+            let Some(segment) = link.segment else {
+                let rule = "name a link that a joint moves";
+                let given = Given::Word(payload.link.clone());
+                return Err(Failure::invalid("link", rule, given).within(&owner));
+            };
+            self.segments[segment].add(&body.placed(&link.frame));
+            self.payload_mass += body.mass;
+        }
+        Ok(())
+    }
+}
+
+/// An arm while it is made.
+struct Builder<'a> {
+    description: &'a Description,
+    tree: &'a Tree,
+    options: &'a Options,
+    /// Index among the joints that take values, by joint of the file.
+    value: Vec<Option<usize>>,
+    joints: Vec<Joint>,
+    segments: Vec<Segment>,
+    /// Where each link hangs.
+    places: Vec<(Option<usize>, Isometry3<f64>)>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(description: &'a Description, tree: &'a Tree, options: &'a Options) -> Result<Self> {
+        let all = &description.joints;
+        let moving = all.iter().filter(|joint| joint.kind != Kind::Fixed).count();
+        numeric::error::at_most("number of joints that move", moving, MOST_MOVING)?;
+        known("locked", options.locked.iter(), description)?;
+        known(
+            "armature",
+            options.armature.iter().map(|(name, _)| name),
+            description,
+        )?;
+        let mut value = vec![None; all.len()];
+        let mut joints = Vec::new();
+        let mut free = 0;
+        for (index, joint) in all.iter().enumerate() {
+            let kind = match joint.kind {
+                Kind::Fixed => continue,
+                _ if tree.source[index].0 != index => continue,
+                Kind::Turning => JointKind::Turning,
+                Kind::Sliding => JointKind::Sliding,
+            };
+            let locked = options.locked.contains(&joint.name);
+            value[index] = Some(joints.len());
+            joints.push(Joint {
+                name: joint.name.clone(),
+                kind,
+                limits: joint.limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+                column: (!locked).then_some(free),
+            });
+            free += usize::from(!locked);
+        }
+        Ok(Self {
+            description,
+            tree,
+            options,
+            value,
+            joints,
+            segments: Vec::new(),
+            places: vec![(None, Isometry3::identity()); description.links.len()],
+        })
+    }
+
+    /// Hangs every link on its segment.
+    fn hang(&mut self) -> Result<()> {
+        for &index in &self.tree.order {
+            let joint = &self.description.joints[index];
+            let (parent, frame) = self.places[self.tree.parent[index]];
+            let stands = frame * joint.origin;
+            self.places[self.tree.child[index]] = match joint.kind {
+                Kind::Fixed => (parent, stands),
+                Kind::Turning => self.segment(index, parent, &stands, JointKind::Turning)?,
+                Kind::Sliding => self.segment(index, parent, &stands, JointKind::Sliding)?,
+            };
+        }
+        Ok(())
+    }
+
+    /// Adds a segment, and returns where the link behind its joint hangs.
+    fn segment(
+        &mut self,
+        index: usize,
+        parent: Option<usize>,
+        stands: &Isometry3<f64>,
+        kind: JointKind,
+    ) -> Result<(Option<usize>, Isometry3<f64>)> {
+        let joint = &self.description.joints[index];
+        let (source, multiplier, addend) = self.tree.source[index];
+        let Some(value) = self.value[source] else {
+            let given = Given::Word(joint.name.clone());
+            return Err(Failure::invalid("joint", "have a value", given));
+        };
+        let upright = upright(&joint.axis);
+        let turned = stands.rotation.to_rotation_matrix() * upright;
+        let armature = self
+            .options
+            .armature
+            .iter()
+            .filter(|(name, _)| *name == joint.name);
+        let mut total = 0.0;
+        for (name, given) in armature {
+            total += not_negative(&format!("armature[{name:?}]"), *given)?;
+        }
+        self.segments.push(Segment {
+            joint_name: joint.name.clone(),
+            parent,
+            rotation: turned.into_inner(),
+            offset: stands.translation.vector,
+            kind,
+            source: value,
+            multiplier,
+            addend,
+            own_limits: joint.limits.filter(|_| source != index),
+            column: self.joints[value].column,
+            mass: 0.0,
+            moment: Vector3::zeros(),
+            inertia: Matrix3::zeros(),
+            armature: total,
+        });
+        let frame = Isometry3::from_parts(Vector3::zeros().into(), upright.inverse().into());
+        Ok((Some(self.segments.len() - 1), frame))
+    }
+
+    /// Puts the inertias of the links where they hang.
+    fn finish(mut self) -> Result<Arm> {
+        let mut suspicious = Vec::new();
+        let mut moving_mass = 0.0;
+        for (text, (segment, frame)) in self.description.links.iter().zip(&self.places) {
+            let Some(segment) = segment else { continue };
+            self.segments[*segment].add(&text.body.placed(frame));
+            moving_mass += text.body.mass;
+            if text
+                .body
+                .gyration()
+                .is_some_and(|radius| radius < LEAST_GYRATION)
+            {
+                suspicious.push(text.name.clone());
+            }
+        }
+        numeric::error::finite("mass of all links", moving_mass)?;
+        let links = self.description.links.iter().zip(self.places);
+        Ok(Arm {
+            name: self.description.name.clone(),
+            free: self
+                .joints
+                .iter()
+                .filter(|joint| joint.column.is_some())
+                .count(),
+            joints: self.joints,
+            links: links
+                .map(|(text, (segment, frame))| Link {
+                    name: text.name.clone(),
+                    segment,
+                    frame,
+                })
+                .collect(),
+            segments: self.segments,
+            moving_mass,
+            payload_mass: 0.0,
+            suspicious,
+            has_armature: self.options.armature.iter().any(|(_, value)| *value > 0.0),
+        })
+    }
+}
+
+/// A rotation that turns the z axis into a unit vector.
+fn upright(axis: &Vector3<f64>) -> Rotation3<f64> {
+    if *axis == Vector3::z() {
+        return Rotation3::identity();
+    }
+    let aside = match axis.iamin() {
+        0 => Vector3::x(),
+        1 => Vector3::y(),
+        _ => Vector3::z(),
+    };
+    let x = aside.cross(axis).normalize();
+    let y = axis.cross(&x);
+    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, *axis]))
+}
+
+/// Refuses names that no joint has, and names that stand there twice.
+fn known<'n>(
+    option: &str,
+    names: impl Iterator<Item = &'n String> + Clone,
+    description: &Description,
+) -> Result<()> {
+    for (index, name) in names.clone().enumerate() {
+        let joint = description.joints.iter().find(|joint| joint.name == *name);
+        let rule = match joint {
+            None => "name joints of the arm",
+            Some(joint) if joint.kind == Kind::Fixed => "name joints that move",
+            Some(_) if names.clone().take(index).any(|other| other == name) => "name a joint once",
+            Some(_) => continue,
+        };
+        return Err(Failure::invalid(
+            option.to_owned(),
+            rule,
+            Given::Word(name.clone()),
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,298 @@
+//! What a URDF says of links and joints, each element checked by itself.
+
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use numeric::error::{Failure, Given, Result, at_most};
+use roxmltree::{Document, Node, ParsingOptions};
+
+use super::body::Body;
+use super::element::{Element, elements};
+
+/// Most bytes of a URDF: a thousand times what an arm needs.
+pub const MOST_BYTES: usize = 1 << 25;
+
+/// Most links, and most joints.
+pub const MOST_LINKS: usize = 10_000;
+
+/// A link: its name and its inertia in its own frame.
+#[derive(Clone, Debug)]
+pub struct LinkText {
+    /// Name.
+    pub name: String,
+    /// Inertia in the frame of the link; none without `inertial`.
+    pub body: Body,
+}
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// About its axis.
+    Turning,
+    /// Along its axis.
+    Sliding,
+    /// Not at all.
+    Fixed,
+}
+
+/// A joint that follows another one.
+#[derive(Clone, Debug)]
+pub struct Mimic {
+    /// Name of the other one.
+    pub joint: String,
+    /// Factor of its value.
+    pub multiplier: f64,
+    /// What is added.
+    pub offset: f64,
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct JointText {
+    /// Name.
+    pub name: String,
+    /// How it moves.
+    pub kind: Kind,
+    /// Names of the links that it connects.
+    pub parent: String,
+    /// The link that it moves.
+    pub child: String,
+    /// Where its frame stands in that of the parent, at zero.
+    pub origin: Isometry3<f64>,
+    /// Unit axis in its frame.
+    pub axis: Vector3<f64>,
+    /// Least and largest value; none where the joint may take any.
+    pub limits: Option<[f64; 2]>,
+    /// What it follows.
+    pub mimic: Option<Mimic>,
+}
+
+/// All that matters here of a URDF.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// Name of the robot, empty without one.
+    pub name: String,
+    /// Links in the order of the file.
+    pub links: Vec<LinkText>,
+    /// Joints in the order of the file.
+    pub joints: Vec<JointText>,
+}
+
+const ROBOT: [&str; 5] = ["link", "joint", "material", "transmission", "gazebo"];
+const LINK: [&str; 4] = ["inertial", "visual", "collision", "contact"];
+const JOINT: [&str; 9] = [
+    "parent",
+    "child",
+    "origin",
+    "axis",
+    "limit",
+    "dynamics",
+    "calibration",
+    "mimic",
+    "safety_controller",
+];
+const LIMIT: [&str; 7] = [
+    "lower",
+    "upper",
+    "effort",
+    "velocity",
+    "acceleration",
+    "deceleration",
+    "jerk",
+];
+
+impl Description {
+    /// Reads a URDF.
+    ///
+    /// # Errors
+    /// It is no XML, no URDF, or an element of it breaks a rule, which the error names.
+    pub fn read(text: &str) -> Result<Self> {
+        at_most("urdf", text.len(), MOST_BYTES)?;
+        let options = ParsingOptions {
+            nodes_limit: 1 << 22,
+            ..ParsingOptions::default()
+        };
+        let document =
+            Document::parse_with_options(text, options).map_err(|error| no_xml(&error))?;
+        let root = document.root_element();
+        if root.tag_name().name() != "robot" {
+            let given = Given::Word(root.tag_name().name().to_owned());
+            return Err(Failure::invalid("root element", "be <robot>", given));
+        }
+        refuse_xacro(&document)?;
+        Element::root(root).spelled(&ROBOT)?;
+        let all =
+            |kind: &'static str| elements(root).filter(move |each| each.tag_name().name() == kind);
+        at_most("number of links", all("link").count(), MOST_LINKS)?;
+        at_most("number of joints", all("joint").count(), MOST_LINKS)?;
+        Ok(Self {
+            name: root.attribute("name").unwrap_or_default().to_owned(),
+            links: all("link").map(link).collect::<Result<_>>()?,
+            joints: all("joint").map(joint).collect::<Result<_>>()?,
+        })
+    }
+}
+
+fn no_xml(error: &roxmltree::Error) -> Failure {
+    let found = Given::Found(error.to_string().into());
+    let failure = Failure::invalid("urdf", "be well-formed XML without a document type", found);
+    match error {
+        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
+            failure.mended_by("expand xacro first: xacro robot.urdf.xacro > robot.urdf")
+        }
+        _ => failure,
+    }
+}
+
+/// Refuses macros that nobody has expanded.
+fn refuse_xacro(document: &Document<'_>) -> Result<()> {
+    for node in document.descendants().filter(Node::is_element) {
+        let of_xacro = node
+            .tag_name()
+            .namespace()
+            .is_some_and(|space| space.contains("xacro"));
+        let macros = node
+            .attributes()
+            .find(|each| each.value().contains("${") || each.value().contains("$("));
+        let found = match macros {
+            Some(attribute) => format!("{}=\"{}\"", attribute.name(), attribute.value()),
+            None if of_xacro => format!("<xacro:{}>", node.tag_name().name()),
+            None => continue,
+        };
+        let line = document.text_pos_at(node.range().start).row;
+        let place = format!("{} in line {line}", node.tag_name().name());
+        let failure = Failure::invalid(place, "hold no macros of xacro", Given::Word(found));
+        return Err(failure.mended_by("expand them first: xacro robot.urdf.xacro > robot.urdf"));
+    }
+    Ok(())
+}
+
+fn link(node: Node<'_, '_>) -> Result<LinkText> {
+    let (element, name) = Element::named(node)?;
+    element.spelled(&LINK)?;
+    let body = match element.child("inertial")? {
+        Some(inertial) => body(&inertial).map_err(|failure| about(failure, &name))?,
+        None => Body::default(),
+    };
+    Ok(LinkText { name, body })
+}
+
+/// Puts the name of its link before what only knows that a number is wrong.
+fn about(failure: Failure, link: &str) -> Failure {
+    match failure {
+        Failure::InvalidParameter { ref name, .. } if name.starts_with("link") => failure,
+        other => other.within(&format!("link {link:?}")),
+    }
+}
+
+fn body(inertial: &Element<'_, '_>) -> Result<Body> {
+    inertial.spelled(&["origin", "mass", "inertia"])?;
+    let mass = inertial.needed("mass")?;
+    mass.only(&["value"])?;
+    let inertia = inertial.needed("inertia")?;
+    inertia.only(&["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])?;
+    let [xx, xy, xz] = ["ixx", "ixy", "ixz"].map(|name| inertia.number(name));
+    let [yy, yz, zz] = ["iyy", "iyz", "izz"].map(|name| inertia.number(name));
+    let (xx, xy, xz, yy, yz, zz) = (xx?, xy?, xz?, yy?, yz?, zz?);
+    let own = Body {
+        mass: mass.number("value")?,
+        center: Vector3::zeros(),
+        inertia: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+    };
+    Ok(own.checked()?.placed(&origin(inertial)?))
+}
+
+/// Where something stands: `rpy` turns about the fixed axes x, y, z in this order.
+fn origin(owner: &Element<'_, '_>) -> Result<Isometry3<f64>> {
+    let Some(origin) = owner.child("origin")? else {
+        return Ok(Isometry3::identity());
+    };
+    origin.only(&["xyz", "rpy"])?;
+    let place = origin.vector_or("xyz", Vector3::zeros())?;
+    let turn = origin.vector_or("rpy", Vector3::zeros())?;
+    let turned = UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z);
+    Ok(Isometry3::from_parts(Translation3::from(place), turned))
+}
+
+fn joint(node: Node<'_, '_>) -> Result<JointText> {
+    let (element, name) = Element::named(node)?;
+    element.spelled(&JOINT)?;
+    let word = element.word("type")?;
+    let kind = match word.as_str() {
+        "revolute" | "continuous" => Kind::Turning,
+        "prismatic" => Kind::Sliding,
+        "fixed" => Kind::Fixed,
+        "floating" | "planar" => {
+            let rule = "be revolute, continuous, prismatic or fixed: the base stands still here";
+            return Err(element.refused("type", rule, Given::Word(word)));
+        }
+        _ => {
+            let rule = "be \"revolute\", \"continuous\", \"prismatic\" or \"fixed\"";
+            return Err(element.refused("type", rule, Given::Word(word)));
+        }
+    };
+    Ok(JointText {
+        kind,
+        parent: linked(&element, "parent")?,
+        child: linked(&element, "child")?,
+        origin: origin(&element)?,
+        axis: axis(&element, kind)?,
+        limits: limits(&element, &word)?,
+        mimic: mimic(&element)?,
+        name,
+    })
+}
+
+fn linked(joint: &Element<'_, '_>, end: &str) -> Result<String> {
+    let end = joint.needed(end)?;
+    end.only(&["link"])?;
+    end.word("link")
+}
+
+/// Unit axis, x by default.
+fn axis(joint: &Element<'_, '_>, kind: Kind) -> Result<Vector3<f64>> {
+    let Some(axis) = joint.child("axis")? else {
+        return Ok(Vector3::x());
+    };
+    if kind == Kind::Fixed {
+        return Ok(Vector3::x());
+    }
+    axis.only(&["xyz"])?;
+    let given = axis.vector_or("xyz", Vector3::x())?;
+    // Scaled first, so that the square of a small or large number is a number.
+    let largest = given.amax();
+    if largest == 0.0 {
+        let found = Given::Word("0 0 0".to_owned());
+        return Err(axis.refused("xyz", "not be zero where the joint moves", found));
+    }
+    Ok((given / largest).normalize())
+}
+
+fn limits(joint: &Element<'_, '_>, kind: &str) -> Result<Option<[f64; 2]>> {
+    let Some(limit) = joint.child("limit")? else {
+        return Ok(None);
+    };
+    limit.only(&LIMIT)?;
+    let [lower, upper] = [
+        limit.number_or("lower", 0.0)?,
+        limit.number_or("upper", 0.0)?,
+    ];
+    if !matches!(kind, "revolute" | "prismatic") {
+        return Ok(None);
+    }
+    if lower > upper {
+        let rule = format!("be at least lower ({lower:?})");
+        return Err(limit.refused("upper", rule, Given::Number(upper)));
+    }
+    Ok(Some([lower, upper]))
+}
+
+fn mimic(joint: &Element<'_, '_>) -> Result<Option<Mimic>> {
+    let Some(mimic) = joint.child("mimic")? else {
+        return Ok(None);
+    };
+    mimic.only(&["joint", "multiplier", "offset"])?;
+    Ok(Some(Mimic {
+        joint: mimic.word("joint")?,
+        multiplier: mimic.number_or("multiplier", 1.0)?,
+        offset: mimic.number_or("offset", 0.0)?,
+    }))
+}

@@ -1,0 +1,27 @@
+//! Arms as trees of joints: what mass a point of an arm has for whom it hits.
+//!
+//! At a point that is fixed to a link, with world axes, the mobility is
+//! $L = J_v M^{-1} J_v^T$ (1/kg), and the effective mass along a unit vector $u$ is
+//! $m_u = 1/(u^T L u)$. $M$ is the joint-space mass matrix, by the composite-rigid-body algorithm
+//! (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, section 6.2), $J_v$ the Jacobian of
+//! the velocity of the point. Joints that mimic others fold both: $M' = G^T M G$, $J' = J G$.
+//!
+//! `element` reads XML elements, `description` what a URDF says, `tree` checks how its links hang
+//! together, `body` holds inertias, `build` makes
+//! the `model` of the arm; `pose` is the kernel, `mobility`
+//! what follows from $L$, `batch` does both for arrays.
+
+pub mod batch;
+pub mod body;
+pub mod build;
+pub mod description;
+mod element;
+pub mod mobility;
+pub mod model;
+pub mod pose;
+mod tree;
+
+pub use batch::{Broadcast, Places};
+pub use build::{Options, Payload};
+pub use mobility::Mobility;
+pub use model::{Arm, JointKind};

@@ -1,0 +1,133 @@
+//! An arm that is ready for its kernel: bodies from the base outwards, each moved by one joint.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use numeric::error::{Failure, Given, Result};
+
+use super::body::Body;
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// About its axis; values in rad.
+    Turning,
+    /// Along its axis; values in m.
+    Sliding,
+}
+
+/// A joint that takes a value of the caller.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Name.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Least and largest value, infinite without limits.
+    pub limits: [f64; 2],
+    /// Its column of the mass matrix; none if it is locked.
+    pub column: Option<usize>,
+}
+
+/// A link: where it hangs.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Name.
+    pub name: String,
+    /// The segment that it belongs to; none for what stands still.
+    pub segment: Option<usize>,
+    /// Where it stands in the frame of the segment, or in the world.
+    pub frame: Isometry3<f64>,
+}
+
+/// Links that a joint moves as one body. The axis of the joint is the z axis of its frame.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// Name of the joint.
+    pub joint_name: String,
+    /// The segment before it; none if that stands still.
+    pub parent: Option<usize>,
+    /// Rotation from its frame at zero to that of the parent.
+    pub rotation: Matrix3<f64>,
+    /// Its origin at zero in the frame of the parent (m).
+    pub offset: Vector3<f64>,
+    /// How its joint moves.
+    pub kind: JointKind,
+    /// The joint whose value it takes.
+    pub source: usize,
+    /// Factor of that value, and what is added.
+    pub multiplier: f64,
+    /// See `multiplier`.
+    pub addend: f64,
+    /// Limits of its own where it mimics another joint.
+    pub own_limits: Option<[f64; 2]>,
+    /// Column of the mass matrix; none if the joint is locked.
+    pub column: Option<usize>,
+    /// Mass (kg), first moment (kg m) and inertia about the origin (kg m^2) in its frame.
+    pub mass: f64,
+    /// See `mass`.
+    pub moment: Vector3<f64>,
+    /// See `mass`.
+    pub inertia: Matrix3<f64>,
+    /// Reflected motor inertia.
+    pub armature: f64,
+}
+
+/// An arm on a base that stands still.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// Name in the file.
+    pub name: String,
+    /// Joints that take values, in the order of the file.
+    pub joints: Vec<Joint>,
+    /// Links in the order of the file.
+    pub links: Vec<Link>,
+    /// Bodies that joints move, from the base outwards.
+    pub segments: Vec<Segment>,
+    /// Joints that are not locked.
+    pub free: usize,
+    /// Mass of all links that some joint moves, locked or not, without payload (kg).
+    pub moving_mass: f64,
+    /// Mass of the payload (kg).
+    pub payload_mass: f64,
+    /// Links whose radius of gyration is below 2 mm.
+    pub suspicious: Vec<String>,
+    /// Whether some joint has a motor inertia.
+    pub has_armature: bool,
+}
+
+impl Arm {
+    /// Mass of the robot by ISO/TS 15066: half of the moving mass, and the payload (kg).
+    #[must_use]
+    pub fn iso_mass(&self) -> f64 {
+        0.5 * self.moving_mass + self.payload_mass
+    }
+
+    /// The link of a name.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn link(&self, name: &str) -> Result<usize> {
+        let found = self.links.iter().position(|link| link.name == name);
+        found.ok_or_else(|| {
+            Failure::invalid(
+                "link",
+                "name a link of the arm",
+                Given::Word(name.to_owned()),
+            )
+        })
+    }
+}
+
+impl Segment {
+    /// Adds a body in the frame of the segment.
+    pub fn add(&mut self, body: &Body) {
+        let Body {
+            mass,
+            center,
+            inertia,
+        } = body;
+        self.mass += mass;
+        self.moment += *mass * center;
+        self.inertia += inertia
+            + (Matrix3::identity() * center.norm_squared() - center * center.transpose()) * *mass;
+    }
+}
