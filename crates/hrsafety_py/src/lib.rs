@@ -15,6 +15,7 @@ mod gains;
 mod impact;
 mod keywords;
 mod laws;
+mod maps;
 mod parameters;
 mod python_law;
 mod reactive;
@@ -92,6 +93,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::laws::Law;
+    #[pymodule_export]
+    use crate::maps::{Guide, Lidar, Plan, StaticMap, check_takeover, squared_cell_distances};
     #[pymodule_export]
     use crate::parameters::{
         DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, region_radii,

@@ -15,6 +15,7 @@ use vff_core::world::frame::Frame;
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{Keywords, taken};
+use crate::maps::Lidar;
 use crate::parameters::{Scenario, word};
 use crate::watch::{Control, Report, watched};
 
@@ -350,6 +351,12 @@ impl Sensor {
     #[staticmethod]
     fn ultrasonic(array: &Ultrasonic) -> Self {
         Self(SensorOptions::Ultrasonic(array.0.clone()))
+    }
+
+    /// Rides on the robot.
+    #[staticmethod]
+    fn lidar(lidar: &Lidar) -> Self {
+        Self(SensorOptions::Lidar(lidar.0.clone()))
     }
 }
 

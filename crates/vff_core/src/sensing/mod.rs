@@ -3,6 +3,7 @@
 pub mod camera;
 pub(crate) mod cameras;
 pub mod estimator;
+pub mod lidar;
 mod linearized;
 mod marks;
 pub mod measurement;
@@ -18,6 +19,7 @@ pub mod vision;
 
 pub use camera::{Camera, CameraPose, Lens};
 pub use estimator::{Estimate, Estimator, Track};
+pub use lidar::Lidar;
 pub use linearized::{LinearizedCamera, PARAMETERS};
 pub use options::SensorOptions;
 pub use sensor::{Located, Sensor, Truth};

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::sensing::cameras::{ObstacleCamera, RobotCamera};
+use crate::sensing::lidar::{Lidar, Scans};
 use crate::sensing::sensor::Sensor;
 use crate::sensing::ultrasonic::{Echoes, Ultrasonic};
 use crate::sensing::vision::Vision;
@@ -17,6 +18,8 @@ pub enum SensorOptions {
     ObstacleCamera(Vision),
     /// Ultrasonic sensors on the robot.
     Ultrasonic(Ultrasonic),
+    /// A lidar on the robot.
+    Lidar(Lidar),
 }
 
 impl SensorOptions {
@@ -35,6 +38,7 @@ impl SensorOptions {
             Self::RobotCamera(vision) => Box::new(RobotCamera::new(scenario, vision, mark)?),
             Self::ObstacleCamera(vision) => Box::new(ObstacleCamera::new(scenario, vision)?),
             Self::Ultrasonic(array) => Box::new(Echoes::new(scenario, array, index)?),
+            Self::Lidar(lidar) => Box::new(Scans::new(scenario, lidar, index)?),
         })
     }
 
@@ -43,7 +47,7 @@ impl SensorOptions {
     pub fn is_camera(&self) -> bool {
         match self {
             Self::RobotCamera(_) | Self::ObstacleCamera(_) => true,
-            Self::Ultrasonic(_) => false,
+            Self::Ultrasonic(_) | Self::Lidar(_) => false,
         }
     }
 }

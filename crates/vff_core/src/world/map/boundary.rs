@@ -15,7 +15,7 @@ const SPARE: f64 = 1e-9;
 
 /// Half planes behind the boundary points found so far: `n.b >= offset`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Beyond {
+pub(crate) struct Beyond {
     planes: [(Vector2<f64>, f64); MOST_POINTS],
     count: usize,
 }
@@ -35,7 +35,7 @@ impl Beyond {
     }
 
     /// Drops what lies behind a boundary point, seen from a place.
-    fn drop_behind(&mut self, place: Vector2<f64>, point: Vector2<f64>, kappa: f64) {
+    pub(crate) fn drop_behind(&mut self, place: Vector2<f64>, point: Vector2<f64>, kappa: f64) {
         let to = point - place;
         let distance = to.norm();
         if distance > 0.0 && self.count < MOST_POINTS {
@@ -46,7 +46,7 @@ impl Beyond {
         }
     }
 
-    fn hide(&self, point: Vector2<f64>) -> bool {
+    pub(crate) fn hide(&self, point: Vector2<f64>) -> bool {
         let mut planes = self.planes().iter();
         planes.any(|(normal, offset)| normal.dot(&point) >= *offset)
     }

@@ -15,7 +15,7 @@ const DEEPEST: usize = 64;
 const SPARE: f64 = 1e-12;
 
 /// A box along the axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     pub lower: Vector2<f64>,
     pub upper: Vector2<f64>,
@@ -126,7 +126,7 @@ impl Bounds {
 }
 
 /// A box of the tree. The first child of an inner one follows it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
     bounds: Bounds,
     /// First capsule of a leaf, or second child of an inner box.
@@ -136,7 +136,7 @@ struct Node {
 }
 
 /// The tree; it has brought the capsules into its order.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
     nodes: Vec<Node>,
     pub capsules: Vec<Capsule>,

@@ -18,6 +18,7 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result, at_most, finite_pair, not_negative, positive};
 use crate::world::map::grid::Cells;
 use crate::world::map::index::Index;
+pub(crate) use boundary::Beyond;
 pub use boundary::{MOST_POINTS, checked_kappa};
 pub use capsule::Capsule;
 pub use grid::{GridPlace, MOST_CELLS};
@@ -26,12 +27,12 @@ pub use grid::{GridPlace, MOST_CELLS};
 pub const MOST_SEGMENTS: usize = 1 << 23;
 
 /// A map of what stands still.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StaticMap {
     parts: Arc<Parts>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 struct Parts {
     index: Index,
     /// Whether some segments are edges of filled outlines.
@@ -135,6 +136,13 @@ impl MapShapes {
                 grids: self.grids,
             }),
         }
+    }
+}
+
+impl Default for StaticMap {
+    /// A map with nothing in it.
+    fn default() -> Self {
+        MapShapes::new().map()
     }
 }
 

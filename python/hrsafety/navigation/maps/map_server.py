@@ -1,0 +1,136 @@
+"""Maps of the ROS map server: a YAML file beside a PGM image."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import positive, readable, word
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.maps.pgm import read_pgm
+
+__all__ = ["ServedMap", "read_map_server"]
+
+MOST_BYTES = 1 << 20  # of a YAML file
+_ENTRY = re.compile(r"(\w+)\s*:\s*(.*)")
+_NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
+
+
+class ServedMap(NamedTuple):
+    """An occupancy grid with its place."""
+
+    occupied: npt.NDArray[np.bool_]
+    resolution: float
+    origin: tuple[float, float]
+    yaw: float
+
+
+def read_map_server(path: str | Path, *, unknown: str = "occupied") -> ServedMap:
+    """Return the grid that a YAML file describes; row 0 has the lowest y."""
+    fills = word("unknown", unknown, ("occupied", "free")) == "occupied"
+    file = readable("path", Path(path))
+    entries = _entries(file)
+    for key in _NEEDED:
+        if key not in entries:
+            raise InvalidParameterError(key, f"stand in {file.name}", Shown("nothing"))
+    if entries.get("mode", "trinary") not in ("trinary", "scale"):
+        raise InvalidParameterError("mode", 'be "trinary" or "scale"', entries["mode"])
+    resolution = positive("resolution", _number(entries, "resolution"))
+    free, occupied = _number(entries, "free_thresh"), _number(entries, "occupied_thresh")
+    if not 0.0 <= free <= occupied <= 1.0:
+        shown = Shown(f"free_thresh {free!r} and occupied_thresh {occupied!r}")
+        raise InvalidParameterError("thresholds", "be 0 <= free_thresh <= occupied_thresh <= 1", shown)
+    x, y, yaw = _origin(entries["origin"])
+    negate = _number(entries, "negate") if "negate" in entries else 0.0
+    if negate not in (0.0, 1.0):
+        raise InvalidParameterError("negate", "be 0 or 1", negate)
+    gray = read_pgm(_image(file, str(entries["image"])))
+    share = gray / 255.0 if negate else (255.0 - gray) / 255.0
+    cells = share >= free if fills else share > occupied
+    if fills:
+        # Between the thresholds and on them nothing is known; above them it is occupied.
+        cells |= share > occupied
+    return ServedMap(np.ascontiguousarray(cells[::-1]), resolution, (x, y), yaw)
+
+
+def _entries(file: Path) -> dict[str, Any]:
+    """Return keys and values of a flat YAML file; a value is a word or a list of words."""
+    try:
+        if file.stat().st_size > MOST_BYTES:
+            raise InvalidParameterError("path", f"be a YAML file of at most {MOST_BYTES} bytes", file.name)
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidParameterError("path", "be a YAML file", Shown(f"{file.name} ({error})")) from None
+    found: dict[str, Any] = {}
+    last = ""
+    pending = ""
+    for index, line in enumerate(text.splitlines(), start=1):
+        bare = _without_comment(line).strip()
+        if not bare or bare in ("---", "..."):
+            continue
+        if pending:  # a list in brackets over several lines
+            bare = f"{pending}: {' '.join(found.pop(pending))} {bare}"
+            pending = ""
+        match = _ENTRY.fullmatch(bare)
+        if match:
+            last, value = match.groups()
+            if value.startswith("[") and not value.endswith("]"):
+                found[last], pending = [value], last
+            elif value.startswith("["):
+                found[last] = [_unquoted(each) for each in value[1:-1].split(",")]
+            else:
+                found[last] = _unquoted(value) if value else []
+        elif bare.startswith("-") and isinstance(found.get(last), list):
+            found[last].append(_unquoted(bare[1:]))
+        else:
+            shown = Shown(f"{line.strip()[:80]!r} in line {index}")
+            raise InvalidParameterError(f"{file.name}", "be lines 'key: value' of a map", shown)
+    return found
+
+
+def _without_comment(line: str) -> str:
+    return re.sub(r"(^|\s)#.*", "", line)
+
+
+def _unquoted(value: str) -> str:
+    value = value.strip()
+    return value[1:-1] if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"" else value
+
+
+def _number(entries: dict[str, Any], key: str) -> float:
+    given = entries[key]
+    try:
+        value = float(given)
+    except (TypeError, ValueError):
+        raise InvalidParameterError(key, "be a number", given) from None
+    if not math.isfinite(value):
+        raise InvalidParameterError(key, "be finite", value)
+    return value
+
+
+def _origin(given: Any) -> tuple[float, float, float]:
+    rule = "be three numbers, x, y and yaw"
+    try:
+        x, y, yaw = (float(each) for each in given)
+    except (TypeError, ValueError):
+        raise InvalidParameterError("origin", rule, given) from None
+    if not all(map(math.isfinite, (x, y, yaw))):
+        raise InvalidParameterError("origin", "be finite", (x, y, yaw))
+    return x, y, yaw
+
+
+def _image(file: Path, name: str) -> Path:
+    """Return the image of a map, which lies in its folder."""
+    folder = file.resolve().parent
+    try:
+        image = (folder / name).resolve()
+    except (OSError, ValueError) as error:
+        raise InvalidParameterError("image", "name a file", Shown(f"{name[:80]!r} ({error})")) from None
+    if not image.is_relative_to(folder):
+        raise InvalidParameterError("image", "lie in the folder of the YAML file", name)
+    return readable("image", image)

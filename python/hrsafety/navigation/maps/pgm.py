@@ -1,0 +1,78 @@
+"""Gray pictures in PGM."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._bounds import MOST_CELLS
+from hrsafety.errors import InvalidParameterError, Shown
+
+__all__ = ["read_pgm"]
+
+HEAD_BYTES = 1 << 16
+BYTES_OF_NUMBER = 16  # of a gray value in words with what stands around it
+# Between the words of the head stand blanks and comments that end with their line.
+_GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
+_HEAD = re.compile(rb"(P[25])" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,6})(?:\s|(?=#))")
+
+
+def read_pgm(path: Path) -> npt.NDArray[np.float64]:
+    """Return the gray values of a picture from 0 to 255, (rows, columns), first row on top."""
+    try:
+        with path.open("rb") as file:
+            head = _HEAD.match(file.read(HEAD_BYTES))
+            if head is None:
+                file.seek(0)
+                shown = Shown(f"{path.name}, which begins with {file.read(2)!r}")
+                raise InvalidParameterError("image", "be a PGM picture, P2 or P5", shown)
+            kind, (columns, rows, most) = head[1], map(int, head.groups()[1:])
+            _check_head(path, rows, columns, most)
+            size, cells = path.stat().st_size - head.end(), rows * columns
+            if size > cells * (1 if kind == b"P5" else BYTES_OF_NUMBER) + HEAD_BYTES:
+                raise _wrong_size(path, rows, columns, f"{size} bytes")
+            file.seek(head.end())
+            body = file.read()
+    except OSError as error:
+        raise InvalidParameterError("image", "be readable", Shown(f"{path.name} ({error.strerror})")) from None
+    values = _bytes(path, body, rows, columns) if kind == b"P5" else _words(path, body, rows, columns)
+    if values.size and int(values.max()) > most:
+        shown = Shown(f"{int(values.max())} in {path.name}")
+        raise InvalidParameterError("image", f"have gray values up to its maxval, {most}", shown)
+    gray = values.reshape(rows, columns).astype(np.float64)
+    return gray if most == 255 else gray * (255.0 / most)
+
+
+def _check_head(path: Path, rows: int, columns: int, most: int) -> None:
+    if not (rows and columns):
+        raise InvalidParameterError("image", "have pixels", Shown(f"{columns} x {rows} in {path.name}"))
+    if rows * columns > MOST_CELLS:
+        shown = Shown(f"{columns} x {rows} in {path.name}")
+        raise InvalidParameterError("image", f"have at most {MOST_CELLS} pixels", shown)
+    if not 1 <= most <= 255:
+        raise InvalidParameterError("image", "have a maxval from 1 to 255", Shown(f"{most} in {path.name}"))
+
+
+def _wrong_size(path: Path, rows: int, columns: int, found: str) -> InvalidParameterError:
+    rule = f"have the {columns} x {rows} = {rows * columns} gray values that its head says"
+    return InvalidParameterError("image", rule, Shown(f"{found} in {path.name}"))
+
+
+def _bytes(path: Path, body: bytes, rows: int, columns: int) -> npt.NDArray[np.uint8]:
+    if len(body) != rows * columns:
+        raise _wrong_size(path, rows, columns, f"{len(body)} bytes")
+    return np.frombuffer(body, dtype=np.uint8)
+
+
+def _words(path: Path, body: bytes, rows: int, columns: int) -> npt.NDArray[np.int64]:
+    found = re.sub(rb"#[^\n\r]*", b"", body).split()
+    if len(found) != rows * columns:
+        raise _wrong_size(path, rows, columns, f"{len(found)}")
+    wrong = next((each for each in found if not each.isdigit() or len(each) > 6), None)
+    if wrong is not None:
+        shown = Shown(f"{wrong[:20]!r} in {path.name}")
+        raise InvalidParameterError("image", "have whole gray values", shown)
+    return np.array([int(each) for each in found], dtype=np.int64)

@@ -1,0 +1,531 @@
+"""Static maps: walls, polygons, discs and occupancy grids."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Parameters, instance, not_negative, number, numbers, pair, points, sequence
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.maps.barn import barn_discs
+from hrsafety.navigation.maps.distances import occupied_cells
+from hrsafety.navigation.maps.map_server import read_map_server
+from hrsafety.navigation.obstacles import Disc, Rectangle
+
+__all__ = ["Cells", "StaticMap", "Wall"]
+
+Outline = tuple[tuple[float, float], ...]
+
+
+class Wall(NamedTuple):
+    """A wall along a polyline.
+
+    Attributes
+    ----------
+    points : tuple of (float, float)
+        Corners in m.
+    radius : float
+        Everything within this distance of the polyline belongs to the wall, in m.
+    """
+
+    points: Outline
+    radius: float
+
+
+class Cells(NamedTuple):
+    """An occupancy grid.
+
+    Attributes
+    ----------
+    bits : bytes
+        Occupied cells, row after row from the lowest y, as by ``numpy.packbits``.
+    shape : (int, int)
+        Rows and columns.
+    resolution : float
+        Side of a cell in m.
+    origin : (float, float)
+        Lower left corner of the first cell, in m.
+    yaw : float
+        Angle by which the grid is turned around it, in rad.
+    """
+
+    bits: bytes
+    shape: tuple[int, int]
+    resolution: float
+    origin: tuple[float, float]
+    yaw: float
+
+    @property
+    def occupied(self) -> npt.NDArray[np.bool_]:
+        """Which cells are occupied, (rows, columns)."""
+        rows, columns = self.shape
+        bits = np.unpackbits(np.frombuffer(self.bits, dtype=np.uint8), count=rows * columns)
+        return bits.astype(np.bool_).reshape(rows, columns)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class StaticMap(Parameters):
+    """What stands still: walls, filled polygons, filled discs, occupancy grids.
+
+    Everything becomes segments with a radius, and filled interiors. Distances are exact, and zero
+    inside; an index makes them fast. Maps are added with ``+``.
+
+    Parameters
+    ----------
+    walls : sequence of Wall or (points, radius)
+        Polylines with a radius in m.
+    polygons : sequence of array_like, shape (n, 2)
+        Corners of filled polygons in m; the first one is not repeated at the end.
+    discs : array_like, shape (n, 3)
+        Centers and radii of filled discs, in m.
+    grids : sequence of Cells
+        Occupancy grids; see `from_grid`.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is not finite, a radius or resolution is out of range, a wall has no length, a polygon has
+        fewer than three corners or touches or crosses itself, or there are too many segments.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> walls = nav.StaticMap.from_polylines([[(0, 0), (6, 0), (6, 4)]])
+    >>> pillar = nav.StaticMap(discs=[(1.5, 1.5, 0.3)])
+    >>> (walls + pillar).clearance([(3.0, 0.5), (1.5, 1.5)])
+    array([0.5, 0. ])
+    """
+
+    walls: Sequence[Wall] = ()
+    polygons: Sequence[npt.ArrayLike] = ()
+    discs: npt.ArrayLike = ()
+    grids: Sequence[Cells] = ()
+    _native: _hrsafety.StaticMap = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        walls = [_wall(f"walls[{i}]", wall) for i, wall in enumerate(_items("walls", self.walls))]
+        polygons = [points(f"polygons[{i}]", each) for i, each in enumerate(_items("polygons", self.polygons))]
+        discs = numbers("discs", self.discs).reshape(0, 3) if np.size(self.discs) == 0 else numbers("discs", self.discs)
+        if discs.ndim != 2 or discs.shape[1] != 3:
+            raise ShapeError("discs", "(n, 3)", discs.shape)
+        grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(_items("grids", self.grids))]
+        self._set(
+            walls=tuple(Wall(_outline(corners), radius) for corners, radius in walls),
+            polygons=tuple(_outline(corners) for corners in polygons),
+            discs=tuple((float(x), float(y), float(radius)) for x, y, radius in discs),
+            grids=tuple(grids),
+            _native=_hrsafety.StaticMap(
+                polylines=walls,
+                polygons=polygons,
+                discs=discs,
+                grids=[(each.occupied, each.resolution, each.origin, each.yaw) for each in grids],
+            ),
+        )
+
+    # ---- sources --------------------------------------------------------------------------------
+
+    @classmethod
+    def from_polylines(cls, polylines: Iterable[npt.ArrayLike], *, radius: float = 0.0) -> Self:
+        """Return a map of walls along polylines.
+
+        Parameters
+        ----------
+        polylines : iterable of array_like, shape (n, 2)
+            Corners in m.
+        radius : float
+            Half the thickness of the walls in m, round at their ends.
+
+        Returns
+        -------
+        StaticMap
+            The map.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a number is not finite, the radius is negative, or a polyline has no length.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.StaticMap.from_polylines([[(3, -1.5), (3, 1.5)]], radius=0.1)
+        StaticMap(1 wall, x 2.9 to 3.1 m, y -1.6 to 1.6 m)
+        """
+        thickness = not_negative("radius", radius)
+        each = _items("polylines", polylines)
+        lines = [points(f"polylines[{i}]", line) for i, line in enumerate(each)]
+        return cls(walls=[Wall(_outline(line), thickness) for line in lines])
+
+    @classmethod
+    def from_polygons(cls, polygons: Iterable[npt.ArrayLike]) -> Self:
+        """Return a map of filled polygons.
+
+        Parameters
+        ----------
+        polygons : iterable of array_like, shape (n, 2)
+            Corners in m, in either sense; the first one is not repeated at the end.
+
+        Returns
+        -------
+        StaticMap
+            The map.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a polygon has fewer than three corners, or touches or crosses itself.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.StaticMap.from_polygons([[(0, 0), (2, 0), (1, 1)]]).clearance([1.0, 0.5])
+        0.0
+        """
+        return cls(polygons=tuple(_items("polygons", polygons)))
+
+    @classmethod
+    def from_obstacles(cls, obstacles: Iterable[Disc | Rectangle]) -> Self:
+        """Return a map of discs and rectangles that stand.
+
+        Parameters
+        ----------
+        obstacles : iterable of Disc or Rectangle
+            What stands.
+
+        Returns
+        -------
+        StaticMap
+            The map.
+
+        Raises
+        ------
+        InvalidParameterError
+            If something else is among them.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> table = nav.Rectangle(center=(2.0, 0.0), length=1.0, width=0.5)
+        >>> nav.StaticMap.from_obstacles([table, nav.Disc(center=(0.0, 2.0), radius=0.5)]).clearance((0.0, 0.0))
+        1.5
+        """
+        each = _items("obstacles", obstacles)
+        kept = [instance(f"obstacles[{i}]", given, Disc, Rectangle) for i, given in enumerate(each)]
+        discs = [(*given.center, given.radius) for given in kept if isinstance(given, Disc)]
+        boxes = [_corners(given) for given in kept if isinstance(given, Rectangle)]
+        return cls(polygons=boxes, discs=discs)
+
+    @classmethod
+    def from_grid(
+        cls,
+        occupied: npt.ArrayLike,
+        *,
+        resolution: float,
+        origin: tuple[float, float] = (0.0, 0.0),
+        yaw: float = 0.0,
+    ) -> Self:
+        """Return the map of an occupancy grid; what lies outside of it is free.
+
+        Parameters
+        ----------
+        occupied : array_like of bool, shape (rows, columns)
+            Which cells are occupied; row 0 has the lowest y.
+        resolution : float
+            Side of a cell in m.
+        origin : (float, float)
+            Lower left corner of the first cell, in m.
+        yaw : float
+            Angle by which the grid is turned around it, in rad.
+
+        Returns
+        -------
+        StaticMap
+            The map; the boundary between occupied and free cells are its walls.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the cells are no truth values or too many, or a number is out of range.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> room = nav.StaticMap.from_grid([[1, 1, 1], [1, 0, 1], [1, 1, 1]], resolution=1.0)
+        >>> room.clearance((1.5, 1.25))
+        0.25
+        """
+        cells = occupied_cells("occupied", occupied)
+        rows, columns = cells.shape
+        size = number("resolution", resolution)
+        grid = Cells(np.packbits(cells).tobytes(), (rows, columns), size, pair("origin", origin), number("yaw", yaw))
+        return cls(grids=[grid])
+
+    @classmethod
+    def from_map_server(cls, path: str | Path, *, unknown: str = "occupied") -> Self:
+        """Return the map that a YAML file of the ROS map server describes, with its PGM image.
+
+        Occupied is ``p > occupied_thresh``, free ``p < free_thresh``, with ``p = (255 - x)/255`` of the gray
+        value ``x``, or ``x/255`` with ``negate``; everything else is unknown.
+
+        Parameters
+        ----------
+        path : path
+            The YAML file. Its image (P2 or P5, at most 8 bits) is read from the same folder or one below.
+        unknown : {"occupied", "free"}
+            What unknown cells count as.
+
+        Returns
+        -------
+        StaticMap
+            The map, at the origin and yaw of the file.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a file cannot be read, a key is missing or out of range, or the image is of another kind or size.
+        """
+        read = read_map_server(path, unknown=unknown)
+        return cls.from_grid(read.occupied, resolution=read.resolution, origin=read.origin, yaw=read.yaw)
+
+    @classmethod
+    def from_barn(cls, source: str | Path | Mapping[str, Any], world: int) -> Self:
+        """Return a world of the Benchmark for Autonomous Robot Navigation (BARN).
+
+        Parameters
+        ----------
+        source : path or mapping
+            A file of worlds in JSON, or what was read from it: ``cylinder_radius_m``, and ``worlds`` with
+            ``id`` and ``cyl_mm`` (centers in mm) of each.
+        world : int
+            Number of the world.
+
+        Returns
+        -------
+        StaticMap
+            The cylinders of the world as discs.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the file cannot be read, is no such file, or has no world of this number.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> worlds = {"cylinder_radius_m": 0.075, "worlds": [{"id": 6, "cyl_mm": [[-75, 75], [-225, 75]]}]}
+        >>> nav.StaticMap.from_barn(worlds, 6)
+        StaticMap(2 discs, x -0.3 to 0 m, y 0 to 0.15 m)
+        """
+        return cls(discs=barn_discs(source, world))
+
+    # ---- queries --------------------------------------------------------------------------------
+
+    def clearance(self, point: npt.ArrayLike) -> Any:
+        """Return the distance of points from the map.
+
+        Parameters
+        ----------
+        point : array_like, shape (2,) or (n, 2)
+            One point or several, in m.
+
+        Returns
+        -------
+        float or ndarray, shape (n,)
+            Distances in m: zero inside, infinite for an empty map.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the points are no points.
+        """
+        several = _points(point)
+        found = self._native.clearance(several)
+        return float(found[0]) if np.ndim(point) == 1 else found
+
+    def segment_clearance(self, start: npt.ArrayLike, end: npt.ArrayLike) -> float:
+        """Return the least distance of the points of a segment from the map.
+
+        Parameters
+        ----------
+        start, end : array_like, shape (2,)
+            Its ends in m.
+
+        Returns
+        -------
+        float
+            The distance in m, zero where it meets something.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an end is no point.
+        """
+        return self._native.segment_clearance(_place("start", start), _place("end", end))
+
+    def nearest(self, point: npt.ArrayLike) -> Array:
+        """Return the boundary points nearest to points.
+
+        Parameters
+        ----------
+        point : array_like, shape (2,) or (n, 2)
+            One point or several, in m.
+
+        Returns
+        -------
+        ndarray, shape (2,) or (n, 2)
+            Points of the boundary in m, NaN for an empty map.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the points are no points.
+        """
+        found = self._native.nearest(_points(point))
+        return found[0] if np.ndim(point) == 1 else found
+
+    def ray(self, start: npt.ArrayLike, bearing: npt.ArrayLike) -> Any:
+        """Return how far a ray goes until it hits something.
+
+        Parameters
+        ----------
+        start : array_like, shape (2,)
+            Where the rays start, in m.
+        bearing : array_like, shape () or (n,)
+            Their angles from the x axis in rad.
+
+        Returns
+        -------
+        float or ndarray, shape (n,)
+            Distances in m: zero inside, infinite where nothing is hit.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an argument is not finite.
+        """
+        bearings = _finite("bearing", numbers("bearing", bearing))
+        found = np.asarray(self._native.ray(_place("start", start), bearings.ravel().tolist()))
+        return float(found[0]) if bearings.ndim == 0 else found.reshape(bearings.shape)
+
+    def boundary_points(self, point: npt.ArrayLike, *, reach: float, kappa: float = 0.5) -> Array:
+        """Return the few boundary points that a law sees from a point, the nearest first.
+
+        ``b_1`` is the nearest boundary point; every one with ``n_1.(b - P) >= kappa d_1`` is left out, the next
+        is the nearest of what is left, and so on. Cutting a wall into pieces changes nothing.
+
+        Parameters
+        ----------
+        point : array_like, shape (2,)
+            The position ``P`` in m.
+        reach : float
+            How far points may be away, in m.
+        kappa : float
+            Above 0 and at most 1; 1/2 for force laws, 1 for half planes that span the convex free region.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            At most eight points in m.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an argument is out of range.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> corridor = nav.StaticMap.from_polylines([[(0, 0), (9, 0)], [(0, 2), (9, 2)]])
+        >>> corridor.boundary_points((4.0, 0.5), reach=3.0)
+        array([[4., 0.],
+               [4., 2.]])
+        """
+        place = _place("point", point)
+        return self._native.boundary_points(place, not_negative("reach", reach), number("kappa", kappa))
+
+    @property
+    def segments(self) -> Array:
+        """All segments with their radii, rows (x, y, x, y, radius) in m, (n, 5)."""
+        return self._native.segments()
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Lower and upper corner of the box around everything in m, ``None`` for an empty map."""
+        found = self._native.bounds()
+        if found is None:
+            return None
+        (left, low), (right, high) = found
+        return (left, low), (right, high)
+
+    def __add__(self, other: StaticMap) -> StaticMap:
+        """Return everything in both maps."""
+        if not isinstance(other, StaticMap):
+            return NotImplemented
+        names = ("walls", "polygons", "discs", "grids")
+        joined: dict[str, Any] = {name: (*getattr(self, name), *getattr(other, name)) for name in names}
+        return StaticMap(**joined)
+
+    def __repr__(self) -> str:
+        """Return what is in the map and how far it reaches."""
+        counts = {"wall": self.walls, "polygon": self.polygons, "disc": self.discs, "grid": self.grids}
+        parts = [_counted(word, len(each)) for word, each in counts.items() if len(each)]  # type: ignore[arg-type]
+        if self.bounds is None:
+            return "StaticMap(nothing)"
+        (left, low), (right, high) = self.bounds
+        parts.append(f"x {left + 0.0:g} to {right + 0.0:g} m")
+        parts.append(f"y {low + 0.0:g} to {high + 0.0:g} m")
+        return f"StaticMap({', '.join(parts)})"
+
+
+def _counted(word: str, many: int) -> str:
+    return f"1 {word}" if many == 1 else f"{many} {word}s"
+
+
+def _items(name: str, given: object) -> list[Any]:
+    return sequence(name, "be a sequence", given)
+
+
+def _wall(name: str, given: object) -> tuple[Array, float]:
+    parts = sequence(name, "be a pair (points, radius)", given)
+    if len(parts) != 2:
+        raise InvalidParameterError(name, "be a pair (points, radius)", given)
+    return points(name, parts[0]), number(f"radius of {name}", parts[1])
+
+
+def _outline(corners: Array) -> Outline:
+    return tuple((float(x), float(y)) for x, y in corners)
+
+
+def _corners(box: Rectangle) -> Outline:
+    """Return the corners of a rectangle, counter-clockwise."""
+    cosine, sine = math.cos(box.heading), math.sin(box.heading)
+    (x, y), along, across = box.center, 0.5 * box.length, 0.5 * box.width
+    signs = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    places = [(a * along, b * across) for a, b in signs]
+    return tuple((x + cosine * u - sine * v, y + sine * u + cosine * v) for u, v in places)
+
+
+def _finite(name: str, given: Array) -> Array:
+    if not np.isfinite(given).all():
+        first = given.ravel()[~np.isfinite(given.ravel())][0]
+        raise InvalidParameterError(name, "be finite", float(first))
+    return given
+
+
+def _place(name: str, given: object) -> tuple[float, float]:
+    x, y = pair(name, given)
+    _finite(name, np.array([x, y]))
+    return x, y
+
+
+def _points(given: npt.ArrayLike) -> Array:
+    array = numbers("point", given)
+    return _finite("point", points("point", array.reshape(1, -1) if array.ndim == 1 else array))

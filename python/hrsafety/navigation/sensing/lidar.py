@@ -1,0 +1,173 @@
+"""A 2-D lidar on a navigation robot: scans, and a law that knows walls and people by them alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Parameters, checked_seed, count, flag, instance, number, numbers, pair
+from hrsafety._bounds import MOST_RAYS
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.maps.static_map import StaticMap
+
+__all__ = ["Lidar"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Lidar(Parameters):
+    """A lidar on a robot, which tells a law of walls and people by its scans.
+
+    A beam reads the exact distance to the nearest thing along it, with Gaussian noise if wanted; ``range_max``
+    where nothing is hit, 0 inside of something or nearer than ``range_min``. The points of a scan become the few
+    boundary points that a law sees (as `StaticMap.boundary_points`): bodies of radius 0 at rest. **What no beam
+    hits is not known to the law**, and a point has no velocity. A run knows obstacles of its scene
+    only, so contacts with the map are looked for with ``map.clearance(run.position)``.
+
+    Parameters
+    ----------
+    map : StaticMap or None
+        Walls that it sees.
+    beams : int
+        Number of beams.
+    field_of_view : float
+        Angle between the first and the last beam in rad, ahead in the middle; a whole turn is divided evenly.
+    range_min, range_max : float
+        Least and largest range in m.
+    range_noise : float
+        Standard deviation of a range in m.
+    sees_obstacles : bool
+        Whether it sees people and other obstacles of the scene, too.
+    kappa : float
+        Share behind which boundary points are left out: 1/2 for force laws, 1 for half planes.
+    influence : float
+        Depth of the active region of a point beyond the radius of the robot, in m; the critical one is 1 mm.
+    reach : float or None
+        How far from the robot points are told of, in m. ``None``: the active region; planners want more.
+    max_speed : float
+        Largest speed in m/s of what is seen; above 0 the regions are sized for it in place of ``influence``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of range.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> room = nav.StaticMap.from_polylines([[(-2, -1), (2, -1), (2, 1), (-2, 1), (-2, -1)]])
+    >>> lidar = nav.Lidar(map=room, beams=4)
+    >>> lidar.scan((0.5, 0.0))
+    array([2.5, 1. , 1.5, 1. ])
+    """
+
+    map: StaticMap | None = None
+    beams: int = 360
+    field_of_view: float = 2.0 * math.pi
+    range_min: float = 0.0
+    range_max: float = 10.0
+    range_noise: float = 0.0
+    sees_obstacles: bool = True
+    kappa: float = 0.5
+    influence: float = 0.3
+    reach: float | None = None
+    max_speed: float = 0.0
+    _native: _hrsafety.Lidar = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        if self.map is not None:
+            instance("map", self.map, StaticMap)
+        if self.reach is not None:
+            self._as_numbers("reach")
+        names = ("field_of_view", "range_min", "range_max", "range_noise", "kappa", "influence", "max_speed")
+        self._set(
+            _native=_hrsafety.Lidar(
+                map=None if self.map is None else self.map._native,
+                beams=count("beams", self.beams, most=MOST_RAYS),
+                sees_obstacles=flag("sees_obstacles", self.sees_obstacles),
+                reach=self.reach,
+                **self._as_numbers(*names),
+            )
+        )
+
+    @property
+    def bearings(self) -> Array:
+        """Angles of the beams from straight ahead in rad, (beams,)."""
+        return np.asarray(self._native.bearings())
+
+    def scan(
+        self, position: npt.ArrayLike, heading: float = 0.0, *, people: npt.ArrayLike = (), seed: int = 0
+    ) -> Array:
+        """Return the ranges of all beams.
+
+        Parameters
+        ----------
+        position : array_like, shape (2,)
+            Where the lidar is, in m.
+        heading : float
+            Where it looks, in rad.
+        people : array_like, shape (n, 3)
+            Centers and radii of discs beside the map, in m.
+        seed : int
+            Of the noise.
+
+        Returns
+        -------
+        ndarray, shape (beams,)
+            Ranges in m.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an argument is not finite or of another shape.
+        """
+        discs = numbers("people", people).reshape(0, 3) if np.size(people) == 0 else numbers("people", people)
+        if discs.ndim != 2 or discs.shape[1] != 3:
+            raise ShapeError("people", "(n, 3)", discs.shape)
+        if not np.isfinite(discs).all() or (discs[:, 2] <= 0.0).any():
+            row = int(np.argmax(~np.isfinite(discs).all(axis=1) | (discs[:, 2] <= 0.0)))
+            raise InvalidParameterError(f"people[{row}]", "be finite with a positive radius", tuple(discs[row].tolist()))
+        return np.asarray(self._native.scan(_pose(position, heading), discs, checked_seed("seed", seed)))
+
+    def points(self, position: npt.ArrayLike, heading: float, ranges: npt.ArrayLike) -> Array:
+        """Return the points that a scan hit.
+
+        Parameters
+        ----------
+        position : array_like, shape (2,)
+            Where the robot takes itself to be, in m.
+        heading : float
+            Where it takes itself to look, in rad.
+        ranges : array_like, shape (beams,)
+            Ranges in m.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            Points in m; beams that hit nothing have none, and what was too near to be measured is taken to be at
+            the least range.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an argument is not finite or of another shape.
+        """
+        scan = numbers("ranges", ranges)
+        if scan.shape != (self.beams,):
+            raise ShapeError("ranges", f"({self.beams},)", scan.shape)
+        if not (scan >= 0.0).all():
+            raise InvalidParameterError("ranges", "be numbers, not negative", float(scan[~(scan >= 0.0)][0]))
+        return self._native.points(_pose(position, heading), scan.tolist())
+
+
+def _pose(position: object, heading: object) -> tuple[float, float, float]:
+    x, y = pair("position", position)
+    angle = number("heading", heading)
+    for name, value in (("position", x), ("position", y), ("heading", angle)):
+        if not math.isfinite(value):
+            raise InvalidParameterError(name, "be finite", value)
+    return x, y, angle
