@@ -31,6 +31,7 @@ __all__ = [
     "GainProblem",
     "Head",
     "HolonomicRobot",
+    "Hunt",
     "Joint",
     "Law",
     "Manipulator",
@@ -224,6 +225,54 @@ class _BatchFields(TypedDict):
     performance_energy_saving: _Array
     descent_share: _Array
     force_evaluations: _Counts
+
+class _EncounterFields(TypedDict):
+    margin: _Array
+    least_toward: _Array
+    min_clearance: _Array
+    arrival_time: _Array
+    top_speed: _Array
+    end_time: _Array
+
+class _PursuitFields(_EncounterFields):
+    time: _Array
+    position: _Array
+    velocity: _Array
+    person_position: _Array
+
+@final
+class Hunt:
+    """A robot under a law, and the bounds of who pursues it."""
+
+    def __new__(
+        cls, scenario: Scenario, law: Law, built: AsBuilt, *, step: float, person_speed: float, free: float
+    ) -> Self: ...
+    def sweep(
+        self,
+        property: str,
+        limit: float,
+        *,
+        episodes: int,
+        seed: int,
+        threads: int | None,
+        progress: Callable[[int, int], object] | None,
+    ) -> _EncounterFields:
+        """Return columns of episodes against random pursuers."""
+
+    def worst(
+        self,
+        property: str,
+        limit: float,
+        *,
+        episodes: int,
+        seed: int,
+        threads: int | None,
+        progress: Callable[[int, int], object] | None,
+    ) -> tuple[list[float], float]:
+        """Return the numbers of the worst pursuer that CMA-ES finds, and the margin against him."""
+
+    def replay(self, *, seed: int, index: int, numbers: list[float] | None) -> _PursuitFields:
+        """Return one episode again with its rows."""
 
 @final
 class HolonomicRobot:

@@ -11,6 +11,7 @@ mod built;
 mod differential;
 mod episode;
 mod errors;
+mod falsify;
 mod gains;
 mod impact;
 mod keywords;
@@ -55,6 +56,8 @@ mod _hrsafety {
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]
     use crate::episode::Run;
+    #[pymodule_export]
+    use crate::falsify::Hunt;
     #[pymodule_export]
     use crate::gains::problem::GainProblem;
     #[pymodule_export]

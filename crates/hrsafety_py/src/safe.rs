@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
-use vff_core::laws::safe::{SafeNavigation, Takeover};
+use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{self, Friendly, Guard, KnownVelocity, Limits, Person, View, Walls};
 use vff_core::laws::yielding;
 use vff_core::run::AnyLaw;
@@ -120,14 +120,13 @@ pub fn shield_speed_bound(gap: f64, angle: f64, deceleration: f64, person_speed:
 pub fn safe_law(law: &AnyLaw, given: &Keywords<'_>) -> PyResult<AnyLaw> {
     let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
     let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
-    let takeover: Option<(f64, f64)> = given.take("takeover")?;
     let family = SafeNavigation {
-        law: law.clone(),
         shield: shield.map(|shield| shield.0),
         yielding: yielding.map(|yielding| yielding.0),
-        takeover: takeover.map(|(progress, window)| Takeover { progress, window }),
+        takeover: given.take("takeover")?,
         preferred_speed: given.take("preferred_speed")?,
         critical_distance: given.take("critical_distance")?,
+        ..SafeNavigation::bare(law.clone())
     };
     given.done()?;
     Ok(family.checked().map_err(CoreError::from)?.into())

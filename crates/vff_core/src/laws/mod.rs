@@ -137,6 +137,10 @@ pub trait LawFamily: Sync {
     fn chooses_velocities(&self) -> bool {
         false
     }
+    /// Whether it steers a robot with two wheels by velocities, not by a point mass to follow.
+    fn steers_by_velocity(&self) -> bool {
+        false
+    }
     /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
     /// their critical regions; a search then need not follow runs whose end is known.
     fn keeps_to_regions(&self) -> bool {

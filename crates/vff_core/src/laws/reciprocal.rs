@@ -140,6 +140,11 @@ fn front_face(scaled: &Outline, place: Vector) -> (f64, Vector) {
     best
 }
 
+/// Whether a body is a boundary point of a map: a disc without extent.
+fn is_boundary_point(body: &Body) -> bool {
+    matches!(body.shape, Shape::Disc { radius } if radius == 0.0)
+}
+
 /// The planner at work in one scenario.
 #[derive(Clone, Debug)]
 pub struct ReciprocalPlanner {
@@ -184,6 +189,18 @@ impl ReciprocalPlanner {
         straight * self.turn.x + straight.left_normal() * self.turn.y
     }
 
+    /// `v.n <= (d - rho - margin)/tau` for a boundary point in direction `n` at distance `d`.
+    fn off_boundary(&self, point: &Body, position: Vector) -> HalfPlane {
+        let to = Vector::splat(point.state.position) - position;
+        let distance = to.norm();
+        let normal = to * (1.0 / distance.max(f64::MIN_POSITIVE));
+        let room = distance - self.robot_radius - self.settings.margin;
+        HalfPlane {
+            point: normal * (room / self.settings.horizon),
+            direction: normal.left_normal(),
+        }
+    }
+
     fn outline(&self, body: &Body, position: Vector) -> Outline {
         Outline::new(body, position, self.robot_radius, self.settings.margin)
     }
@@ -213,7 +230,7 @@ impl Planner for ReciprocalPlanner {
             };
             if gap < self.settings.reach {
                 // Rectangles come first: they cannot be violated.
-                let soft = matches!(body.shape, Shape::Disc { .. });
+                let soft = matches!(body.shape, Shape::Disc { .. }) && !is_boundary_point(body);
                 let order = if soft { gap.max(0.0) } else { -1.0 };
                 self.neighbors.push((order, index));
             }
@@ -221,6 +238,11 @@ impl Planner for ReciprocalPlanner {
         self.neighbors.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.planes.clear();
         for &(_, index) in &self.neighbors {
+            if is_boundary_point(&bodies[index]) {
+                let plane = self.off_boundary(&bodies[index], robot.position);
+                self.planes.push(plane);
+                continue;
+            }
             let outline = self.outline(&bodies[index], robot.position);
             let share = match bodies[index].shape {
                 Shape::Disc { .. } => self.settings.share,

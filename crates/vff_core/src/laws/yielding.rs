@@ -261,7 +261,8 @@ impl Yielder {
         let mut time = 0.0;
         while time < WALL_HORIZON {
             let place = outlook.robot.position + velocity * time;
-            let room = outlook.walls.clearance(place) - self.limits.radius;
+            let most = self.limits.radius + speed * WALL_HORIZON;
+            let room = outlook.walls.clearance_up_to(place, most) - self.limits.radius;
             if room < TOUCHING {
                 return time + speed / self.limits.max_acceleration;
             }

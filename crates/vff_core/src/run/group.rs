@@ -103,6 +103,8 @@ pub(crate) trait Driven: Send + Sync {
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
     /// Whether it chooses a velocity, and so knows no regions.
     fn chooses_velocities(&self) -> bool;
+    /// Whether it steers a robot with two wheels by velocities.
+    fn steers_by_velocity(&self) -> bool;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
     fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
         self.steering_with(&self.gains(), scenario, true)
@@ -216,6 +218,10 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
 
     fn chooses_velocities(&self) -> bool {
         self.0.chooses_velocities()
+    }
+
+    fn steers_by_velocity(&self) -> bool {
+        self.0.steers_by_velocity()
     }
 
     fn steering_with(

@@ -11,6 +11,7 @@ mod nominal;
 mod options;
 mod outcome;
 mod plan;
+pub mod pursuit;
 mod record;
 mod rollout;
 mod runs;

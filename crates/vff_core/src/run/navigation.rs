@@ -13,7 +13,7 @@ use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
 use crate::run::built::sight::Sight;
-use crate::run::built::{clock_of, robot_of};
+use crate::run::built::{clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::group::{AnyLaw, Steering};
 use crate::run::options::Clock;
@@ -94,7 +94,7 @@ impl<L: Listener> Episode<Navigation<L>> {
         built: &Built,
         listener: impl FnOnce(&Scenario, usize) -> L,
     ) -> Result<Self> {
-        let robot = robot_of(&scenario, built)?;
+        let robot = robot_under(&scenario, built, law)?;
         let clock = clock_of(&scenario, built)?;
         let scene = Scene::new(Arc::clone(&scenario), 1, false);
         let bodies = &scene.frames[0];

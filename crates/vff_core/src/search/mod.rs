@@ -8,6 +8,7 @@
 mod archive;
 mod blocks;
 mod evaluated;
+mod falsify;
 mod front;
 mod gain_objective;
 mod gain_options;
@@ -26,6 +27,7 @@ mod stage;
 
 pub use blocks::evaluate_all;
 pub use evaluated::Evaluated;
+pub use falsify::{Hunt, Property};
 pub use front::{Front, FrontOptions, FrontRound, front_search};
 pub use gain_objective::{
     Limit, Metric, MetricConstraint, Objective, Over, Robustness, arrival_margin,

@@ -15,8 +15,6 @@ from hrsafety.navigation.laws.yielding import Yielding
 
 __all__ = ["SafeNavigation"]
 
-PROGRESS, WINDOW = 0.6, 0.7
-"""Without a map: progress that counts, in s at the largest speed of the law, and the time for it."""
 CRITICAL_DISTANCE = 0.02
 """Where force laws brake beside a shield that gives way, in m between the surfaces."""
 
@@ -86,7 +84,7 @@ class SafeNavigation(Law):
         native = self.law._native.guarded(
             shield=None if self.shield is None else self.shield._native,
             yielding=None if self.yielding is None else self.yielding._native,
-            takeover=(PROGRESS, WINDOW) if takes_over else None,
+            takeover=takes_over,
             preferred_speed=self.preferred_speed,
             critical_distance=self._critical_distance(),
         )

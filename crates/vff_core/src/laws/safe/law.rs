@@ -2,21 +2,24 @@
 
 use crate::error::Result;
 use crate::lanes::Vector2;
+use crate::laws::guide::{Guidance, LocalGoal, Takeover, TakeoverRule};
 use crate::laws::safe::SafeNavigation;
-use crate::laws::safe::takeover::{Progress, straight};
-use crate::laws::shield::{Decision, Guard, KnownVelocity, Limits, Person, Status, View, Walls};
-use crate::laws::yielding::{Outlook, Passerby, Yielder};
+use crate::laws::safe::surroundings::Surroundings;
+use crate::laws::shield::{
+    Decision, Guard, Limits, Status, TwistGuard, TwistState, TwistView, View,
+};
+use crate::laws::yielding::{Outlook, Yielder};
 use crate::laws::{Command, Situation};
+use crate::robots::differential::{DifferentialLimits, Twist};
+use crate::robots::drives::velocity_of;
 use crate::run::Steering;
-use crate::world::geometry::{Body, RobotState};
-use crate::world::obstacle::{Regions, Shape};
-use crate::world::scenario::{PlacedObstacle, Scenario};
-use crate::world::shape::PlacedShape;
+use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
 
 /// What the parts did in the last control period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trace {
-    /// Velocity that the law wanted, within its limit, in m/s.
+    /// Velocity that the law wanted, or the takeover, within its limit, in m/s.
     pub wanted: Vector2<f64>,
     /// Velocity that is commanded in m/s.
     pub command: Vector2<f64>,
@@ -26,42 +29,36 @@ pub struct Trace {
     pub status: Status,
 }
 
-/// What is known of an obstacle before the run.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    /// Regions for the law.
-    regions: Regions,
-    /// Largest speed that the shield reckons with, in m/s.
-    max_speed: f64,
-    /// Whether it is a rectangle that stands.
-    wall: bool,
-    /// Whether it never moves.
-    stationary: bool,
-    /// Distance of the centers at contact in m.
-    touch: f64,
-}
-
 /// A law with its parts.
 pub struct SafeLaw {
     law: Box<dyn Steering>,
     guard: Option<Guard>,
+    /// The shield of a robot with two wheels.
+    twist_guard: Option<TwistGuard>,
+    /// Turn rate that was commanded last, in rad/s.
+    turn_rate: f64,
     yielder: Option<Yielder>,
-    progress: Option<Progress>,
+    guidance: Option<Guidance>,
+    takeover: Option<Takeover>,
     limits: Limits,
     /// Largest speed of the law in m/s.
     preferred: f64,
     mass: f64,
     goal: Vector2<f64>,
-    known: Vec<Known>,
+    around: Surroundings,
     trace: Trace,
-    bodies: Vec<Body>,
-    people: Vec<Person>,
-    passersby: Vec<Passerby>,
-    walls: Vec<PlacedShape>,
+}
+
+/// Where the robot is to go now.
+#[derive(Clone, Copy, Debug)]
+struct Heading {
+    /// The goal or a local one; `None` where the plan leads nowhere.
+    local: Option<LocalGoal>,
+    taken_over: bool,
 }
 
 impl SafeLaw {
-    /// The law at work in a scenario.
+    /// The law at work in a scenario; `record`: the Lyapunov function is wanted too.
     pub(super) fn new(
         family: &SafeNavigation,
         gains: &[f64],
@@ -70,36 +67,47 @@ impl SafeLaw {
     ) -> Result<Self> {
         let inner = family.inner(scenario)?;
         let robot = &scenario.robot;
+        let wheels = scenario.differential.as_ref();
         let limits = Limits {
             radius: robot.radius,
-            max_speed: robot.max_speed,
+            max_speed: wheels.map_or(robot.max_speed, |wheels| wheels.max_speed),
             max_acceleration: robot.max_acceleration,
             period: scenario.rules.control_period,
         };
-        let guard = |shield| Guard::new(shield, limits);
-        let yielder = |yielding| Yielder::new(yielding, limits);
-        let known = |placed: &PlacedObstacle| Known::of(family, placed);
+        let guidance = family.guidance(scenario)?;
+        let rule = match guidance {
+            Some(_) => TakeoverRule::with_map(),
+            None => TakeoverRule::without_map(inner.robot.max_speed),
+        };
         let zero = Vector2::zeros();
+        let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
+            TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
+        });
         Ok(Self {
-            law: family.law.driven().steering_with(gains, &inner, record)?,
-            guard: family.shield.map(guard).transpose()?,
-            yielder: family.yielding.map(yielder).transpose()?,
-            progress: family.takeover.map(Progress::new),
+            twist_guard: twist_guard.transpose()?,
+            turn_rate: 0.0,
+            guard: family
+                .shield
+                .map(|shield| Guard::new(shield, limits))
+                .transpose()?,
+            yielder: family
+                .yielding
+                .map(|yielding| Yielder::new(yielding, limits))
+                .transpose()?,
+            takeover: family.takeover.then(|| Takeover::new(rule)),
+            guidance,
             limits,
             preferred: inner.robot.max_speed,
             mass: robot.mass,
             goal: scenario.goal.into(),
-            known: inner.obstacles.iter().map(known).collect(),
+            around: Surroundings::new(family, &inner)?,
+            law: family.law.driven().steering_with(gains, &inner, record)?,
             trace: Trace {
                 wanted: zero,
                 command: zero,
                 taken_over: false,
                 status: Status::Kept,
             },
-            bodies: Vec::new(),
-            people: Vec::new(),
-            passersby: Vec::new(),
-            walls: Vec::new(),
         })
     }
 
@@ -110,34 +118,43 @@ impl SafeLaw {
     }
 
     /// Force for the time until the next sample.
-    pub(super) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+    pub(crate) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);
-        self.look_around(situation);
+        self.around
+            .look(situation, self.guard.as_ref(), self.yielder.as_ref());
+        let heading = self.head(situation);
+        let robot = situation.robot;
+        if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
+            self.law.aim(local.for_law(robot.position).into());
+        }
         let command = self.law.command(&Situation {
-            bodies: &self.bodies,
+            bodies: &self.around.bodies,
             ..*situation
         });
-        let robot = situation.robot;
         let asked = robot.velocity + command.force * (situation.interval / self.mass);
         let mut wanted = slowed(asked, self.preferred);
-        let to_goal = self.goal - robot.position;
-        let taken_over = self
-            .progress
-            .as_mut()
-            .is_some_and(|watch| watch.stalls(to_goal.norm(), situation.time, self.preferred));
-        if taken_over {
-            let period = situation.interval;
-            let acceleration = self.limits.max_acceleration;
-            wanted = straight(to_goal, self.preferred, acceleration, period);
+        match heading.local {
+            None => wanted = Vector2::zeros(),
+            Some(local) if heading.taken_over => {
+                let (most, acceleration) = (self.preferred, self.limits.max_acceleration);
+                let period = situation.interval;
+                wanted = local.velocity_from(robot.position, most, acceleration, period);
+            }
+            Some(_) => {}
         }
-        let decision = self.decide(&robot, wanted, to_goal);
+        let to_goal = heading.local.map_or(self.goal, |local| local.point) - robot.position;
+        let decision = match self.twist_guard {
+            Some(guard) => self.turn(&guard, situation, wanted, to_goal),
+            None => self.decide(&robot, wanted, to_goal),
+        };
         self.trace = Trace {
             wanted,
             command: decision.velocity,
-            taken_over,
+            taken_over: heading.taken_over,
             status: decision.status,
         };
-        if decision.status == Status::Kept && wanted == asked {
+        let turned = self.twist_guard.is_some();
+        if decision.status == Status::Kept && wanted == asked && !turned {
             return command;
         }
         let change = decision.velocity - robot.velocity;
@@ -150,8 +167,112 @@ impl SafeLaw {
         if let Some(guard) = &mut self.guard {
             guard.limits.period = period;
         }
+        if let Some(guard) = &mut self.twist_guard {
+            guard.limits.period = period;
+        }
         if let Some(yielder) = &mut self.yielder {
             yielder.limits.period = period;
+        }
+    }
+
+    /// The (local) goal, and whether the robot heads for it by itself.
+    fn head(&mut self, situation: &Situation<'_, f64>) -> Heading {
+        let (time, position) = (situation.time, situation.robot.position);
+        let Some(guidance) = &mut self.guidance else {
+            let cost = (self.goal - position).norm();
+            let taken_over = self
+                .takeover
+                .as_mut()
+                .is_some_and(|takeover| takeover.observe(time, Some(cost)));
+            return Heading {
+                local: Some(LocalGoal::goal(self.goal)),
+                taken_over,
+            };
+        };
+        let people = self.around.standing(situation.bodies);
+        // Whoever asks to stop is told so by the run.
+        let again = guidance
+            .observe(time, position, people, situation.stop)
+            .unwrap_or(false);
+        let found = guidance.local_goal(position);
+        let mut heading = Heading {
+            local: found.map(|(_, local)| local),
+            taken_over: false,
+        };
+        if let Some(takeover) = &mut self.takeover {
+            if again {
+                takeover.restart();
+            }
+            let cost = found.map(|(view, _)| view.cost);
+            if takeover.observe(time, cost) {
+                let plan = guidance.plan();
+                let sees = |point| plan.sees(position, point);
+                heading.taken_over = true;
+                heading.local = takeover.target(heading.local, sees);
+            }
+        }
+        heading
+    }
+
+    /// The velocity of yielding, if it is on and something is verified.
+    fn give_way(
+        &self,
+        robot: &RobotState<f64>,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+        verified: impl FnMut(Vector2<f64>) -> bool,
+    ) -> Option<Vector2<f64>> {
+        let outlook = Outlook {
+            robot: *robot,
+            wanted,
+            to_goal: to_goal / to_goal.norm().max(f64::MIN_POSITIVE),
+            people: &self.around.passersby,
+            walls: self.around.walls(),
+        };
+        self.yielder.as_ref()?.decide(&outlook, verified)
+    }
+
+    /// Yielding, then the shield, for a robot with two wheels.
+    fn turn(
+        &mut self,
+        guard: &TwistGuard,
+        situation: &Situation<'_, f64>,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let (robot, heading) = (situation.robot, situation.heading);
+        let (sin, cos) = heading.sin_cos();
+        let state = TwistState {
+            position: robot.position,
+            heading,
+            twist: Twist {
+                speed: robot.velocity.dot(&Vector2::new(cos, sin)),
+                turn_rate: self.turn_rate,
+            },
+        };
+        let view = TwistView {
+            robot: state,
+            people: &self.around.people,
+            walls: self.around.walls(),
+        };
+        let kept = self
+            .limits
+            .clipped(robot.velocity, self.limits.slowed(wanted));
+        // It drives backwards only to give way.
+        let twist = |velocity: Vector2<f64>| guard.toward(&state, velocity, velocity != kept);
+        let verified = |velocity| guard.verified(&view, twist(velocity));
+        let (twist, status) = match self.give_way(&robot, wanted, to_goal, verified) {
+            Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
+            Some(velocity) => (twist(velocity), Status::Changed),
+            None => guard.decide(
+                &view,
+                guard.toward(&state, self.limits.slowed(wanted), false),
+            ),
+        };
+        self.turn_rate = twist.turn_rate;
+        Decision {
+            velocity: velocity_of(twist, heading, situation.interval),
+            status,
         }
     }
 
@@ -162,37 +283,24 @@ impl SafeLaw {
         wanted: Vector2<f64>,
         to_goal: Vector2<f64>,
     ) -> Decision {
-        let walls = Walls {
-            shapes: &self.walls,
-        };
+        let walls = self.around.walls();
         let view = View {
             robot: *robot,
-            people: &self.people,
+            people: &self.around.people,
             walls,
         };
         let kept = self
             .limits
             .clipped(robot.velocity, self.limits.slowed(wanted));
-        if let Some(yielder) = &self.yielder {
-            let distance = to_goal.norm();
-            let outlook = Outlook {
-                robot: *robot,
-                wanted,
-                to_goal: to_goal / distance.max(f64::MIN_POSITIVE),
-                people: &self.passersby,
-                walls,
+        let guard = self.guard.as_ref();
+        let verified = |velocity| guard.is_none_or(|guard: &Guard| guard.verified(&view, velocity));
+        if let Some(velocity) = self.give_way(robot, wanted, to_goal, verified) {
+            let status = if velocity == kept {
+                Status::Kept
+            } else {
+                Status::Changed
             };
-            let guard = self.guard.as_ref();
-            let verified =
-                |velocity| guard.is_none_or(|guard: &Guard| guard.verified(&view, velocity));
-            if let Some(velocity) = yielder.decide(&outlook, verified) {
-                let status = if velocity == kept {
-                    Status::Kept
-                } else {
-                    Status::Changed
-                };
-                return Decision { velocity, status };
-            }
+            return Decision { velocity, status };
         }
         match &self.guard {
             Some(guard) => guard.decide(&view, wanted),
@@ -200,49 +308,6 @@ impl SafeLaw {
                 velocity: kept,
                 status: Status::Kept,
             },
-        }
-    }
-
-    /// Brings what the law, the shield and yielding look at to the present.
-    fn look_around(&mut self, situation: &Situation<'_, f64>) {
-        let robot = situation.robot.position;
-        let latency = self.guard.map_or(0.0, |guard| guard.shield.latency);
-        self.bodies.clear();
-        self.people.clear();
-        self.passersby.clear();
-        self.walls.clear();
-        let reach = self
-            .yielder
-            .as_ref()
-            .map_or(0.0, |yielder| yielder.settings().reach);
-        for (body, known) in situation.bodies.iter().zip(&self.known) {
-            self.bodies.push(Body {
-                regions: known.regions,
-                ..*body
-            });
-            if !body.state.present {
-                continue;
-            }
-            let placed = PlacedShape {
-                center: body.state.position.into(),
-                shape: body.shape,
-            };
-            if known.wall {
-                self.walls.push(placed);
-                continue;
-            }
-            if let Some(guard) = &self.guard {
-                self.people.push(known.person(placed, body, guard));
-            }
-            let velocity = Vector2::from(body.state.velocity);
-            let offset = placed.center - robot + velocity * latency;
-            if offset.norm() - known.touch < reach {
-                self.passersby.push(Passerby {
-                    offset,
-                    velocity,
-                    touch: known.touch,
-                });
-            }
         }
     }
 }
@@ -254,68 +319,5 @@ fn slowed(velocity: Vector2<f64>, most: f64) -> Vector2<f64> {
         velocity * (most / speed)
     } else {
         velocity
-    }
-}
-
-impl Known {
-    fn of(family: &SafeNavigation, placed: &PlacedObstacle) -> Self {
-        let near = family
-            .critical_distance
-            .map(|distance| placed.contact_distance + distance);
-        let regions = Regions {
-            critical_radius: near.map_or(placed.regions.critical_radius, |near| {
-                near.min(placed.regions.critical_radius)
-            }),
-            ..placed.regions
-        };
-        let rectangle = matches!(placed.obstacle.shape, Shape::Rectangle { .. });
-        let bound = family.shield.and_then(|shield| shield.person_speed);
-        let scene = placed.speed_bound.unwrap_or(f64::INFINITY);
-        // Half the diagonal of a rectangle that moves: yielding knows discs only.
-        let around = match placed.obstacle.shape {
-            Shape::Disc { .. } => 0.0,
-            Shape::Rectangle {
-                half_length,
-                half_width,
-                ..
-            } => half_length.hypot(half_width),
-        };
-        Self {
-            regions,
-            max_speed: if placed.stationary {
-                0.0
-            } else {
-                bound.unwrap_or(scene)
-            },
-            wall: rectangle && placed.stationary,
-            stationary: placed.stationary,
-            touch: placed.contact_distance + around,
-        }
-    }
-
-    /// What the shield assumes of an obstacle.
-    fn person(&self, placed: PlacedShape, body: &Body, guard: &Guard) -> Person {
-        let shield = &guard.shield;
-        let velocity = Vector2::from(body.state.velocity);
-        let known = |[error, acceleration]: [f64; 2]| KnownVelocity {
-            velocity,
-            error,
-            acceleration,
-        };
-        // What never moves is known exactly, as sensors have it.
-        Person {
-            placed,
-            position_error: if self.stationary {
-                0.0
-            } else {
-                shield.position_error
-            },
-            max_speed: self.max_speed,
-            latency: shield.latency,
-            known: shield
-                .velocity_bounds
-                .filter(|_| !self.stationary)
-                .map(known),
-        }
     }
 }

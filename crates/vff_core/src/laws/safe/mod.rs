@@ -5,18 +5,22 @@
 //! every part keeps is the law's own command, bit for bit.
 
 mod law;
-mod takeover;
+mod plans;
+mod surroundings;
 
 pub use law::{SafeLaw, Trace};
-pub use takeover::Takeover;
+pub use plans::Plans;
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::lanes::{Planar, Real, Vector2};
+use crate::laws::guide::{Guidance, Guide};
+use crate::laws::safe::surroundings::boundary_obstacle;
 use crate::laws::shield::Shield;
 use crate::laws::yielding::Yielding;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
 use crate::run::AnyLaw;
 use crate::world::geometry::RobotState;
+use crate::world::map::{MOST_POINTS, StaticMap};
 use crate::world::scenario::Scenario;
 
 /// A law with the parts around it.
@@ -24,12 +28,18 @@ use crate::world::scenario::Scenario;
 pub struct SafeNavigation {
     /// The law that wants a velocity.
     pub law: AnyLaw,
+    /// What stands and is known before.
+    pub map: Option<StaticMap>,
+    /// How ways are planned, if they are.
+    pub guide: Option<Guide>,
+    /// Plans that were made, shared by all runs.
+    pub plans: Plans,
     /// The shield, if there is one.
     pub shield: Option<Shield>,
     /// How the robot gives way, if it does.
     pub yielding: Option<Yielding>,
-    /// When the law is taken over from, if ever.
-    pub takeover: Option<Takeover>,
+    /// Whether a robot that makes no progress heads for its (local) goal by itself.
+    pub takeover: bool,
     /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
     /// `None`.
     pub preferred_speed: Option<f64>,
@@ -43,9 +53,12 @@ impl SafeNavigation {
     pub fn bare(law: AnyLaw) -> Self {
         Self {
             law,
+            map: None,
+            guide: None,
+            plans: Plans::default(),
             shield: None,
             yielding: None,
-            takeover: None,
+            takeover: false,
             preferred_speed: None,
             critical_distance: None,
         }
@@ -62,8 +75,8 @@ impl SafeNavigation {
         if let Some(yielding) = self.yielding {
             yielding.checked()?;
         }
-        if let Some(takeover) = self.takeover {
-            takeover.checked()?;
+        if let Some(guide) = self.guide {
+            guide.checked()?;
         }
         if let Some(speed) = self.preferred_speed {
             positive("preferred_speed", speed)?;
@@ -74,22 +87,56 @@ impl SafeNavigation {
         Ok(self)
     }
 
-    /// What the law within is told of a scenario: a robot that is as fast as is preferred.
+    /// What the law within is told of a scenario: a robot that is as fast as is preferred, and room
+    /// for the boundary points of the map.
     fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
-        let Some(speed) = self.preferred_speed else {
-            return Ok(scenario.clone());
+        let mut inner = match self.preferred_speed {
+            Some(speed) => slowed(scenario, speed)?,
+            None => scenario.clone(),
         };
-        let most = scenario.robot.max_speed;
-        if speed > most {
-            let rule = format!("be at most the largest speed of the robot, {most} m/s");
-            return Err(Failure::invalid(
-                "preferred_speed",
-                rule,
-                Given::Number(speed),
-            ));
+        if let Some(map) = &self.map {
+            check_start(map, scenario)?;
+            let point = boundary_obstacle(scenario.robot.radius);
+            inner
+                .obstacles
+                .extend(std::iter::repeat_n(point, MOST_POINTS));
         }
-        scenario.slowed(speed)
+        Ok(inner)
     }
+
+    /// The guide at work in a scenario.
+    fn guidance(&self, scenario: &Scenario) -> Result<Option<Guidance>> {
+        let Some(guide) = self.guide else {
+            return Ok(None);
+        };
+        let radius = scenario.robot.radius;
+        let ends = [scenario.start, scenario.goal];
+        let plan = self.plans.get(&guide, self.map.as_ref(), radius, ends)?;
+        Ok(Some(Guidance::new(guide, radius, plan)))
+    }
+}
+
+fn slowed(scenario: &Scenario, speed: f64) -> Result<Scenario> {
+    let most = scenario.robot.max_speed;
+    if speed > most {
+        let rule = format!("be at most the largest speed of the robot, {most} m/s");
+        let given = Given::Number(speed);
+        return Err(Failure::invalid("preferred_speed", rule, given));
+    }
+    scenario.slowed(speed)
+}
+
+/// Refuses a start in contact with the map.
+fn check_start(map: &StaticMap, scenario: &Scenario) -> Result<()> {
+    let radius = scenario.robot.radius;
+    let clearance = map.clearance(scenario.start.into());
+    if clearance > radius {
+        return Ok(());
+    }
+    let rule = format!("be farther from the map than the radius of the robot, {radius} m");
+    let given = Given::Pair(scenario.start);
+    let advice = format!("the map is {clearance:.4} m away");
+    Err(Failure::invalid("start", rule, given).mended_by(advice))
 }
 
 /// Robots side by side, each with a law and its parts.
@@ -152,6 +199,10 @@ impl LawFamily for SafeNavigation {
 
     fn chooses_velocities(&self) -> bool {
         self.law.driven().chooses_velocities()
+    }
+
+    fn steers_by_velocity(&self) -> bool {
+        self.shield.is_some()
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {

@@ -12,12 +12,14 @@ mod half_disc;
 mod person;
 mod plan;
 mod search;
+mod twist;
 mod walls;
 
 pub use bound::speed_bound;
 pub use half_disc::half_disc_distance;
 pub use person::{KnownVelocity, Person};
 pub use plan::{Plan, braking, braking_periods};
+pub use twist::{TwistGuard, TwistLimits, TwistState, TwistView};
 pub use walls::Walls;
 
 use crate::error::{Result, not_negative, positive};
@@ -257,10 +259,10 @@ impl Guard {
             return true;
         }
         let radius = self.limits.radius - self.shield.margin;
-        let present = walls.clearance(plan.position(0.0)) - radius;
-        let least = present.min(self.shield.wall_margin) + radius - walls::ROUNDING;
+        let kept = radius + self.shield.wall_margin;
+        let least = walls.clearance_up_to(plan.position(0.0), kept) - walls::ROUNDING;
         plan.chords()
-            .all(|([from, to], deviation)| walls.segment_clearance(from, to) - deviation >= least)
+            .all(|([from, to], deviation)| walls.segment_keeps(from, to, least + deviation))
     }
 
     /// Least distance between the half disc ahead and everywhere that people can be, over the plan

@@ -1,6 +1,7 @@
 //! What does not move, as the shield sees it: rectangles that stand, and the map.
 
 use crate::lanes::Vector2;
+use crate::world::map::StaticMap;
 use crate::world::shape::{PlacedShape, Shape, into_axes};
 
 /// Rounding of distances in m.
@@ -11,33 +12,41 @@ pub(super) const ROUNDING: f64 = 1e-9;
 pub struct Walls<'a> {
     /// Shapes that stand.
     pub shapes: &'a [PlacedShape],
+    /// The map.
+    pub map: Option<&'a StaticMap>,
 }
 
 impl Walls<'_> {
     /// Nothing stands anywhere.
-    pub const NONE: Self = Self { shapes: &[] };
+    pub const NONE: Self = Self {
+        shapes: &[],
+        map: None,
+    };
 
     /// Whether there is nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.shapes.is_empty()
+        self.shapes.is_empty() && self.map.is_none()
     }
 
-    /// Distance of a point from the nearest wall in m, zero inside.
+    /// Distance of a point from the nearest wall in m, zero inside; all that is at least `most` away
+    /// counts as that far.
     #[must_use]
-    pub fn clearance(&self, point: Vector2<f64>) -> f64 {
+    pub fn clearance_up_to(&self, point: Vector2<f64>, most: f64) -> f64 {
         let distances = self.shapes.iter().map(|shape| shape.distance(point));
-        distances.fold(f64::INFINITY, f64::min)
+        let least = distances.fold(most, f64::min);
+        self.map
+            .map_or(least, |map| map.clearance_up_to(point, least))
     }
 
-    /// Distance of a segment from the nearest wall in m, zero if it meets one.
+    /// Whether all points of a segment are at least so far from every wall, in m.
     #[must_use]
-    pub fn segment_clearance(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-        let distances = self
-            .shapes
-            .iter()
-            .map(|shape| segment_distance(shape, from, to));
-        distances.fold(f64::INFINITY, f64::min)
+    pub fn segment_keeps(&self, from: Vector2<f64>, to: Vector2<f64>, least: f64) -> bool {
+        let apart = |shape: &PlacedShape| segment_distance(shape, from, to) >= least;
+        self.shapes.iter().all(apart)
+            && self
+                .map
+                .is_none_or(|map| map.segment_keeps(from, to, least))
     }
 }
 
@@ -89,7 +98,10 @@ mod tests {
         let table = PlacedShape::turned([0.4, -0.2], [1.2, 0.3], 0.7);
         let pillar = PlacedShape::disc([-1.0, 0.5], 0.3);
         let shapes = [table, pillar];
-        let walls = Walls { shapes: &shapes };
+        let walls = Walls {
+            shapes: &shapes,
+            map: None,
+        };
         for [a, b, c, d] in [
             [-2.0, 0.0, 2.0, 1.5],
             [1.5, -1.0, 1.0, 1.0],
@@ -98,10 +110,13 @@ mod tests {
         ] {
             let (from, to) = (Vector2::new(a, b), Vector2::new(c, d));
             let sampled = (0..=4000)
-                .map(|part| walls.clearance(from + (to - from) * (f64::from(part) / 4000.0)))
+                .map(|part| {
+                    let place = from + (to - from) * (f64::from(part) / 4000.0);
+                    walls.clearance_up_to(place, 9.0)
+                })
                 .fold(f64::INFINITY, f64::min);
-            let exact = walls.segment_clearance(from, to);
-            assert!(exact <= sampled + 1e-12 && sampled < exact + 2e-3);
+            assert!(walls.segment_keeps(from, to, sampled - 2e-3));
+            assert!(!walls.segment_keeps(from, to, sampled + 1e-12));
         }
     }
 }

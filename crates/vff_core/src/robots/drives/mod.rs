@@ -4,11 +4,13 @@ mod driven;
 mod omni;
 mod point_mass;
 mod two_wheels;
+mod velocity;
 
 pub(crate) use omni::OmniRobot;
 pub(crate) use point_mass::{IdealHolonomic, PointMass};
 pub(crate) use two_wheels::TwoWheels;
 pub use two_wheels::{PoseFusion, Steered};
+pub(crate) use velocity::velocity_of;
 
 use crate::lanes::{Planar, Vector2};
 use crate::robots::HolonomicRobot;
@@ -30,6 +32,8 @@ pub(crate) struct Start {
     pub goal: [f64; 2],
     /// Motion step in s.
     pub step: f64,
+    /// Control period in s.
+    pub period: f64,
 }
 
 /// Where a robot is, and what its motors do, at the end of a motion step.

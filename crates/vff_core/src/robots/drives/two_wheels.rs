@@ -7,6 +7,7 @@ use crate::robots::differential::{
     DifferentialLimits, Pose, Reference, TorqueSteering, Tracker, Tracking, Twist, VirtualTorque,
 };
 use crate::robots::drives::driven::{DrivenWheels, WheelSize};
+use crate::robots::drives::velocity::VelocitySteering;
 use crate::robots::drives::{Drive, Fix, Order, PointMass, Reading, Start, WHEELS};
 use crate::robots::wheels::{DifferentialKinematics, Slip, WheelDrive};
 use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
@@ -19,6 +20,8 @@ pub enum Steered {
     Following(Tracking),
     /// It turns toward the force of the law.
     Torque(VirtualTorque),
+    /// It takes up the velocity that the law commands, turning within the control period.
+    Velocity,
 }
 
 impl Default for Steered {
@@ -63,6 +66,8 @@ enum Steering {
     Follow(Box<Tracker>),
     /// Turns toward the force.
     Torque(TorqueSteering),
+    /// Takes up a velocity.
+    Velocity(VelocitySteering),
 }
 
 /// The robot.
@@ -115,6 +120,7 @@ impl TwoWheels {
                 let law = law.checked()?;
                 Steering::Torque(TorqueSteering::new(&law, robot, &limits, start.step))
             }
+            Steered::Velocity => Steering::Velocity(VelocitySteering::new(start)),
         };
         Ok(Self {
             ideal: robot.wheels,
@@ -164,6 +170,7 @@ impl TwoWheels {
                 tracker.command(&self.known, &reference, self.goal)
             }
             Steering::Torque(torque) => torque.command(&self.known, self.twist, self.force),
+            Steering::Velocity(velocity) => velocity.command(),
         }
     }
 
@@ -233,8 +240,12 @@ impl Drive for TwoWheels {
         if let Some(fix) = &order.fix {
             self.correct(fix);
         }
-        if let Steering::Follow(tracker) = &mut self.steering {
-            tracker.permit_goal_phase(order.clear);
+        match &mut self.steering {
+            Steering::Follow(tracker) => tracker.permit_goal_phase(order.clear),
+            Steering::Torque(_) => {}
+            Steering::Velocity(velocity) => {
+                velocity.hold(order.force, self.known.heading, self.twist);
+            }
         }
     }
 

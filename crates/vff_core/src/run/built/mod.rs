@@ -13,7 +13,7 @@ pub(super) mod sight;
 pub use crate::robots::drives::{PoseFusion, Steered};
 pub use history::BuiltTrajectory;
 pub use many::{Histories, ManyOptions, ManyRuns, run_many_built};
-pub(super) use run::{clock_of, robot_of};
+pub(super) use run::{clock_of, robot_under};
 pub use run::{evaluate_built, simulate_built};
 
 use crate::error::{Failure, Given, Result, positive};
@@ -94,6 +94,7 @@ impl Built {
             heading: scenario.rules.heading,
             goal: scenario.goal,
             step: self.step,
+            period: scenario.rules.control_period,
         }
     }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::robots::drives::{Drive, IdealHolonomic, OmniRobot, TwoWheels};
 use crate::run::Interrupted;
-use crate::run::built::Built;
 use crate::run::built::history::BuiltTrajectory;
+use crate::run::built::{Built, Steered};
 use crate::run::episode::Episode;
 use crate::run::group::AnyLaw;
 use crate::run::metrics::{Performance, Weights, performance};
@@ -54,8 +54,28 @@ pub fn evaluate_built(
     Ok((score, run, nominal))
 }
 
+/// The robot of a scenario under a law, at its start: one with two wheels follows what the law steers
+/// it by.
+pub(crate) fn robot_under(
+    scenario: &Scenario,
+    built: &Built,
+    law: Option<&AnyLaw>,
+) -> Result<Box<dyn Drive>> {
+    if scenario.differential.is_some() && law.is_some_and(|law| law.driven().steers_by_velocity()) {
+        let steered = Steered::Velocity;
+        return robot_of(
+            scenario,
+            &Built {
+                steered,
+                ..built.clone()
+            },
+        );
+    }
+    robot_of(scenario, built)
+}
+
 /// The robot of a scenario, at its start.
-pub(crate) fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn Drive>> {
+fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn Drive>> {
     built.suiting(scenario)?;
     let start = built.start_in(scenario);
     let wheels = built.wheels.as_deref();

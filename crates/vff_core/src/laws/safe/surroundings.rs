@@ -1,0 +1,275 @@
+//! What the law, the shield and yielding look at, each in its own words.
+
+use crate::error::Result;
+use crate::lanes::{Planar, Vector2};
+use crate::laws::Situation;
+use crate::laws::safe::SafeNavigation;
+use crate::laws::shield::{Guard, KnownVelocity, Person, Walls};
+use crate::laws::yielding::{Passerby, Yielder};
+use crate::world::geometry::Body;
+use crate::world::map::{MOST_POINTS, StaticMap};
+use crate::world::motion::{BodyState, Motion};
+use crate::world::obstacle::{Limits, Obstacle, Regions, Shape};
+use crate::world::scenario::{PlacedObstacle, Scenario};
+use crate::world::shape::PlacedShape;
+
+/// Distance of the surfaces at which a boundary point brakes a force law, in m.
+const CRITICAL: f64 = 0.001;
+
+/// Distance of the surfaces within which it acts on a force law, in m.
+const INFLUENCE: f64 = 0.3;
+
+/// Distance within which boundary points are shown to laws that choose velocities, in m.
+const REACH: f64 = 5.0;
+
+/// A boundary point of a map as an obstacle, for a robot of a radius in m.
+pub(super) fn boundary_obstacle(robot_radius: f64) -> PlacedObstacle {
+    PlacedObstacle {
+        obstacle: Obstacle {
+            shape: Shape::Disc { radius: 0.0 },
+            motion: Motion::at_rest([0.0; 2]),
+            limits: Limits::default(),
+        },
+        regions: Regions {
+            critical_radius: robot_radius + CRITICAL,
+            active_radius: robot_radius + INFLUENCE,
+        },
+        contact_distance: robot_radius,
+        stationary: true,
+        speed_bound: Some(0.0),
+    }
+}
+
+/// How an obstacle is dealt with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// Somebody, or something that moves.
+    Person,
+    /// A rectangle that stands.
+    Wall,
+    /// It stands, and the map shows it.
+    Mapped,
+}
+
+/// What is known of an obstacle before the run.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    kind: Kind,
+    /// Regions for the law.
+    regions: Regions,
+    /// Largest speed that the shield reckons with, in m/s.
+    max_speed: f64,
+    /// Whether it never moves.
+    stationary: bool,
+    /// Distance of the centers at contact in m.
+    touch: f64,
+}
+
+/// Everything around the robot.
+pub(super) struct Surroundings {
+    known: Vec<Known>,
+    map: Option<StaticMap>,
+    /// Share by which boundary points hide others, and how far they are looked for, in m.
+    hiding: (f64, f64),
+    /// Regions of a boundary point.
+    boundary: Regions,
+    points: Vec<[f64; 2]>,
+    /// For the law: obstacles with its regions, then boundary points.
+    pub bodies: Vec<Body>,
+    /// For the shield.
+    pub people: Vec<Person>,
+    /// For yielding.
+    pub passersby: Vec<Passerby>,
+    shapes: Vec<PlacedShape>,
+}
+
+impl Surroundings {
+    /// Of a scenario as the law within knows it.
+    pub fn new(family: &SafeNavigation, inner: &Scenario) -> Result<Self> {
+        let map = family.map.clone();
+        let people = inner.obstacles.len() - if map.is_some() { MOST_POINTS } else { 0 };
+        let known = inner.obstacles[..people].iter();
+        let boundary = boundary_obstacle(inner.robot.radius).regions;
+        Ok(Self {
+            known: known.map(|placed| Known::of(family, placed)).collect(),
+            map,
+            hiding: if family.law.driven().chooses_velocities() {
+                (1.0, REACH)
+            } else {
+                (0.5, boundary.active_radius)
+            },
+            boundary,
+            points: Vec::new(),
+            bodies: Vec::new(),
+            people: Vec::new(),
+            passersby: Vec::new(),
+            shapes: Vec::new(),
+        })
+    }
+
+    /// What does not move.
+    pub fn walls(&self) -> Walls<'_> {
+        Walls {
+            shapes: &self.shapes,
+            map: self.map.as_ref(),
+        }
+    }
+
+    /// Discs that may stand, by center and radius; `None` for what the map shows already.
+    pub fn standing<'a>(
+        &'a self,
+        bodies: &'a [Body],
+    ) -> impl Iterator<Item = Option<(Vector2<f64>, f64)>> + Clone + 'a {
+        bodies.iter().zip(&self.known).map(|(body, known)| {
+            let Shape::Disc { radius } = body.shape else {
+                return None;
+            };
+            let counts = body.state.present && known.kind == Kind::Person;
+            counts.then(|| (Vector2::splat(body.state.position), radius))
+        })
+    }
+
+    /// Brings everything to the present.
+    pub fn look(
+        &mut self,
+        situation: &Situation<'_, f64>,
+        guard: Option<&Guard>,
+        yielder: Option<&Yielder>,
+    ) {
+        let robot = situation.robot.position;
+        let latency = guard.map_or(0.0, |guard| guard.shield.latency);
+        let reach = yielder.map(|yielder| yielder.settings().reach);
+        self.bodies.clear();
+        self.people.clear();
+        self.passersby.clear();
+        self.shapes.clear();
+        for (body, known) in situation.bodies.iter().zip(&self.known) {
+            let present = body.state.present && known.kind != Kind::Mapped;
+            self.bodies.push(Body {
+                regions: known.regions,
+                state: BodyState {
+                    present,
+                    ..body.state
+                },
+                ..*body
+            });
+            if !present {
+                continue;
+            }
+            let placed = PlacedShape {
+                center: body.state.position.into(),
+                shape: body.shape,
+            };
+            if known.kind == Kind::Wall {
+                self.shapes.push(placed);
+                continue;
+            }
+            if let Some(guard) = guard {
+                self.people.push(known.person(placed, body, guard));
+            }
+            let velocity = Vector2::from(body.state.velocity);
+            let offset = placed.center - robot + velocity * latency;
+            if reach.is_some_and(|reach| offset.norm() - known.touch < reach) {
+                self.passersby.push(Passerby {
+                    offset,
+                    velocity,
+                    touch: known.touch,
+                });
+            }
+        }
+        self.show_boundary(robot);
+    }
+
+    /// Boundary points of the map as bodies for the law; the others of them are absent.
+    fn show_boundary(&mut self, robot: Vector2<f64>) {
+        let Some(map) = &self.map else {
+            return;
+        };
+        let (kappa, reach) = self.hiding;
+        map.boundary_points(robot, reach, kappa, &mut self.points);
+        let present = self.points.iter().map(|point| (*point, true));
+        let absent = std::iter::repeat(([0.0; 2], false));
+        for (position, present) in present.chain(absent).take(MOST_POINTS) {
+            self.bodies.push(Body {
+                shape: Shape::Disc { radius: 0.0 },
+                regions: self.boundary,
+                state: BodyState {
+                    position,
+                    velocity: [0.0; 2],
+                    acceleration: [0.0; 2],
+                    present,
+                },
+            });
+        }
+    }
+}
+
+impl Known {
+    fn of(family: &SafeNavigation, placed: &PlacedObstacle) -> Self {
+        let near = family
+            .critical_distance
+            .map(|distance| placed.contact_distance + distance);
+        let own = placed.regions.critical_radius;
+        let regions = Regions {
+            critical_radius: near.map_or(own, |near| near.min(own)),
+            ..placed.regions
+        };
+        let bound = family.shield.and_then(|shield| shield.person_speed);
+        let scene = placed.speed_bound.unwrap_or(f64::INFINITY);
+        // Half the diagonal of a rectangle that moves: yielding knows discs only.
+        let (rectangle, around) = match placed.obstacle.shape {
+            Shape::Disc { .. } => (false, 0.0),
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                ..
+            } => (true, half_length.hypot(half_width)),
+        };
+        let place = placed.obstacle.motion.at(0.0, &mut 0).position;
+        let mapped = |map: &StaticMap| map.clearance(place.into()) == 0.0;
+        let kind = if placed.stationary && family.map.as_ref().is_some_and(mapped) {
+            Kind::Mapped
+        } else if placed.stationary && rectangle {
+            Kind::Wall
+        } else {
+            Kind::Person
+        };
+        Self {
+            kind,
+            regions,
+            max_speed: if placed.stationary {
+                0.0
+            } else {
+                bound.unwrap_or(scene)
+            },
+            stationary: placed.stationary,
+            touch: placed.contact_distance + around,
+        }
+    }
+
+    /// What the shield assumes of an obstacle.
+    fn person(&self, placed: PlacedShape, body: &Body, guard: &Guard) -> Person {
+        let shield = &guard.shield;
+        let velocity = Vector2::from(body.state.velocity);
+        let known = |[error, acceleration]: [f64; 2]| KnownVelocity {
+            velocity,
+            error,
+            acceleration,
+        };
+        // What never moves is known exactly, as sensors have it.
+        Person {
+            placed,
+            position_error: if self.stationary {
+                0.0
+            } else {
+                shield.position_error
+            },
+            max_speed: self.max_speed,
+            latency: shield.latency,
+            known: shield
+                .velocity_bounds
+                .filter(|_| !self.stationary)
+                .map(known),
+        }
+    }
+}

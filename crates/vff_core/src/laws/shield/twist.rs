@@ -1,0 +1,359 @@
+//! The shield of a robot with two wheels: it commands a speed and a turn rate.
+
+use crate::error::Result;
+use crate::lanes::Vector2;
+use crate::laws::shield::person::Person;
+use crate::laws::shield::walls::{ROUNDING, Walls};
+use crate::laws::shield::{Limits, Shield, Status};
+use crate::robots::differential::{DifferentialLimits, Twist};
+
+/// Slower than this is at rest and looks nowhere, in m/s.
+const STILL: f64 = 1e-9;
+
+/// Parts of a control period, and of a braking, between which a plan is looked at.
+const PARTS: usize = 8;
+
+/// Speeds and turn rates that are tried on each side.
+const STEPS: i32 = 6;
+
+/// Weight of turning otherwise than wanted against driving at another speed, each as a share of its
+/// limit.
+const TURN_WEIGHT: f64 = 0.25;
+
+/// Most that the robot turns within a period, in rad: below a right angle a velocity tells the twist.
+const MOST_TURN: f64 = 1.5;
+
+/// Rounding of a number of periods.
+const PERIOD_ROUNDING: f64 = 1e-9;
+
+/// A robot with two wheels at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistState {
+    /// Position in m.
+    pub position: Vector2<f64>,
+    /// Heading in rad.
+    pub heading: f64,
+    /// Speed and turn rate.
+    pub twist: Twist,
+}
+
+/// A point of a plan.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    time: f64,
+    position: Vector2<f64>,
+    heading: f64,
+}
+
+/// Which way the half disc looks over a part of the plan: the union of two, or all around.
+#[derive(Clone, Copy, Debug)]
+enum Ahead {
+    Union([Vector2<f64>; 2]),
+    Around,
+}
+
+/// Ramp of speed and turn rate within a period, then both fall together to rest on the curve of the
+/// command.
+#[derive(Clone, Copy, Debug)]
+struct TwistPlan {
+    ramp: [Node; PARTS + 1],
+    braking: [Node; PARTS + 1],
+    /// Largest speed of the center in m/s.
+    speed: f64,
+    ahead: [Ahead; 2],
+}
+
+fn unit(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Vector2::new(cos, sin)
+}
+
+/// Nodes of a part in which the twist changes evenly.
+fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1] {
+    let mut nodes = [first; PARTS + 1];
+    let part = duration / PARTS as f64;
+    for index in 0..PARTS {
+        let share = (index as f64 + 0.5) / PARTS as f64;
+        let mean = Twist {
+            speed: from.speed + (to.speed - from.speed) * share,
+            turn_rate: from.turn_rate + (to.turn_rate - from.turn_rate) * share,
+        };
+        let Node {
+            time,
+            position,
+            heading,
+        } = nodes[index];
+        let half = 0.5 * mean.turn_rate * part;
+        nodes[index + 1] = Node {
+            time: time + part,
+            position: position + unit(heading + half) * (mean.speed * part),
+            heading: heading + 2.0 * half,
+        };
+    }
+    nodes
+}
+
+impl Ahead {
+    /// Between two headings, at speeds of one sign or none; a half turn or more looks all around.
+    fn over(headings: [f64; 2], speeds: [f64; 2]) -> Self {
+        let [from, to] = headings;
+        let [first, last] = speeds;
+        let backwards = first < -STILL || last < -STILL;
+        let forwards = first > STILL || last > STILL;
+        if (backwards && forwards) || (to - from).abs() >= std::f64::consts::PI {
+            return Self::Around;
+        }
+        let sign = if backwards { -1.0 } else { 1.0 };
+        Self::Union([unit(from) * sign, unit(to) * sign])
+    }
+
+    fn clearance(&self, person: &Person, place: Vector2<f64>, radius: f64, time: f64) -> f64 {
+        let [one, other] = match self {
+            Self::Union(both) => *both,
+            // Two opposite half discs are the disc.
+            Self::Around => [Vector2::x(), -Vector2::x()],
+        };
+        let first = person.clearance(place, radius, one, time);
+        first.min(person.clearance(place, radius, other, time))
+    }
+}
+
+impl TwistPlan {
+    fn new(state: &TwistState, command: Twist, limits: &TwistLimits) -> Self {
+        let first = Node {
+            time: 0.0,
+            position: state.position,
+            heading: state.heading,
+        };
+        let ramp = nodes(first, limits.period, state.twist, command);
+        let braking = limits.braking_periods(command) * limits.period;
+        let braking = nodes(ramp[PARTS], braking, command, Twist::default());
+        let turned = |nodes: &[Node; PARTS + 1]| [nodes[0].heading, nodes[PARTS].heading];
+        let speeds = [state.twist.speed, command.speed];
+        Self {
+            ahead: [
+                Ahead::over(turned(&ramp), speeds),
+                Ahead::over(turned(&braking), [command.speed; 2]),
+            ],
+            ramp,
+            braking,
+            speed: state.twist.speed.abs().max(command.speed.abs()),
+        }
+    }
+
+    fn parts(&self) -> [(&[Node; PARTS + 1], Ahead); 2] {
+        [(&self.ramp, self.ahead[0]), (&self.braking, self.ahead[1])]
+    }
+
+    /// Whether nobody can be ahead at any time; `grown`: what is added to the radius at the end.
+    fn avoids(&self, person: &Person, radius: f64, grown: f64) -> bool {
+        if self.speed < STILL {
+            return true;
+        }
+        let radius = radius + person.radius();
+        let end = self.braking[PARTS].time;
+        let rate = self.speed + person.rate(end);
+        for (nodes, ahead) in self.parts() {
+            let at = |node: &Node| ahead.clearance(person, node.position, radius, node.time);
+            let mut before = at(&nodes[0]);
+            for pair in nodes.windows(2) {
+                let after = at(&pair[1]);
+                // The least that a function of this rate can be between two values.
+                if 0.5 * (before + after - rate * (pair[1].time - pair[0].time)) <= 0.0 {
+                    return false;
+                }
+                before = after;
+            }
+        }
+        let last = &self.braking[PARTS];
+        grown == 0.0 || self.ahead[1].clearance(person, last.position, radius + grown, end) > 0.0
+    }
+
+    /// Whether the whole way keeps a distance from walls, with the sagitta of each part to spare.
+    fn keeps(&self, walls: &Walls<'_>, least: f64) -> bool {
+        let mut pairs = self
+            .parts()
+            .into_iter()
+            .flat_map(|(nodes, _)| nodes.windows(2));
+        pairs.all(|pair| {
+            let way = pair[1].position - pair[0].position;
+            let turn = (pair[1].heading - pair[0].heading).abs();
+            walls.segment_keeps(
+                pair[0].position,
+                pair[1].position,
+                least + way.norm() * turn / 8.0,
+            )
+        })
+    }
+}
+
+/// Limits of a robot with two wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistLimits {
+    /// Radius in m, with the margin of the shield.
+    pub radius: f64,
+    /// Limits of speed and turn rate.
+    pub drive: DifferentialLimits,
+    /// Control period in s.
+    pub period: f64,
+}
+
+impl TwistLimits {
+    fn braking_periods(&self, twist: Twist) -> f64 {
+        let slow = twist.speed.abs() / (self.drive.max_acceleration * self.period);
+        let straight = twist.turn_rate.abs() / (self.drive.max_angular_acceleration * self.period);
+        (slow.max(straight) - PERIOD_ROUNDING).ceil().max(0.0)
+    }
+
+    /// The twist after one period of braking.
+    fn braking(&self, twist: Twist) -> Twist {
+        let periods = self.braking_periods(twist);
+        let share = if periods <= 1.0 {
+            0.0
+        } else {
+            (periods - 1.0) / periods
+        };
+        Twist {
+            speed: twist.speed * share,
+            turn_rate: twist.turn_rate * share,
+        }
+    }
+}
+
+/// The shield of a robot with two wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistGuard {
+    /// What it assumes.
+    pub shield: Shield,
+    /// Limits of the robot.
+    pub limits: TwistLimits,
+}
+
+/// A robot with two wheels among people and walls.
+#[derive(Clone, Copy, Debug)]
+pub struct TwistView<'a> {
+    /// The robot.
+    pub robot: TwistState,
+    /// People.
+    pub people: &'a [Person],
+    /// What does not move.
+    pub walls: Walls<'a>,
+}
+
+impl TwistGuard {
+    /// The shield of a robot with limits and a radius in m.
+    ///
+    /// # Errors
+    /// Names the number that is not allowed.
+    pub fn new(shield: Shield, drive: DifferentialLimits, limits: &Limits) -> Result<Self> {
+        let radius = limits.radius + shield.checked()?.margin;
+        let drive = DifferentialLimits {
+            max_turn_rate: drive.max_turn_rate.min(MOST_TURN / limits.period),
+            ..drive.checked()?
+        };
+        Ok(Self {
+            shield,
+            limits: TwistLimits {
+                radius,
+                drive,
+                period: limits.period,
+            },
+        })
+    }
+
+    /// The twist toward a wanted velocity: `v = |u| cos(beta)`, `omega = beta/T`, within all limits.
+    /// Backwards only where the robot gives way; otherwise it turns first.
+    #[must_use]
+    pub fn toward(&self, robot: &TwistState, wanted: Vector2<f64>, backwards: bool) -> Twist {
+        let ahead = unit(robot.heading);
+        let along = wanted.dot(&ahead);
+        let mut angle = ahead.perp(&wanted).atan2(along);
+        let mut speed = along;
+        if along < 0.0 {
+            if backwards {
+                angle -= std::f64::consts::PI.copysign(angle);
+            } else {
+                speed = 0.0;
+            }
+        }
+        if wanted.norm() < STILL {
+            angle = 0.0;
+        }
+        let wish = Twist {
+            speed,
+            turn_rate: angle / self.limits.period,
+        };
+        let drive = &self.limits.drive;
+        drive.toward(robot.twist, wish, self.limits.period)
+    }
+
+    /// Whether a twist that can be reached within a period is verified.
+    #[must_use]
+    pub fn verified(&self, view: &TwistView<'_>, command: Twist) -> bool {
+        let plan = TwistPlan::new(&view.robot, command, &self.limits);
+        let radius = self.limits.radius;
+        let avoids = |person: &Person| plan.avoids(person, radius, self.shield.grown(person));
+        view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan)
+    }
+
+    fn off_walls(&self, walls: &Walls<'_>, plan: &TwistPlan) -> bool {
+        if walls.is_empty() || plan.speed < STILL {
+            return true;
+        }
+        let kept = self.limits.radius - self.shield.margin + self.shield.wall_margin;
+        let least = walls.clearance_up_to(plan.ramp[0].position, kept) - ROUNDING;
+        plan.keeps(walls, least)
+    }
+
+    /// The verified twist nearest to a wanted one, or the rest of the last plan.
+    #[must_use]
+    pub fn decide(&self, view: &TwistView<'_>, wanted: Twist) -> (Twist, Status) {
+        if self.verified(view, wanted) {
+            return (wanted, Status::Kept);
+        }
+        let mut tried = self.candidates(&view.robot, wanted);
+        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut verified = tried
+            .into_iter()
+            .filter(|(_, twist)| self.verified(view, *twist));
+        match verified.next() {
+            Some((_, twist)) => (twist, Status::Changed),
+            None => (self.limits.braking(view.robot.twist), Status::Braking),
+        }
+    }
+
+    /// Reachable twists with what each differs from the wanted one.
+    fn candidates(&self, robot: &TwistState, wanted: Twist) -> Vec<(f64, Twist)> {
+        let drive = &self.limits.drive;
+        let period = self.limits.period;
+        let price = |twist: Twist| {
+            (twist.speed - wanted.speed).abs() / drive.max_speed
+                + TURN_WEIGHT * (twist.turn_rate - wanted.turn_rate).abs() / drive.max_turn_rate
+        };
+        let reach = [
+            drive.max_acceleration * period,
+            drive.max_angular_acceleration * period,
+        ];
+        let share = |step: i32| f64::from(step) / f64::from(STEPS);
+        let mut found = Vec::new();
+        for slower in -STEPS..=STEPS {
+            for turn in -STEPS..=STEPS {
+                found.push(Twist {
+                    speed: robot.twist.speed + reach[0] * share(slower),
+                    turn_rate: robot.twist.turn_rate + reach[1] * share(turn),
+                });
+            }
+        }
+        let rests = (0..=10).map(|part| Twist {
+            speed: wanted.speed * (1.0 - 0.1 * f64::from(part)),
+            ..wanted
+        });
+        found.extend(rests);
+        found.push(Twist::default());
+        found.push(robot.twist);
+        found.push(self.limits.braking(robot.twist));
+        let reached = |wish: Twist| drive.toward(robot.twist, wish, period);
+        let priced = |wish: Twist| (price(reached(wish)), reached(wish));
+        found.into_iter().map(priced).collect()
+    }
+}

@@ -1,0 +1,262 @@
+"""Search for a person against whom a law breaks a property."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, callback, checked_seed, count, instance, number, positive, thread_count, word
+from hrsafety._statistics import Share, wilson
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
+from hrsafety.navigation.obstacles import MovingDisc
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.tables import Columns, Table
+
+__all__ = ["Falsification", "Pursuit", "falsify"]
+
+Property = Literal["at_fault", "clearance", "arrival", "speed"]
+Progress = Callable[[int, int], object]
+MOST_EPISODES = 10_000_000
+FAR = 1e4
+"""Where the person stands in the scenario before the episodes place him, in m."""
+ROOM = 0.3
+"""Least distance of the surfaces at the start, in m."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Pursuit(Table):
+    """One episode against a person who sees the robot; rows are control periods and the end.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Instants in s.
+    position, velocity : ndarray, shape (n, 2)
+        True motion of the robot in m and m/s.
+    person_position : ndarray, shape (n, 2)
+        True position of the person in m.
+    least_toward : float
+        Least distance of the surfaces while the robot moved toward somebody, in m; infinite if it
+        never did. Not above zero: it touched him at fault.
+    min_clearance : float
+        Least distance of the surfaces in m.
+    arrival_time, end_time : float
+        In s; NaN without arrival.
+    top_speed : float
+        Largest speed of the robot in m/s.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    person_position: Array
+    least_toward: float
+    min_clearance: float
+    arrival_time: float
+    end_time: float
+    top_speed: float
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Time, positions and velocities with their units.
+        """
+        return {
+            "time_s": self.time,
+            "x_m": self.position[:, 0],
+            "y_m": self.position[:, 1],
+            "vx_m_per_s": self.velocity[:, 0],
+            "vy_m_per_s": self.velocity[:, 1],
+            "person_x_m": self.person_position[:, 0],
+            "person_y_m": self.person_position[:, 1],
+        }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Falsification:
+    """What a search for a broken property found.
+
+    Parameters
+    ----------
+    property : str
+        The property, ``"own"`` for one of your own.
+    margin : ndarray, shape (n,)
+        By how much it held in each episode, negative where it was broken; of CMA-ES the worst alone.
+    episodes : int
+        Episodes in all.
+    worst : Pursuit
+        The episode of the least margin.
+    """
+
+    property: str
+    margin: Array
+    episodes: int
+    worst: Pursuit
+
+    @property
+    def broken(self) -> bool:
+        """Whether an episode broke the property."""
+        return bool(self.margin.min() < 0.0)
+
+    @property
+    def share(self) -> Share:
+        """Share of the random episodes that broke it, with its 95 % Wilson interval."""
+        return wilson(int((self.margin < 0.0).sum()), len(self.margin))
+
+
+def falsify(
+    scenario: Scenario,
+    law: AnyLaw,
+    property: Property | Callable[[Pursuit], float] = "at_fault",  # noqa: A002  # the field's word
+    *,
+    method: Literal["random", "cma_es"] = "random",
+    episodes: int = 1000,
+    least: float = 0.0,
+    most: float | None = None,
+    person_radius: float = 0.4,
+    person_speed: float = 1.6,
+    built: AsBuilt | None = None,
+    seed: int = 0,
+    step: float = 0.01,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Falsification:
+    """Search for a person, who sees the robot, against whom a law breaks a property.
+
+    One person is added to the scenario, at most as fast as is said. Random persons keep directions for
+    0.35 s, circle and then dash, pursue with a lead, or feint; CMA-ES chooses the start, eight
+    directions, the share of pursuit and the lead. What the robot knows of the person is as noisy and late
+    as the measurement of the scenario says; every episode has noise of its own.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where the robot goes, with whatever else there is.
+    law : law
+        What drives it.
+    property : {"at_fault", "clearance", "arrival", "speed"} or callable
+        What is to hold: the robot never moves toward somebody whom it touches; surfaces never come
+        nearer than ``least``; the robot arrives within the time limit; it is never faster than
+        ``most``. Or a function of a `Pursuit` that returns a margin, negative where your property is
+        broken (random persons only).
+    method : {"random", "cma_es"}
+        How persons are chosen.
+    episodes : int
+        How many episodes.
+    least : float
+        Least clearance in m.
+    most : float or None
+        Largest speed in m/s; that of the robot when ``None``.
+    person_radius, person_speed : float
+        Radius in m and largest speed in m/s of the person.
+    built : AsBuilt or None
+        How the robot is built, as for `simulate`.
+    seed : int
+        Seed of persons and noise.
+    step : float
+        Motion step in s.
+    threads : int or None
+        Number of threads; all cores when ``None``.
+    progress : callable or None
+        Called with (episodes done, episodes in all).
+
+    Returns
+    -------
+    Falsification
+        Margins, and the worst episode.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range, or the law cannot work in the scenario.
+    KeyboardInterrupt
+        Within 0.2 s of Ctrl-C.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> scene = nav.Scenario(start=(0, 0), goal=(6, 0), time_limit=12.0)
+    >>> law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
+    >>> nav.falsify(scene, law, episodes=20).broken
+    False
+    """
+    scene = instance("scenario", scenario, Scenario)
+    drives, own = as_law(law), callable(property)
+    kind = "at_fault" if own else word("property", property, ("at_fault", "clearance", "arrival", "speed"))
+    limit = number("least", least) if kind == "clearance" else _most(most, scene) if kind == "speed" else 0.0
+    how = word("method", method, ("random", "cma_es"))
+    if own and how == "cma_es":
+        raise InvalidParameterError("method", 'be "random" for a property of your own', method)
+    hunt = _hunt(scene, drives, built, step, positive("person_radius", person_radius), person_speed)
+    runs, start = count("episodes", episodes, most=MOST_EPISODES), checked_seed("seed", seed)
+    team, heard = thread_count(threads), callback("progress", progress)
+    if how == "cma_es":
+        numbers, margin = hunt.worst(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
+        worst = _pursuit(hunt.replay(seed=seed, index=0, numbers=numbers))
+        return Falsification(property=kind, margin=np.array([margin]), episodes=episodes, worst=worst)
+    if callable(property):
+        return _own(hunt, property, episodes, seed)
+    margins = hunt.sweep(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)["margin"]
+    index = int(np.argmin(margins))
+    worst = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
+    return Falsification(property=kind, margin=margins, episodes=episodes, worst=worst)
+
+
+def _most(most: float | None, scenario: Scenario) -> float:
+    return scenario.robot.max_speed * (1.0 + 1e-9) if most is None else positive("most", most)
+
+
+def _hunt(
+    scenario: Scenario, law: Law, built: AsBuilt | None, step: float, radius: float, speed: float
+) -> _hrsafety.Hunt:
+    """Return the search in the scenario with one more person."""
+    fastest = positive("person_speed", speed)
+    person = MovingDisc(center=(FAR, FAR), velocity=(fastest, 0.0), radius=radius)
+    scene = replace(scenario, obstacles=(*scenario.obstacles, person))
+    how = AsBuilt() if built is None else instance("built", built, AsBuilt)
+    return _hrsafety.Hunt(
+        scene._native,
+        law._native,
+        how._native,
+        step=positive("step", step),
+        person_speed=fastest,
+        free=scenario.robot.radius + radius + ROOM,
+    )
+
+
+def _own(hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: int, seed: int) -> Falsification:
+    """Judge every episode by a function."""
+    margins, worst, least = [], None, math.inf
+    for index in range(episodes):
+        pursuit = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
+        margin = number("margin of the property", margin_of(pursuit))
+        margins.append(margin)
+        if worst is None or margin < least:
+            worst, least = pursuit, margin
+    assert worst is not None  # noqa: S101  # there is at least one episode
+    return Falsification(property="own", margin=np.array(margins), episodes=episodes, worst=worst)
+
+
+def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:
+    return Pursuit(
+        time=fields["time"],
+        position=fields["position"],
+        velocity=fields["velocity"],
+        person_position=fields["person_position"],
+        least_toward=float(fields["least_toward"][0]),
+        min_clearance=float(fields["min_clearance"][0]),
+        arrival_time=float(fields["arrival_time"][0]),
+        end_time=float(fields["end_time"][0]),
+        top_speed=float(fields["top_speed"][0]),
+    )
