@@ -1,0 +1,115 @@
+"""What is compared: a law and the parts around it, in a word such as ``field+shield+yielding``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from hrsafety import navigation as nav
+from hrsafety._arguments import meant
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.declared import LAWS
+
+__all__ = ["PARTS", "Entry", "entry"]
+
+PARTS = ("shield", "yielding")
+"""Parts that a word may add to a law."""
+_ORCA = nav.OptimalReciprocalCollisionAvoidance(horizon=2.0, margin=0.0)
+_OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField(), "orca": _ORCA})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entry:
+    """A law and its parts.
+
+    Parameters
+    ----------
+    name : str
+        The word.
+    law : Law
+        The law itself.
+    parts : tuple of str
+        Which of ``PARTS`` are around it.
+    """
+
+    name: str
+    law: nav.Law
+    parts: tuple[str, ...]
+
+    def built(
+        self,
+        *,
+        person_speed: float,
+        preferred_speed: float | None = None,
+        latency: float = 0.0,
+        position_error: float = 0.0,
+    ) -> nav.Law:
+        """Return the law with its parts.
+
+        Parameters
+        ----------
+        person_speed : float
+            What the shield assumes of people, in m/s.
+        preferred_speed : float or None
+            Limit of the wanted velocity in m/s.
+        latency, position_error : float
+            What the shield assumes of measurements, in s and m.
+
+        Returns
+        -------
+        Law
+            The law itself without parts.
+        """
+        if not self.parts:
+            return self.law
+        shield = nav.laws.Shield(person_speed=person_speed, latency=latency, position_error=position_error)
+        return nav.laws.SafeNavigation(
+            self.law,
+            shield=shield if "shield" in self.parts else None,
+            yielding=nav.laws.Yielding() if "yielding" in self.parts else None,
+            preferred_speed=preferred_speed,
+        )
+
+
+def entry(word: str) -> Entry:
+    """Return the law and the parts that a word names.
+
+    Parameters
+    ----------
+    word : str
+        A law (``field`` is the virtual force field, ``orca`` the reciprocal law with a horizon of 2 s and
+        no margin), then ``+shield`` and ``+yielding`` as wanted.
+
+    Returns
+    -------
+    Entry
+        What is to be run.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the law or a part is unknown.
+
+    Examples
+    --------
+    >>> from hrsafety.benchmarks import entry
+    >>> entry("orca+shield").parts
+    ('shield',)
+    """
+    name, *parts = word.strip().lower().split("+")
+    for part in parts:
+        if part not in PARTS:
+            raise InvalidParameterError("laws", f"add {' or '.join(PARTS)} to a law", word, meant(part, PARTS))
+    return Entry(name=word, law=_law(name, word), parts=tuple(each for each in PARTS if each in parts))
+
+
+def _law(name: str, word: str) -> nav.Law:
+    plain = name.replace("-", "_")
+    if plain in _OWN:
+        return _OWN[plain]
+    for known, kind in LAWS.items():
+        if plain == known or plain in kind.OTHER_NAMES:
+            return kind()
+    names = [*_OWN, *LAWS]
+    raise InvalidParameterError("laws", f"name {', '.join(names)}", word, meant(plain, names))

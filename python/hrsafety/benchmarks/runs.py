@@ -1,0 +1,137 @@
+"""Runs of a benchmark: chunk by chunk, each kept when it is done, resumed where they stopped."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from hrsafety._arguments import checked_seed, count, positive, sequence, thread_count, word
+from hrsafety.benchmarks.entries import Entry, entry
+from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
+from hrsafety.benchmarks.suites import CHUNK, SUITES, Case, Suite
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["benchmark", "case_of"]
+
+Progress = Callable[[int, int], object]
+
+
+def benchmark(
+    suite: str,
+    laws: Sequence[str] | None = None,
+    *,
+    cases: int | None = None,
+    person_speed: float = 1.6,
+    seed: int | None = None,
+    data: str | Path | None = None,
+    out: str | Path | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Run laws through a suite.
+
+    Parameters
+    ----------
+    suite : {"s4", "s5", "crowd", "recordings", "adversary"}
+        The protocol.
+    laws : sequence of str or None
+        Entries such as ``"field+shield+yielding"``; those of the suite when ``None``.
+    cases : int or None
+        Number of episodes; those of the protocol when ``None``.
+    person_speed : float
+        What shields assume of people, in m/s.
+    seed : int or None
+        Seed of the draw; that of the protocol when ``None``.
+    data : path or None
+        Folder with recordings, for suites that read one.
+    out : path or None
+        Folder in which rows are kept as they come; the same call resumes there.
+    threads : int or None
+        Number of threads.
+    progress : callable or None
+        Called with (episodes done, episodes in all).
+
+    Returns
+    -------
+    Result
+        Episodes of every entry.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a word is unknown, a number out of range, or the folder holds something else.
+
+    Examples
+    --------
+    >>> from hrsafety.benchmarks import benchmark
+    >>> result = benchmark("s4", ["orca+shield+yielding"], cases=4)
+    >>> result.at_fault("orca+shield+yielding").value
+    0.0
+    """
+    kind = SUITES[word("suite", suite, tuple(SUITES))]
+    entries = [entry(each) for each in (kind.laws if laws is None else sequence("laws", laws))]
+    if not entries:
+        raise InvalidParameterError("laws", "name at least one law", laws)
+    runs = count("cases", kind.cases if cases is None else cases, most=kind.most)
+    first = kind.seed if seed is None else checked_seed("seed", seed)
+    if kind.needs_data and data is None:
+        raise InvalidParameterError("data", "name the folder with the recordings", None)
+    settings = {
+        "person_speed": positive("person_speed", person_speed),
+        "seed": first,
+        "data": None if data is None else Path(data),
+        "threads": thread_count(threads),
+    }
+    place = None if out is None else Path(out)
+    if place is not None:
+        place.mkdir(parents=True, exist_ok=True)
+    done = 0
+    rows: dict[str, Sequence[Row]] = {}
+    for each in entries:
+
+        def heard(own: int, before: int = done) -> None:
+            if progress is not None:
+                progress(before + own, len(entries) * runs)
+
+        rows[each.name] = _run(kind, each, runs, settings, place, heard)
+        done += runs
+    return Result(suite=kind.name, rows=rows)
+
+
+def case_of(settings: dict[str, object], each: Entry, cases: Sequence[int]) -> Case:
+    """Return some episodes of an entry."""
+    return Case(cases=cases, entry=each, **settings)  # type: ignore[arg-type]  # checked by the caller
+
+
+def _file(place: Path, suite: Suite, each: Entry, settings: dict[str, object]) -> Path:
+    """Return where rows are kept; other settings have another file."""
+    plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
+    return place / f"{suite.name}-{plain}-v{settings['person_speed']:g}-seed{settings['seed']}.csv"
+
+
+def _run(
+    suite: Suite,
+    each: Entry,
+    runs: int,
+    settings: dict[str, object],
+    place: Path | None,
+    heard: Callable[[int], None],
+) -> list[Row]:
+    path = None if place is None else _file(place, suite, each, settings)
+    rows = [] if path is None else read_rows(path)
+    known = {row.case for row in rows}
+    if path is not None:
+        # Without a line that was cut off.
+        path.write_text(row_text(rows, head=True), encoding="utf-8")
+    missing = [case for case in range(runs) if case not in known]
+    heard(runs - len(missing))
+    for begin in range(0, len(missing), CHUNK):
+        chunk = missing[begin : begin + CHUNK]
+        found = list(suite.run(case_of(settings, each, chunk)))
+        if path is not None:
+            with path.open("a", encoding="utf-8") as file:
+                file.write(row_text(found, head=False))
+        rows += found
+        heard(runs - len(missing) + begin + len(chunk))
+    return sorted((row for row in rows if row.case < runs), key=lambda row: row.case)

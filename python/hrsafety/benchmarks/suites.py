@@ -1,0 +1,303 @@
+"""The suites: which episodes, with which robot, and what counts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hrsafety import datasets, scenarios
+from hrsafety import navigation as nav
+from hrsafety.benchmarks.entries import Entry
+from hrsafety.benchmarks.results import Row
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["SUITES", "Case", "Suite"]
+
+CHUNK = 50
+"""Episodes that are run, and kept, together."""
+DRAWN = 2000
+"""Episodes of S4 and S5 that one draw gives."""
+LAW_SPEED, ROBOT_SPEED = 1.0, 1.5
+"""In S4 and S5: largest speed of the law, and of the robot with parts around it, in m/s."""
+ERROR = 0.025
+"""Error of measured positions in the adversary suite, in m and each axis."""
+LATENCY = 0.1
+"""Age of measured positions there, in s."""
+PURSUED = 12.0
+"""Length of an episode there, in s."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """What an entry is run in.
+
+    Parameters
+    ----------
+    cases : sequence of int
+        Numbers of the episodes.
+    entry : Entry
+        What is run.
+    person_speed : float
+        What the shield assumes of people, in m/s.
+    data : Path or None
+        Folder with the data of the suite.
+    seed : int
+        Seed of the draw.
+    threads : int or None
+        Number of threads.
+    """
+
+    cases: Sequence[int]
+    entry: Entry
+    person_speed: float
+    data: Path | None
+    seed: int
+    threads: int | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Suite:
+    """A protocol.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    summary : str
+        What it is, in a sentence.
+    laws : tuple of str
+        Entries that are run without others.
+    cases : int
+        Episodes without another number.
+    seed : int
+        Seed of the draw without another one.
+    most : int
+        Most episodes.
+    needs_data : bool
+        Whether it reads a folder.
+    scene : callable
+        Scenario of an episode, to show it again.
+    run : callable
+        Rows of some episodes.
+    """
+
+    name: str
+    summary: str
+    laws: tuple[str, ...]
+    cases: int
+    seed: int
+    most: int
+    needs_data: bool = False
+    scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
+    run: Callable[[Case], Iterator[Row]]
+
+
+def _rows(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
+    for index, case in enumerate(cases):
+        yield Row(
+            case=case,
+            outcome=str(table.outcome[index]),
+            arrival_time=float(table.arrival_time[index]),
+            end_time=float(table.end_time[index]),
+            contacts=int(table.contacts_moving[index] + table.contacts_standing[index]),
+            at_fault=int(table.contacts_at_fault[index]),
+            clearance=float(table.min_clearance[index]),
+        )
+
+
+# ---- discs that drift: S4 and S5 ------------------------------------------------------------
+
+
+def _drifting(discs: int) -> Callable[[Case, int], tuple[nav.Scenario, nav.Law]]:
+    def scene(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
+        generator = np.random.default_rng(case.seed)
+        shape = (DRAWN, discs)
+        x, y = generator.uniform(2.0, 9.0, shape)[index], generator.uniform(-3.0, 3.0, shape)[index]
+        speed, course = generator.uniform(0.0, 1.0, shape)[index], generator.uniform(-np.pi, np.pi, shape)[index]
+        velocity = np.stack([speed * np.cos(course), speed * np.sin(course)], axis=1)
+        parts = bool(case.entry.parts)
+        robot = nav.HolonomicRobot(radius=0.3, max_speed=ROBOT_SPEED if parts else LAW_SPEED, max_acceleration=10.0)
+        obstacles = tuple(
+            nav.MovingDisc(center=(float(x[k]), float(y[k])), velocity=tuple(velocity[k].tolist()), radius=0.3)
+            for k in range(discs)
+        )
+        place = nav.Scenario(
+            start=(0.0, 0.0),
+            goal=(10.0, 0.0),
+            obstacles=obstacles,
+            robot=robot,
+            control_period=0.1,
+            time_limit=15.0,
+            rest_time=15.0,
+            arrival_tolerance=0.3,
+        )
+        return place, case.entry.built(person_speed=case.person_speed, preferred_speed=LAW_SPEED)
+
+    return scene
+
+
+def _many(scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]]) -> Callable[[Case], Iterator[Row]]:
+    """Run scenes that end at the first contact, side by side."""
+
+    def run(case: Case) -> Iterator[Row]:
+        pairs = [scene(case, index) for index in case.cases]
+        table = nav.simulate_many(
+            [place for place, _ in pairs], pairs[0][1], stop_on_contact=True, threads=case.threads
+        )
+        yield from _rows(table, case.cases)
+
+    return run
+
+
+# ---- crowds ---------------------------------------------------------------------------------
+
+
+def _crowd(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
+    place = scenarios.random_traffic(12, seed=case.seed + index)
+    return place, case.entry.built(person_speed=case.person_speed)
+
+
+# ---- recorded people ------------------------------------------------------------------------
+
+APPEARING = 0.2
+"""Contacts within this time after somebody appears on the robot do not count, in s."""
+
+
+def _recordings(case: Case) -> list[Path]:
+    folder = case.data
+    files = [] if folder is None else sorted(folder.glob("*.csv")) if folder.is_dir() else [folder]
+    if not files:
+        raise InvalidParameterError("data", "be a folder with recordings (.csv), or one of them", str(folder))
+    return files
+
+
+def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
+    files = _recordings(case)
+    recording, run = divmod(index, RUNS)
+    if recording >= len(files):
+        raise InvalidParameterError("cases", f"be below {RUNS * len(files)}: {RUNS} of each recording", index)
+    crossing = _crossings(files[recording])[run]
+    return crossing.scenario, case.entry.built(person_speed=case.person_speed)
+
+
+RUNS = 24
+_KNOWN: dict[Path, list[scenarios.Crossing]] = {}
+
+
+def _crossings(path: Path) -> list[scenarios.Crossing]:
+    if path not in _KNOWN:
+        _KNOWN[path] = list(scenarios.crossings(datasets.load_pedestrians(path), runs=RUNS))
+    return _KNOWN[path]
+
+
+def _cross(case: Case) -> Iterator[Row]:
+    for index in case.cases:
+        place, law = _crossing(case, index)
+        run = nav.simulate(place, law)
+        touched = ~np.isnan(run.contact_time)
+        appeared = np.array([person.motion.time[0] if hasattr(person, "motion") else 0.0 for person in place.obstacles])
+        counted = touched & (run.contact_time > appeared + APPEARING) if len(appeared) else touched
+        arrived = not np.isnan(run.arrival_time)
+        yield Row(
+            case=index,
+            outcome="collided" if counted.any() else "arrived" if arrived else str(run.outcome),
+            arrival_time=float(run.arrival_time),
+            end_time=float(run.time[-1]),
+            contacts=int(counted.sum()),
+            at_fault=int((run.contact_at_fault & counted).sum()),
+            clearance=float(run.min_clearance.min(initial=np.inf)),
+        )
+
+
+# ---- people who want to be touched ----------------------------------------------------------
+
+
+def _pursued(case: Case) -> tuple[nav.Scenario, nav.Law]:
+    measurement = nav.Measurement(scale=ERROR, of="obstacles", latency=LATENCY)
+    place = nav.Scenario(
+        start=(0.0, 0.0), goal=(8.0, 0.0), time_limit=PURSUED, rest_time=PURSUED, measurement=measurement
+    )
+    error = float(np.hypot(ERROR, ERROR))
+    law = case.entry.built(person_speed=case.person_speed, latency=LATENCY, position_error=error)
+    return place, law
+
+
+def _pursue(case: Case) -> Iterator[Row]:
+    place, law = _pursued(case)
+    first = case.cases[0]
+    found = nav.metrics.falsify(
+        place, law, episodes=len(case.cases), seed=case.seed + first, person_speed=1.6, threads=case.threads
+    )
+    for index, margin in zip(case.cases, found.margin.tolist(), strict=True):
+        yield Row(
+            case=index,
+            outcome="collided" if margin < 0.0 else "arrived",
+            arrival_time=float("nan"),
+            end_time=PURSUED,
+            contacts=int(margin < 0.0),
+            at_fault=int(margin < 0.0),
+            clearance=margin,
+        )
+
+
+_GUARDED = ("field", "field+shield+yielding", "orca", "orca+shield+yielding")
+
+SUITES: dict[str, Suite] = {
+    suite.name: suite
+    for suite in (
+        Suite(
+            name="s4",
+            summary="3 discs drift across 10 m",
+            laws=_GUARDED,
+            cases=DRAWN,
+            seed=1,
+            most=DRAWN,
+            scene=_drifting(3),
+            run=_many(_drifting(3)),
+        ),
+        Suite(
+            name="s5",
+            summary="12 discs drift across 10 m",
+            laws=_GUARDED,
+            cases=DRAWN,
+            seed=1,
+            most=DRAWN,
+            scene=_drifting(12),
+            run=_many(_drifting(12)),
+        ),
+        Suite(
+            name="crowd",
+            summary="12 people cross the way of the robot and do not give way",
+            laws=("field", "field+shield+yielding", "orca", "orca+shield", "orca+shield+yielding"),
+            cases=1000,
+            seed=0,
+            most=1_000_000,
+            scene=_crowd,
+            run=_many(_crowd),
+        ),
+        Suite(
+            name="recordings",
+            summary="the robot crosses recorded people",
+            laws=("field", "field+shield+yielding"),
+            cases=RUNS,
+            seed=0,
+            most=1_000_000,
+            needs_data=True,
+            scene=_crossing,
+            run=_cross,
+        ),
+        Suite(
+            name="adversary",
+            summary="a person who sees the robot wants it to be at fault",
+            laws=("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield"),
+            cases=1000,
+            seed=0,
+            most=10_000_000,
+            run=_pursue,
+        ),
+    )
+}
+"""The suites by name."""
