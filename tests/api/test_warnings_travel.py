@@ -112,6 +112,19 @@ def test_impacts_of_a_sweep_are_judged_by_their_numbers(design: Any) -> None:
     assert warning.subject == "head_mass"
 
 
+def test_boundaries_of_foam_carry_what_is_doubtful_about_their_impact() -> None:
+    grams = impact.Manipulator(mass=9600.0, damping=250.0, stiffness=20e3)
+    upper = impact.foam_stiffness_upper(grams, damping=[50.0], closing_speed=1.25)
+    lower = impact.foam_stiffness_lower(grams, damping=[50.0], closing_speed=1250.0)
+    assert [each.subject for each in upper.warnings] == ["manipulator.mass"]
+    assert [each.subject for each in lower.warnings] == ["manipulator.mass", "closing_speed"]
+    fine = impact.foam_stiffness_upper(impact.MANIPULATOR_1, damping=[50.0], closing_speed=1.25)
+    assert fine.warnings == ()
+    limits = impact.FoamLimits(peak_head_acceleration_g=10.0)
+    design = impact.design_foam(grams, limits, closing_speed=1.25)
+    assert design.upper([50.0]).warnings == design.warnings != ()
+
+
 def test_a_row_that_is_no_scene_is_named_by_its_chunk_not_by_the_look_ahead() -> None:
     radii = sweep.Grid([sweep.Axis(name="robot_radius", values=[0.2, 50.0])])
     with pytest.raises(Exception, match="must") as caught:

@@ -59,6 +59,7 @@ def _joined(one: FoamBoundary, two: FoamBoundary) -> FoamBoundary:
         crossing_status=one.crossing_status + two.crossing_status,
         holds_below=np.concatenate([one.holds_below, two.holds_below]),
         holds_above=np.concatenate([one.holds_above, two.holds_above]),
+        warnings=one.warnings,
     )
 
 
@@ -72,4 +73,5 @@ def _at(found: FoamBoundary, rows: list[int]) -> FoamBoundary:
         crossing_status=tuple(found.crossing_status[row] for row in rows),
         holds_below=found.holds_below[rows],
         holds_above=found.holds_above[rows],
+        warnings=found.warnings,
     )

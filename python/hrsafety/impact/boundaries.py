@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, numbers, positive
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.impact.criteria.loads import Doubts, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Head, Manipulator
 
 __all__ = ["FoamBoundary", "foam_stiffness_lower", "foam_stiffness_upper"]
@@ -45,6 +46,8 @@ class FoamBoundary:
     holds_below, holds_above : ndarray of bool
         Whether the limits are kept at the softest (1 N/m) and the stiffest (10 MN/m) foam that
         was looked at.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly what was meant: of the manipulator, the head and the speed.
     """
 
     damping: Array
@@ -55,6 +58,7 @@ class FoamBoundary:
     crossing_status: tuple[tuple[str, ...], ...]
     holds_below: npt.NDArray[np.bool_]
     holds_above: npt.NDArray[np.bool_]
+    warnings: Doubts = ()
 
 
 def foam_stiffness_upper(
@@ -119,7 +123,8 @@ def foam_stiffness_upper(
     requirements = [
         requirement(name, positive(name, limit), hit) for name, limit in limits.items() if limit is not None
     ]
-    return boundary(manipulator, requirements, damping, check_impact(closing_speed, horizon), upper=True)
+    found = boundary(manipulator, requirements, damping, check_impact(closing_speed, horizon), upper=True)
+    return _doubted(found, manipulator, hit, closing_speed)
 
 
 def foam_stiffness_lower(
@@ -169,7 +174,13 @@ def foam_stiffness_lower(
     """
     hit = Head.maximum() if head is None else check_head("head", head)
     requirements = [requirement("max_compression", positive("max_compression", max_compression), hit)]
-    return boundary(manipulator, requirements, damping, check_impact(closing_speed, horizon), upper=False)
+    found = boundary(manipulator, requirements, damping, check_impact(closing_speed, horizon), upper=False)
+    return _doubted(found, manipulator, hit, closing_speed)
+
+
+def _doubted(found: FoamBoundary, manipulator: Manipulator, head: AnyHead, closing_speed: float) -> FoamBoundary:
+    """Return a boundary with what is doubtful about its impact."""
+    return replace(found, warnings=manipulator.warnings + head.warnings + speed_warnings(closing_speed))
 
 
 class Impact(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -90,7 +90,8 @@ class FoamDesign:
 
     def _boundary(self, names: Sequence[str], damping: npt.ArrayLike, *, upper: bool) -> FoamBoundary:
         impact = Impact(self.closing_speed, self.horizon)
-        return boundary(self.manipulator, self._requirements(names), damping, impact, upper=upper)
+        found = boundary(self.manipulator, self._requirements(names), damping, impact, upper=upper)
+        return replace(found, warnings=self.warnings)
 
     def _requirements(self, names: Sequence[str] | None = None) -> list[Requirement]:
         """Return limits with their heads, all or those of some names."""
