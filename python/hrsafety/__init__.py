@@ -3,7 +3,8 @@
 `navigation` simulates mobile robots under virtual force fields among people and things and
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
 manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
-ultrasonic sensors see. Sub-modules load on first use, so importing
+ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
+limits of contact and separation distances. Sub-modules load on first use, so importing
 the package costs little more than importing numpy.
 """
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from hrsafety import (
+        arms,
         cli,
         datasets,
         impact,
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
         reactive,
         reproduce,
         scenarios,
+        standards,
         sweep,
     )
 
@@ -42,6 +45,7 @@ __all__ = [
     "ShapeError",
     "SimulationError",
     "__version__",
+    "arms",
     "cli",
     "datasets",
     "impact",
@@ -52,6 +56,7 @@ __all__ = [
     "reactive",
     "reproduce",
     "scenarios",
+    "standards",
     "sweep",
 ]
 

@@ -18,9 +18,11 @@ __all__ = [
     "MOST_LOCAL_STARTS",
     "MOST_OBSTACLES",
     "MOST_PATH_NUMBERS",
+    "MOST_MASSES",
     "MOST_PIXELS",
     "MOST_POINTS",
     "MOST_POINTS_OF_AXIS",
+    "MOST_POINT_STATES",
     "MOST_RAYS",
     "MOST_REFINEMENTS",
     "MOST_REPEATS",
@@ -90,3 +92,8 @@ MOST_POINTS_OF_AXIS = 10**5
 MOST_ROWS_AT_ONCE = 10**8
 # Chunks that are under way, and how often one is tried again.
 MOST_TASKS = 10**5
+
+# Effective masses of one call: 800 MB.
+MOST_MASSES = 10**8
+# Positions, mobilities and extremes of one call: 250 bytes each.
+MOST_POINT_STATES = 10**7

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 __all__ = [
     "CONTACT_SPEED",
+    "Arm",
     "AsBuilt",
     "Burst",
     "Camera",
@@ -50,6 +51,7 @@ __all__ = [
     "SkirtScene",
     "Slip",
     "Sonar",
+    "StoppingCurve",
     "Tracking",
     "TriOmniKinematics",
     "Ultrasonic",
@@ -60,6 +62,7 @@ __all__ = [
     "WheelDrive",
     "Yielding",
     "attraction_forces",
+    "bare_forces",
     "built_evaluate",
     "built_many",
     "built_simulate",
@@ -90,6 +93,7 @@ __all__ = [
     "force_terms",
     "front_hypervolume",
     "gain_front",
+    "guard_distance",
     "hic",
     "hic_of_pulse",
     "holonomic_wheels",
@@ -121,6 +125,8 @@ __all__ = [
     "search_gains",
     "search_gains_globally",
     "shield_speed_bound",
+    "separation_distances",
+    "separation_speeds",
     "signal_push",
     "simulate",
     "simulate_batch",
@@ -144,6 +150,7 @@ __all__ = [
     "track_batch",
     "tube_inertia",
     "uniform_links",
+    "urdf_joint_names",
     "vectors_to_world",
     "wheel_reference",
     "wheel_response",
@@ -1692,3 +1699,56 @@ def holonomic_wheels() -> list[_WheelPreset]: ...
 def differential_wheels() -> list[_WheelPreset]: ...
 def wheel_reference(speed: _Array, period: float) -> tuple[_Array, _Array]: ...
 def wheel_response(time: _Array, *, dynamics: _Triple, current: float) -> _Array: ...
+
+# ---- arms -----------------------------------------------------------------------------------
+
+_Rows = tuple[_Array, list[int]]
+_Vector3 = tuple[float, float, float]
+_Load = tuple[str, float, _Vector3, tuple[_Vector3, _Vector3, _Vector3]]
+
+@final
+class Arm:
+    """An arm on a base that stands still."""
+
+    def __new__(
+        cls, urdf: str, payloads: Sequence[_Load], armature: Sequence[tuple[str, float]], locked: Sequence[str]
+    ) -> Self: ...
+    def facts(self) -> dict[str, Any]:
+        """What is known of the arm without a pose."""
+    def effective_mass(self, given: Mapping[str, object], directions: _Rows) -> _Array:
+        """Effective masses along directions."""
+    def point_states(self, given: Mapping[str, object]) -> dict[str, _Array]:
+        """Positions, mobilities, heaviest and lightest directions of points."""
+    def velocities(self, given: Mapping[str, object], rates: _Rows) -> _Array:
+        """Velocities of points for rates of all joints."""
+
+def urdf_joint_names(urdf: str) -> list[str]:
+    """Names of the joints of a URDF that take values."""
+
+def bare_forces(closing_speed: _Array, robot_mass: _Array, body_mass: float, stiffness: float) -> _Array:
+    """Contact forces of closing speeds on a linear region without a covering."""
+
+# ---- separation -----------------------------------------------------------------------------
+
+@final
+class StoppingCurve:
+    """Measured stops at one load and extension."""
+
+    def __new__(
+        cls, axes: Sequence[Sequence[float]], time: _Array, distance: _Array, load: float, extension: float
+    ) -> Self: ...
+    def distances(self, robot_speed: _Array, rows: Mapping[str, _Array]) -> _Array:
+        """Distances for robots that stop as measured."""
+    def speeds(self, distance: _Array, rows: Mapping[str, _Array]) -> tuple[_Array, npt.NDArray[np.bool_]]:
+        """Speeds that distances allow, and whether more might be allowed beyond the table."""
+
+def separation_distances(robot_speed: _Array, deceleration: _Array, rows: Mapping[str, _Array]) -> _Array:
+    """Distances with a constant deceleration."""
+
+def separation_speeds(distance: _Array, deceleration: _Array, rows: Mapping[str, _Array]) -> _Array:
+    """Speeds that distances allow with a constant deceleration."""
+
+def guard_distance(
+    stopping_time: float, capability: float | None, height: float | None
+) -> tuple[float, float, float, float]:
+    """Least distance of a guard, the first result, the speed of approach and the intrusion distance."""

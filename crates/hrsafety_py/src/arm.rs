@@ -71,6 +71,8 @@ impl Arm {
         fields.value("free", free)?;
         let links: Vec<&str> = arm.links.iter().map(|link| link.name.as_str()).collect();
         fields.value("link_names", links)?;
+        let parents: Vec<Option<usize>> = arm.links.iter().map(|link| link.parent).collect();
+        fields.value("parents", parents)?;
         let moved: Vec<bool> = arm
             .links
             .iter()
@@ -209,6 +211,12 @@ impl Given<'_> {
             watched(py, Report::none(), run)
         }
     }
+}
+
+/// Names of the joints of a URDF that take values.
+#[pyfunction]
+pub fn urdf_joint_names(urdf: &str) -> PyResult<Vec<String>> {
+    Ok(arm::build::joint_names(urdf).map_err(CoreError::from)?)
 }
 
 /// Contact forces of closing speeds on a linear region without a covering.

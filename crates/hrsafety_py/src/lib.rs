@@ -47,7 +47,7 @@ mod _hrsafety {
     }
 
     #[pymodule_export]
-    use crate::arm::{Arm, bare_forces};
+    use crate::arm::{Arm, bare_forces, urdf_joint_names};
     #[pymodule_export]
     use crate::batch::simulate_batch;
     #[pymodule_export]

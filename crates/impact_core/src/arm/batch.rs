@@ -1,12 +1,11 @@
 //! Effective masses of arrays of poses, points and directions, over all cores.
 
-use nalgebra::allocator::Allocator;
-use nalgebra::{Const, DefaultAllocator, Dim, Dyn, U3, Vector3};
+use nalgebra::Vector3;
 use numeric::error::{Failure, Given, Result};
 use numeric::parallel::{Work, each_run};
 
 use super::mobility::{Extremes, Mobility};
-use super::model::Arm;
+use super::model::{Arm, sized};
 use super::pose::{Pose, Singular, singular};
 
 /// Elements that a thread does before it takes others.
@@ -70,50 +69,6 @@ pub struct PointState {
     pub extremes: Extremes,
 }
 
-/// Chooses the size of the mass matrix when the program is compiled, where that is small.
-macro_rules! sized {
-    ($arm:expr, $size:ident => $call:expr) => {
-        match $arm.free {
-            1 => {
-                let $size = Const::<1>;
-                $call
-            }
-            2 => {
-                let $size = Const::<2>;
-                $call
-            }
-            3 => {
-                let $size = Const::<3>;
-                $call
-            }
-            4 => {
-                let $size = Const::<4>;
-                $call
-            }
-            5 => {
-                let $size = Const::<5>;
-                $call
-            }
-            6 => {
-                let $size = Const::<6>;
-                $call
-            }
-            7 => {
-                let $size = Const::<7>;
-                $call
-            }
-            8 => {
-                let $size = Const::<8>;
-                $call
-            }
-            _ => {
-                let $size = Dyn($arm.free);
-                $call
-            }
-        }
-    };
-}
-
 impl Arm {
     /// Effective masses along directions, which need not be unit vectors (kg).
     ///
@@ -133,7 +88,7 @@ impl Arm {
             rows: &units,
             ..*directions
         };
-        sized!(self, size => self.each(places, Some(&directions), work, size, |_, _, mobility, along| {
+        sized!(self, SIZE => self.each::<SIZE, _>(places, Some(&directions), work, |_, _, mobility, along| {
             mobility.effective_mass(along)
         }))
     }
@@ -144,7 +99,7 @@ impl Arm {
     /// As `effective_masses`.
     pub fn point_states(&self, places: &Places<'_>, work: Work<'_>) -> Result<Vec<PointState>> {
         self.check(places)?;
-        sized!(self, size => self.each(places, None, work, size, |pose, point, mobility, _| PointState {
+        sized!(self, SIZE => self.each::<SIZE, _>(places, None, work, |pose, point, mobility, _| PointState {
             position: pose.position(places.link, point),
             mobility: *mobility,
             extremes: mobility.extremes(),
@@ -163,9 +118,18 @@ impl Arm {
     ) -> Result<Vec<Vector3<f64>>> {
         self.check(places)?;
         check_rows("rates", rates, places.shape)?;
+        sized!(self, SIZE => self.each_velocity::<SIZE>(places, rates, work))
+    }
+
+    fn each_velocity<const N: usize>(
+        &self,
+        places: &Places<'_>,
+        rates: &Broadcast<'_>,
+        work: Work<'_>,
+    ) -> Result<Vec<Vector3<f64>>> {
         let spots = Spots::new(places, Some(rates));
         each_block(spots.count, work, |range| {
-            let mut pose = Pose::new(self, Dyn(self.free));
+            let mut pose = Pose::<N>::new(self);
             let mut found = Vec::with_capacity(range.len());
             for element in range {
                 let [joints, point, rate] = spots.rows(element);
@@ -178,20 +142,16 @@ impl Arm {
     }
 
     /// Results of `of` for every element; what neighbors have in common is computed once.
-    fn each<D: Dim, T: Send>(
+    fn each<const N: usize, T: Send>(
         &self,
         places: &Places<'_>,
         directions: Option<&Broadcast<'_>>,
         work: Work<'_>,
-        size: D,
-        of: impl Fn(&Pose<'_, D>, &Vector3<f64>, &Mobility, &Vector3<f64>) -> T + Sync,
-    ) -> Result<Vec<T>>
-    where
-        DefaultAllocator: Allocator<D, D> + Allocator<D, U3>,
-    {
+        of: impl Fn(&Pose<'_, N>, &Vector3<f64>, &Mobility, &Vector3<f64>) -> T + Sync,
+    ) -> Result<Vec<T>> {
         let spots = Spots::new(places, directions);
         each_block(spots.count, work, |range| {
-            let mut pose = Pose::new(self, size);
+            let mut pose = Pose::<N>::new(self);
             let mut last: Option<[usize; 2]> = None;
             let (mut point, mut mobility) = (Vector3::zeros(), Mobility::default());
             let mut found = Vec::with_capacity(range.len());
@@ -212,10 +172,12 @@ impl Arm {
         })
     }
 
-    fn set<D: Dim>(&self, pose: &mut Pose<'_, D>, places: &Places<'_>, row: usize) -> Result<()>
-    where
-        DefaultAllocator: Allocator<D, D> + Allocator<D, U3>,
-    {
+    fn set<const N: usize>(
+        &self,
+        pose: &mut Pose<'_, N>,
+        places: &Places<'_>,
+        row: usize,
+    ) -> Result<()> {
         pose.set(places.joints.row(row))
             .map_err(|Singular { column }| singular(self, column, &format!(" in joints[{row}]")))
     }
@@ -233,7 +195,10 @@ impl Arm {
             .chunks_exact(self.joints.len())
             .enumerate()
         {
-            let name = |joint: &str| format!("joints[{row}][{joint:?}]");
+            let name = |joint: &str| match places.joints.rows.len() / values.len() {
+                1 => format!("joints[{joint:?}]"),
+                _ => format!("joints[{row}][{joint:?}]"),
+            };
             for (joint, value) in self.joints.iter().zip(values) {
                 if !value.is_finite() {
                     let given = Given::Number(*value);
@@ -279,8 +244,11 @@ fn check_rows(name: &str, given: &Broadcast<'_>, shape: &[usize]) -> Result<()> 
         let found = Given::Found("too few rows".into());
         return Err(Failure::invalid(name, "have a row for each result", found));
     }
+    if name == "joints" {
+        return Ok(()); // checked with their limits
+    }
     match given.rows.iter().position(|value| !value.is_finite()) {
-        Some(index) if name != "joints" => {
+        Some(index) => {
             let place = format!("{name}[{}]", index / given.width.max(1));
             Err(Failure::invalid(
                 place,
@@ -288,7 +256,7 @@ fn check_rows(name: &str, given: &Broadcast<'_>, shape: &[usize]) -> Result<()> 
                 Given::Number(given.rows[index]),
             ))
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 

@@ -113,9 +113,98 @@ impl Body {
     }
 }
 
+/// A symmetric matrix, such as an inertia.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Symmetric {
+    xx: f64,
+    xy: f64,
+    xz: f64,
+    yy: f64,
+    yz: f64,
+    zz: f64,
+}
+
+impl Symmetric {
+    /// The symmetric part of a matrix.
+    #[must_use]
+    pub fn of(matrix: &Matrix3<f64>) -> Self {
+        let even = 0.5 * (matrix + matrix.transpose());
+        Self {
+            xx: even.m11,
+            xy: even.m12,
+            xz: even.m13,
+            yy: even.m22,
+            yz: even.m23,
+            zz: even.m33,
+        }
+    }
+
+    /// What a mass adds to an inertia when that is moved by `away` from the origin it was about:
+    /// `2 (h.r) 1 - h r^T - r h^T` with the first moment `h` about the middle of both origins.
+    #[must_use]
+    pub fn moved(middle: &Vector3<f64>, away: &Vector3<f64>) -> Self {
+        let (h, r) = (middle, away);
+        let (x, y, z) = (h.x * r.x, h.y * r.y, h.z * r.z);
+        Self {
+            xx: 2.0 * (y + z),
+            xy: -(h.x * r.y + h.y * r.x),
+            xz: -(h.x * r.z + h.z * r.x),
+            yy: 2.0 * (x + z),
+            yz: -(h.y * r.z + h.z * r.y),
+            zz: 2.0 * (x + y),
+        }
+    }
+
+    /// The same matrix along turned axes: `R I R^T`.
+    #[inline]
+    #[must_use]
+    pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
+        let row = |index: usize| -> Vector3<f64> { rotation.row(index).transpose() };
+        let (x, y, z) = (row(0), row(1), row(2));
+        let (along_x, along_y) = (self.times(&x), self.times(&y));
+        Self {
+            xx: x.dot(&along_x),
+            xy: y.dot(&along_x),
+            xz: z.dot(&along_x),
+            yy: y.dot(&along_y),
+            yz: z.dot(&along_y),
+            zz: z.dot(&self.times(&z)),
+        }
+    }
+
+    /// The matrix times a vector.
+    #[inline]
+    #[must_use]
+    pub fn times(&self, vector: &Vector3<f64>) -> Vector3<f64> {
+        let v = vector;
+        Vector3::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
+    }
+
+    /// Sum of the diagonal.
+    #[must_use]
+    pub fn trace(&self) -> f64 {
+        self.xx + self.yy + self.zz
+    }
+
+    /// Adds another matrix.
+    #[inline]
+    pub fn add(&mut self, other: &Self) {
+        self.xx += other.xx;
+        self.xy += other.xy;
+        self.xz += other.xz;
+        self.yy += other.yy;
+        self.yz += other.yz;
+        self.zz += other.zz;
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Body;
+    use super::{Body, Symmetric};
     use nalgebra::{Matrix3, Vector3};
 
     fn body(moments: [f64; 3]) -> Body {
@@ -135,6 +224,23 @@ mod tests {
         assert!(body([0.0, 0.0, 0.0]).checked().is_ok());
         assert!(body([f64::NAN, 1.0, 1.0]).checked().is_err());
         assert!(body([f64::MAX, f64::MAX, f64::MAX]).checked().is_err());
+    }
+
+    #[test]
+    fn symmetric_matrices_are_matrices() {
+        let matrix = Matrix3::new(2.0, 0.3, -0.4, 0.3, 1.5, 0.2, -0.4, 0.2, 3.0);
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
+        let expected = turn.matrix() * matrix * turn.matrix().transpose();
+        let along = Vector3::new(0.2, 0.5, -0.9);
+        let turned = Symmetric::of(&matrix).turned(turn.matrix());
+        assert!((turned.times(&along) - expected * along).amax() < 1e-15);
+        assert!((turned.trace() - 6.5).abs() < 1e-14);
+        // A point mass at h, seen from r before it: its first moment about the middle is h + r/2.
+        let (h, r) = (Vector3::new(0.1, 0.2, 0.3), Vector3::new(-0.4, 0.5, 0.6));
+        let about = |p: Vector3<f64>| Matrix3::identity() * p.norm_squared() - p * p.transpose();
+        let moved = Symmetric::moved(&(h + 0.5 * r), &r);
+        let difference = about(h + r) - about(h);
+        assert!((moved.times(&along) - difference * along).amax() < 1e-15);
     }
 
     #[test]

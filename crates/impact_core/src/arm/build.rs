@@ -3,14 +3,11 @@
 use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
 use numeric::error::{Failure, Given, Result, not_negative};
 
-use super::body::{Body, LEAST_GYRATION};
+use super::body::{Body, LEAST_GYRATION, Symmetric};
 use super::description::{Description, Kind};
-use super::model::{Arm, Joint, JointKind, Link, Segment};
+use super::model::{Arm, Joint, JointKind, Link, MOST_MOVING, Segment, sized};
 use super::pose;
 use super::tree::Tree;
-
-/// Most joints that move: their mass matrix is kept whole.
-pub const MOST_MOVING: usize = 256;
 
 /// Something that a link carries.
 #[derive(Clone, Debug)]
@@ -32,6 +29,20 @@ pub struct Options {
     pub locked: Vec<String>,
 }
 
+/// Names of the joints of a URDF that take values, in the order of the file.
+///
+/// # Errors
+/// It is no URDF, or its links do not form a tree.
+pub fn joint_names(text: &str) -> Result<Vec<String>> {
+    let description = Description::read(text)?;
+    let tree = Tree::of(&description)?;
+    let own = description.joints.into_iter().enumerate();
+    Ok(own
+        .filter(|(index, joint)| joint.kind != Kind::Fixed && tree.source[*index].0 == *index)
+        .map(|(_, joint)| joint.name)
+        .collect())
+}
+
 impl Arm {
     /// Makes an arm of what a URDF says.
     ///
@@ -44,7 +55,7 @@ impl Arm {
         builder.hang()?;
         let mut arm = builder.finish()?;
         arm.load(&options.payloads)?;
-        pose::refuse_massless(&arm)?;
+        sized!(arm, SIZE => pose::refuse_massless::<SIZE>(&arm))?;
         Ok(arm)
     }
 
@@ -184,7 +195,7 @@ impl<'a> Builder<'a> {
             column: self.joints[value].column,
             mass: 0.0,
             moment: Vector3::zeros(),
-            inertia: Matrix3::zeros(),
+            inertia: Symmetric::default(),
             armature: total,
         });
         let frame = Isometry3::from_parts(Vector3::zeros().into(), upright.inverse().into());
@@ -209,6 +220,10 @@ impl<'a> Builder<'a> {
         }
         numeric::error::finite("mass of all links", moving_mass)?;
         let links = self.description.links.iter().zip(self.places);
+        let mut parents = vec![None; self.description.links.len()];
+        for (child, parent) in self.tree.child.iter().zip(&self.tree.parent) {
+            parents[*child] = Some(*parent);
+        }
         Ok(Arm {
             name: self.description.name.clone(),
             free: self
@@ -218,8 +233,10 @@ impl<'a> Builder<'a> {
                 .count(),
             joints: self.joints,
             links: links
-                .map(|(text, (segment, frame))| Link {
+                .zip(parents)
+                .map(|((text, (segment, frame)), parent)| Link {
                     name: text.name.clone(),
+                    parent,
                     segment,
                     frame,
                 })

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use numeric::error::{Failure, Given, Result};
 
-use super::body::Body;
+use super::body::{Body, Symmetric};
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,8 @@ pub struct Joint {
 pub struct Link {
     /// Name.
     pub name: String,
+    /// The link before it; none for the root.
+    pub parent: Option<usize>,
     /// The segment that it belongs to; none for what stands still.
     pub segment: Option<usize>,
     /// Where it stands in the frame of the segment, or in the world.
@@ -66,7 +68,7 @@ pub struct Segment {
     /// See `mass`.
     pub moment: Vector3<f64>,
     /// See `mass`.
-    pub inertia: Matrix3<f64>,
+    pub inertia: Symmetric,
     /// Reflected motor inertia.
     pub armature: f64,
 }
@@ -127,7 +129,64 @@ impl Segment {
         } = body;
         self.mass += mass;
         self.moment += *mass * center;
-        self.inertia += inertia
-            + (Matrix3::identity() * center.norm_squared() - center * center.transpose()) * *mass;
+        let away = Matrix3::identity() * center.norm_squared() - center * center.transpose();
+        self.inertia.add(&Symmetric::of(&(inertia + away * *mass)));
     }
 }
+
+/// Calls with the size of the mass matrix, which is known when the program is compiled.
+macro_rules! sized {
+    ($arm:expr, $size:ident => $call:expr) => {
+        match $arm.free {
+            0..=1 => {
+                const $size: usize = 1;
+                $call
+            }
+            2 => {
+                const $size: usize = 2;
+                $call
+            }
+            3 => {
+                const $size: usize = 3;
+                $call
+            }
+            4 => {
+                const $size: usize = 4;
+                $call
+            }
+            5 => {
+                const $size: usize = 5;
+                $call
+            }
+            6 => {
+                const $size: usize = 6;
+                $call
+            }
+            7 => {
+                const $size: usize = 7;
+                $call
+            }
+            8 => {
+                const $size: usize = 8;
+                $call
+            }
+            9..=16 => {
+                const $size: usize = 16;
+                $call
+            }
+            17..=32 => {
+                const $size: usize = 32;
+                $call
+            }
+            _ => {
+                const $size: usize = super::model::MOST_MOVING;
+                $call
+            }
+        }
+    };
+}
+
+pub(super) use sized;
+
+/// Most joints that move: their mass matrix is kept whole.
+pub const MOST_MOVING: usize = 96;

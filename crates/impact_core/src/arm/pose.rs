@@ -1,11 +1,13 @@
 //! The kernel: one pose of an arm, its mass matrix, and the mobility of points on it.
+//!
+//! The matrix is eliminated here and not by the linear algebra library: `L D L^T` in loops of a length that
+//! is known when the program is compiled takes a third of the time of its Cholesky decomposition,
+//! and shows at which joint the matrix is singular.
 
-use nalgebra::allocator::Allocator;
-use nalgebra::{
-    Cholesky, DMatrix, DefaultAllocator, Dim, Dyn, Matrix3, OMatrix, Point3, U3, Vector3,
-};
+use nalgebra::{Matrix3, Point3, SMatrix, SVector, Vector3};
 use numeric::error::{Failure, Given, Result};
 
+use super::body::Symmetric;
 use super::mobility::Mobility;
 use super::model::{Arm, JointKind, Segment};
 
@@ -25,40 +27,36 @@ struct Frame {
     /// Mass, first moment and inertia about the origin of the segment and all that hangs on it.
     mass: f64,
     moment: Vector3<f64>,
-    inertia: Matrix3<f64>,
+    inertia: Symmetric,
 }
 
-/// One pose of an arm with as many free joints as the dimension says.
-pub struct Pose<'a, D: Dim>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D, U3>,
-{
+/// One pose of an arm with at most `N` free joints; columns without a joint are those of the unit
+/// matrix.
+pub struct Pose<'a, const N: usize> {
     arm: &'a Arm,
-    size: D,
     frames: Vec<Frame>,
-    /// Diagonal of the mass matrix.
-    diagonal: Vec<f64>,
-    factor: Option<Cholesky<f64, D>>,
+    /// The lower triangle of the mass matrix until it is eliminated, then `L` below the diagonal.
+    masses: SMatrix<f64, N, N>,
+    /// Reciprocals of `D`.
+    pivots: SVector<f64, N>,
 }
 
 /// Why a pose has no mass matrix that could be inverted.
+#[derive(Debug)]
 pub struct Singular {
     /// Column of the mass matrix.
     pub column: usize,
 }
 
-impl<'a, D: Dim> Pose<'a, D>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D, U3>,
-{
+impl<'a, const N: usize> Pose<'a, N> {
     /// A pose that has not been set yet.
-    pub fn new(arm: &'a Arm, size: D) -> Self {
+    #[must_use]
+    pub fn new(arm: &'a Arm) -> Self {
         Self {
             arm,
-            size,
             frames: vec![Frame::default(); arm.segments.len()],
-            diagonal: vec![0.0; size.value()],
-            factor: None,
+            masses: SMatrix::identity(),
+            pivots: SVector::repeat(1.0),
         }
     }
 
@@ -67,34 +65,25 @@ where
     /// # Errors
     /// The mass matrix is singular.
     pub fn set(&mut self, joints: &[f64]) -> std::result::Result<(), Singular> {
+        self.place(joints);
+        self.eliminate()
+    }
+
+    /// Moves the arm, without its mass matrix.
+    fn place(&mut self, joints: &[f64]) {
         self.place_segments(joints);
         self.gather();
-        let masses = self.mass_matrix();
-        for (column, whole) in self.diagonal.iter_mut().enumerate() {
-            *whole = masses[(column, column)];
-        }
-        let Some(factor) = Cholesky::new(masses) else {
-            self.factor = None;
-            return Err(self.first_singular());
-        };
-        for (column, whole) in self.diagonal.iter().enumerate() {
-            let root = factor.l_dirty()[(column, column)];
-            if root * root <= LEAST_PIVOT * whole {
-                return Err(Singular { column });
-            }
-        }
-        self.factor = Some(factor);
-        Ok(())
+        self.fill();
     }
 
     /// Rotations and origins of all segments from the base outwards.
     fn place_segments(&mut self, joints: &[f64]) {
-        for index in 0..self.frames.len() {
-            let segment = &self.arm.segments[index];
+        for (index, segment) in self.arm.segments.iter().enumerate() {
             let value = segment.multiplier * joints[segment.source] + segment.addend;
+            let (placed, rest) = self.frames.split_at_mut(index);
             let (mut rotation, mut origin) = match segment.parent {
                 Some(parent) => {
-                    let parent = &self.frames[parent];
+                    let parent = &placed[parent];
                     let origin = parent.rotation * segment.offset + parent.origin;
                     (parent.rotation * segment.rotation, origin)
                 }
@@ -111,56 +100,56 @@ where
                 }
                 JointKind::Sliding => origin += axis * value,
             }
-            self.frames[index] = Frame {
+            rest[0] = Frame {
                 rotation,
                 origin,
                 axis,
                 mass: segment.mass,
                 moment: rotation * segment.moment,
-                inertia: turned(&rotation, &segment.inertia),
+                inertia: segment.inertia.turned(&rotation),
             };
         }
     }
 
     /// Adds to every segment what hangs on it, from the ends inwards.
     fn gather(&mut self) {
-        for index in (0..self.frames.len()).rev() {
-            let Some(parent) = self.arm.segments[index].parent else {
+        for (index, segment) in self.arm.segments.iter().enumerate().rev() {
+            let Some(parent) = segment.parent else {
                 continue;
             };
-            let outer = self.frames[index];
-            let inner = &mut self.frames[parent];
+            let (inner, rest) = self.frames.split_at_mut(index);
+            let (inner, outer) = (&mut inner[parent], &rest[0]);
             let away = outer.origin - inner.origin;
             // Moved from the origin of the outer segment to that of the inner one.
             let middle = outer.moment + away * (0.5 * outer.mass);
-            let crossed = middle * away.transpose();
-            let mut inertia = outer.inertia - crossed - crossed.transpose();
-            let square = 2.0 * crossed.trace();
-            for axis in 0..3 {
-                inertia[(axis, axis)] += square;
-            }
+            inner.inertia.add(&outer.inertia);
+            inner.inertia.add(&Symmetric::moved(&middle, &away));
             inner.mass += outer.mass;
             inner.moment += outer.moment + away * outer.mass;
-            inner.inertia += inertia;
         }
     }
 
     /// Joint-space mass matrix by the composite-rigid-body algorithm; joints that share a column
-    /// because one mimics the other are folded: `G^T M G`.
-    fn mass_matrix(&self) -> OMatrix<f64, D, D> {
-        let mut masses = OMatrix::<f64, D, D>::zeros_generic(self.size, self.size);
-        for (index, segment) in self.arm.segments.iter().enumerate() {
+    /// because one mimics the other are folded: `G^T M G`. The lower triangle is what is read.
+    fn fill(&mut self) {
+        self.masses.fill(0.0);
+        for column in self.arm.free..N {
+            self.masses[(column, column)] = 1.0;
+        }
+        for (segment, frame) in self.arm.segments.iter().zip(&self.frames) {
             let Some(column) = segment.column else {
                 continue;
             };
-            let frame = &self.frames[index];
             // Force, and moment about the origin, that accelerate all beyond the joint by one.
             let (force, mut moment) = match segment.kind {
-                JointKind::Turning => (frame.axis.cross(&frame.moment), frame.inertia * frame.axis),
+                JointKind::Turning => (
+                    frame.axis.cross(&frame.moment),
+                    frame.inertia.times(&frame.axis),
+                ),
                 JointKind::Sliding => (frame.axis * frame.mass, frame.moment.cross(&frame.axis)),
             };
             let own = component(segment, frame, &force, &moment) + segment.armature;
-            masses[(column, column)] += segment.multiplier * segment.multiplier * own;
+            self.masses[(column, column)] += segment.multiplier * segment.multiplier * own;
             let mut at = frame.origin;
             let mut next = segment.parent;
             while let Some(inner) = next {
@@ -171,25 +160,39 @@ where
                 if let Some(row) = other.column {
                     let both = segment.multiplier * other.multiplier;
                     let coupled = both * component(other, stands, &force, &moment);
-                    masses[(row, column)] += coupled;
-                    masses[(column, row)] += coupled;
+                    // Both of the two equal entries, where one joint mimics the other.
+                    let times = if row == column { 2.0 } else { 1.0 };
+                    self.masses[(row.max(column), row.min(column))] += times * coupled;
                 }
             }
         }
-        masses
     }
 
-    /// The column at which the elimination fails, by elimination of ever more columns.
-    fn first_singular(&self) -> Singular {
-        let masses = self.mass_matrix();
-        let size = masses.nrows();
-        let lost = (1..=size).find(|count| {
-            let part = DMatrix::from_fn(*count, *count, |row, column| masses[(row, column)]);
-            part.cholesky().is_none()
-        });
-        Singular {
-            column: lost.unwrap_or(size.max(1)) - 1,
+    /// Eliminates the mass matrix in place: `M = L D L^T`.
+    fn eliminate(&mut self) -> std::result::Result<(), Singular> {
+        for column in 0..N {
+            let whole = self.masses[(column, column)];
+            let mut row = [0.0; N];
+            let mut pivot = whole;
+            for inner in 0..column {
+                let value = self.masses[(column, inner)];
+                row[inner] = value * self.pivots[inner];
+                pivot -= value * row[inner];
+                self.masses[(column, inner)] = row[inner];
+            }
+            if pivot.is_nan() || pivot <= LEAST_PIVOT * whole {
+                return Err(Singular { column });
+            }
+            self.pivots[column] = pivot.recip();
+            for below in column + 1..N {
+                let mut value = self.masses[(below, column)];
+                for inner in 0..column {
+                    value -= self.masses[(below, inner)] * row[inner];
+                }
+                self.masses[(below, column)] = value;
+            }
         }
+        Ok(())
     }
 
     /// Where a point of a link stands in the world (m).
@@ -232,22 +235,23 @@ where
         }
     }
 
-    /// Mobility of a point of a link.
+    /// Mobility of a point of a link: `L = J M^-1 J^T`.
     #[must_use]
     pub fn mobility(&self, link: usize, point: &Vector3<f64>) -> Mobility {
-        let Some(factor) = &self.factor else {
-            return Mobility::default();
-        };
         let position = self.position(link, point);
-        let mut columns = OMatrix::<f64, D, U3>::zeros_generic(self.size, U3);
-        self.each_column(link, &position, |column, moved| {
-            for axis in 0..3 {
-                columns[(column, axis)] += moved[axis];
+        let mut columns = [Vector3::zeros(); N];
+        self.each_column(link, &position, |column, moved| columns[column] += moved);
+        // With L X = J^T it is X^T D^-1 X.
+        let mut mobility = Matrix3::zeros();
+        for column in 0..N {
+            let mut solved = columns[column];
+            for inner in 0..column {
+                solved -= columns[inner] * self.masses[(column, inner)];
             }
-        });
-        // L = J M^-1 J^T = (C^-1 J^T)^T (C^-1 J^T) with M = C C^T.
-        factor.l_dirty().solve_lower_triangular_mut(&mut columns);
-        Mobility(columns.tr_mul(&columns))
+            columns[column] = solved;
+            mobility += solved * (solved * self.pivots[column]).transpose();
+        }
+        Mobility(mobility)
     }
 
     /// Velocity of a point of a link for rates of all joints that take values, locked ones too.
@@ -274,31 +278,25 @@ fn component(segment: &Segment, frame: &Frame, force: &Vector3<f64>, moment: &Ve
     }
 }
 
-/// `R I R^T`, symmetric.
-fn turned(rotation: &Matrix3<f64>, inertia: &Matrix3<f64>) -> Matrix3<f64> {
-    rotation * inertia * rotation.transpose()
-}
-
 /// Refuses an arm with a joint that moves no inertia in any pose.
 ///
 /// # Errors
 /// The mass matrix is singular; the error names a joint.
-pub fn refuse_massless(arm: &Arm) -> Result<()> {
-    let mut pose = Pose::new(arm, Dyn(arm.free));
+pub fn refuse_massless<const N: usize>(arm: &Arm) -> Result<()> {
+    let mut pose = Pose::<N>::new(arm);
     let mut lost = None;
     // Zero, and three poses without symmetry: an arm may be singular at some.
     for step in 0..4 {
         let values: Vec<f64> = (0..arm.joints.len())
             .map(|joint| f64::from(step) * (0.6 + 0.37 * joint as f64).sin())
             .collect();
-        match pose.set(&values) {
-            Ok(()) => {
-                lost = pose.weightless();
-                if lost.is_none() {
-                    return Ok(());
-                }
-            }
-            Err(Singular { column }) => lost = pose.weightless().or(Some(column)),
+        pose.place(&values);
+        lost = pose.weightless();
+        if lost.is_none() {
+            lost = pose.eliminate().err().map(|Singular { column }| column);
+        }
+        if lost.is_none() {
+            return Ok(());
         }
     }
     match lost {
@@ -307,14 +305,10 @@ pub fn refuse_massless(arm: &Arm) -> Result<()> {
     }
 }
 
-impl<D: Dim> Pose<'_, D>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D, U3>,
-{
+impl<const N: usize> Pose<'_, N> {
     /// The column of a joint about whose axis nothing but rounding error turns.
     fn weightless(&self) -> Option<usize> {
-        let masses = self.mass_matrix();
-        (0..masses.nrows()).find(|column| {
+        (0..self.arm.free).find(|column| {
             let own = self.arm.segments.iter().zip(&self.frames);
             let scale: f64 = own
                 .filter(|(segment, _)| segment.column == Some(*column))
@@ -323,7 +317,7 @@ where
                     JointKind::Sliding => frame.mass,
                 })
                 .sum();
-            let moved = masses[(*column, *column)];
+            let moved = self.masses[(*column, *column)];
             moved <= LEAST_MOMENT * scale || moved <= 0.0 || moved.is_nan()
         })
     }

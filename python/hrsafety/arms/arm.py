@@ -1,0 +1,421 @@
+"""An arm from URDF: masses of its points by pose and direction."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass, field
+from importlib import resources
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, count, flag, thread_count, word
+from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
+from hrsafety.arms.facts import Facts
+from hrsafety.arms.inputs import armature_of, broadcast, locked_of, poses_of, urdf_text, vectors_of
+from hrsafety.arms.masses import RULES, Extremes, PointMasses, mass_by_rule
+from hrsafety.arms.payload import Payload, payloads_of
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["Arm"]
+
+Masses = npt.NDArray[np.float64] | float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Arm(Facts):
+    """An arm on a base that stands still, as a URDF describes it.
+
+    Make it by `from_urdf`. Values of joints are arrays whose last axis has the order of `joint_names`, or mappings
+    from names to numbers or arrays; joints that are not named are at 0. Values, points and directions broadcast.
+
+    Parameters
+    ----------
+    urdf : str
+        Text of the URDF.
+    payloads : tuple of Payload
+        What the arm carries.
+    armature : tuple of (str, float)
+        Reflected motor inertia n^2 J_m by joint, in kg m^2, or in kg where the joint slides.
+    locked : tuple of str
+        Joints that keep their value.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an element of the URDF breaks a rule; the message names it.
+
+    Examples
+    --------
+    >>> from hrsafety import arms
+    >>> arm = arms.Arm.example()
+    >>> arm.joint_names[:3]
+    ('turn', 'shoulder', 'elbow')
+    >>> pose = {"shoulder": 0.4, "elbow": 1.4}
+    >>> f"{arm.effective_mass(pose, link='tool', direction=(1, 0, 0)):.3f} kg, ISO {arm.iso_mass:.1f} kg"
+    '1.961 kg, ISO 14.5 kg'
+    """
+
+    urdf: str
+    payloads: tuple[Payload, ...] = ()
+    armature: tuple[tuple[str, float], ...] = ()
+    locked: tuple[str, ...] = ()
+    _native: _hrsafety.Arm = field(init=False, repr=False, compare=False)
+    _facts: dict[str, Any] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Read the URDF and check everything."""
+        if not isinstance(self.urdf, str):
+            raise InvalidParameterError("urdf", "be the text of a URDF", self.urdf)
+        loads = [(each.link, each.mass, each.center, each.inertia) for each in self.payloads]
+        native = _hrsafety.Arm(self.urdf, loads, list(self.armature), list(self.locked))
+        self._set(_native=native, _facts=dict(native.facts()))
+
+    @classmethod
+    def from_urdf(
+        cls,
+        path_or_text: str | os.PathLike[str],
+        payload: object = None,
+        armature: object = None,
+        locked: object = None,
+    ) -> Arm:
+        """Read an arm.
+
+        Parameters
+        ----------
+        path_or_text : path-like or str
+            A URDF file, or the text of one. Macros (xacro) have to be expanded.
+        payload : Payload, mapping, tuple, or sequence of them, or None
+            What the arm carries: link, mass, center and inertia of each.
+        armature : mapping of str to float, array_like (n,), float or None
+            Reflected motor inertia n^2 J_m of each joint. URDF cannot hold it; without it effective masses are lower
+            bounds, on the unsafe side.
+        locked : iterable of str or None
+            Joints that keep their value, such as those of a closed gripper; a joint that mimics another one follows
+            that one, locked or not.
+
+        Returns
+        -------
+        Arm
+            The arm.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the file cannot be read, or an element breaks a rule, which the message names.
+        """
+        text, name = urdf_text(path_or_text)
+        try:
+            motors = armature_of(armature, () if armature is None else tuple(_hrsafety.urdf_joint_names(text)))
+            return cls(text, payloads_of(payload), motors, locked_of(locked))
+        except InvalidParameterError as error:
+            options = ("payload", "armature", "locked")
+            if not name or error.argument.startswith(options):
+                raise
+            raise error.renamed(f"{name}: {error.argument}") from None
+
+    @classmethod
+    def example(cls, **options: Any) -> Arm:
+        """Return an arm of six axes and 1.3 m reach for examples; no real product.
+
+        Parameters
+        ----------
+        **options
+            As for `from_urdf`.
+
+        Returns
+        -------
+        Arm
+            The arm; its last link is ``tool``.
+        """
+        file = resources.files("hrsafety.arms") / "data" / "example_arm.urdf"
+        return cls.from_urdf(file.read_text(encoding="utf-8"), **options)
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the text of the URDF, as hexadecimal digits."""
+        return hashlib.sha256(self.urdf.encode("utf-8")).hexdigest()
+
+    def __repr__(self) -> str:
+        """Return name, joints, masses and the start of the hash."""
+        carried = f", payload {self.payload_mass:g} kg" if self.payloads else ""
+        locked = f", locked {', '.join(self.locked)}" if self.locked else ""
+        joints = f"{len(self.joint_names)} joints{locked}, {self.moving_mass:g} kg moving{carried}"
+        return f"<Arm {self.name!r}: {joints}, SHA-256 {self.sha256[:12]}>"
+
+    # ---- masses ---------------------------------------------------------------------------------
+
+    def effective_mass(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        direction: object,
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Any:
+        """Return the mass of a point along directions, m_u = 1/(u^T J M^-1 J^T u).
+
+        Parameters
+        ----------
+        joints : mapping or array_like (..., n)
+            Values of the joints in rad, or m where they slide.
+        link : str
+            The link that the point is fixed to.
+        point : array_like (..., 3)
+            The point in the frame of the link, in m.
+        direction : array_like (..., 3)
+            Directions in world axes; their length does not matter.
+        check_limits : bool
+            Whether values outside the limits of their joints are errors.
+        threads : int or None
+            Number of threads; all cores when ``None``. It changes no bit.
+
+        Returns
+        -------
+        float or ndarray (...)
+            Masses in kg; inf where no motion of the joints moves the point along the direction.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a value is out of range, a direction is zero, or the mass matrix of a pose is singular.
+        """
+        shape, (poses, points, directions) = broadcast(
+            MOST_MASSES,
+            joints=poses_of(joints, self.joint_names),
+            point=vectors_of("point", point),
+            direction=vectors_of("direction", direction),
+        )
+        given = self._given(link, poses, points, shape, check_limits, threads)
+        found = self._native.effective_mass(given, directions).reshape(shape)
+        return found if shape else float(found)
+
+    def point_masses(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        direction: object,
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> PointMasses:
+        """Return all masses of a point: along directions, the extremes, and that of ISO/TS 15066.
+
+        Parameters
+        ----------
+        joints, link, point, direction, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        PointMasses
+            The masses with the warnings that belong beside them.
+        """
+        poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
+        directions = vectors_of("direction", direction)
+        mass = self.effective_mass(
+            poses, link=link, point=points, direction=directions, check_limits=check_limits, threads=threads
+        )
+        states = self._states(poses, points, link, check_limits, threads)
+        scaled = directions / np.max(np.abs(directions), axis=-1, keepdims=True)
+        return PointMasses(
+            position=states["position"],
+            direction=scaled / np.linalg.norm(scaled, axis=-1, keepdims=True),
+            effective_mass=np.asarray(mass),
+            iso_mass=self.iso_mass,
+            extremes=_extremes(states),
+            mobility=states["mobility"],
+            warnings=self.warnings,
+        )
+
+    def extremes(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Extremes:
+        """Return the heaviest and the lightest direction of a point.
+
+        Parameters
+        ----------
+        joints, link, point, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        Extremes
+            Masses and directions; the worst mass is inf where a direction is unbounded.
+        """
+        poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
+        return _extremes(self._states(poses, points, link, check_limits, threads))
+
+    def mobility(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Array:
+        """Return the mobility L = J M^-1 J^T of a point.
+
+        Parameters
+        ----------
+        joints, link, point, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        ndarray (..., 3, 3)
+            In 1/kg, along world axes.
+        """
+        poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
+        return self._states(poses, points, link, check_limits, threads)["mobility"]
+
+    def position(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Array:
+        """Return where a point stands.
+
+        Parameters
+        ----------
+        joints, link, point, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        ndarray (..., 3)
+            In m, in world axes.
+        """
+        poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
+        return self._states(poses, points, link, check_limits, threads)["position"]
+
+    def velocity(
+        self,
+        joints: object,
+        rates: object,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Array:
+        """Return the velocity of a point.
+
+        Parameters
+        ----------
+        joints, link, point, check_limits, threads
+            As for `effective_mass`.
+        rates : mapping or array_like (..., n)
+            Rates of the joints in rad/s, or m/s where they slide.
+
+        Returns
+        -------
+        ndarray (..., 3)
+            In m/s, in world axes.
+        """
+        shape, (poses, points, speeds) = broadcast(
+            MOST_POINT_STATES,
+            joints=poses_of(joints, self.joint_names),
+            point=vectors_of("point", point),
+            rates=poses_of(rates, self.joint_names, "rates"),
+        )
+        given = self._given(link, poses, points, shape, check_limits, threads)
+        return self._native.velocities(given, speeds).reshape((*shape, 3))
+
+    def robot_mass(
+        self,
+        joints: object = None,
+        *,
+        link: str,
+        point: object = (0.0, 0.0, 0.0),
+        direction: object,
+        rule: str = "larger",
+        check_limits: bool = True,
+        threads: int | None = None,
+    ) -> Array:
+        """Return the mass of the robot by a rule.
+
+        Parameters
+        ----------
+        joints, link, point, direction, check_limits, threads
+            As for `effective_mass`.
+        rule : {"larger", "iso", "directional"}
+            The larger one of both masses, that of ISO/TS 15066, or that along the direction.
+
+        Returns
+        -------
+        ndarray (...)
+            Masses in kg.
+        """
+        word("rule", rule, RULES)
+        mass = self.effective_mass(
+            joints, link=link, point=point, direction=direction, check_limits=check_limits, threads=threads
+        )
+        return mass_by_rule(rule, np.asarray(mass), self.iso_mass)
+
+    def skeleton(self, joints: object = None, *, check_limits: bool = True) -> Array:
+        """Return the origins of all links and of the links before them, for pictures.
+
+        Parameters
+        ----------
+        joints, check_limits
+            As for `effective_mass`; one pose.
+
+        Returns
+        -------
+        ndarray (links - 1, 2, 3)
+            Lines from link to link in m.
+        """
+        pose = poses_of(joints, self.joint_names)
+        places = [self.position(pose, link=link, check_limits=check_limits) for link in self.link_names]
+        pairs = [(parent, child) for child, parent in enumerate(self._facts["parents"]) if parent is not None]
+        return np.array([[places[parent], places[child]] for parent, child in pairs]).reshape(len(pairs), 2, 3)
+
+    # ---- crossing the boundary ------------------------------------------------------------------
+
+    def _given(
+        self,
+        link: object,
+        poses: tuple[Array, list[int]],
+        points: tuple[Array, list[int]],
+        shape: tuple[int, ...],
+        check_limits: object,
+        threads: object,
+    ) -> dict[str, object]:
+        return {
+            "link": word("link", link, self.link_names),
+            "joints": poses,
+            "points": points,
+            "shape": [count("shape", length, least=0) for length in shape],
+            "check_limits": flag("check_limits", check_limits),
+            "threads": thread_count(threads),
+        }
+
+    def _states(
+        self, poses: Array, points: Array, link: object, check_limits: object, threads: object
+    ) -> dict[str, Array]:
+        shape, (rows, spots) = broadcast(MOST_POINT_STATES, joints=poses, point=points)
+        given = self._given(link, rows, spots, shape, check_limits, threads)
+        states = self._native.point_states(given)
+        return {name: values.reshape((*shape, *values.shape[1:])) for name, values in states.items()}
+
+
+def _extremes(states: dict[str, Array]) -> Extremes:
+    return Extremes(*(states[name] for name in Extremes._fields))

@@ -1,0 +1,218 @@
+"""Masses, speeds and contact forces of a point along a recorded motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, vector, word
+from hrsafety.arms.arm import Arm
+from hrsafety.arms.inputs import poses_of, vectors_of
+from hrsafety.arms.masses import RULES, mass_by_rule
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plausibility import ResultWarning
+from hrsafety.standards import ContactLimit
+from hrsafety.tables import Columns, Table
+
+__all__ = ["MassHistory", "along", "plane_of"]
+
+Words = npt.NDArray[np.str_]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class MassHistory(Table):
+    """A point of an arm along a recorded motion: one row for each instant.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+        Instants in s.
+    position : ndarray (n, 3)
+        The point in m, in world axes.
+    velocity : ndarray (n, 3)
+        Its velocity in m/s.
+    speed : ndarray (n,)
+        Magnitude of the velocity in m/s.
+    effective_mass : ndarray (n,)
+        Mass along the velocity in kg; that of the heaviest direction at rest.
+    iso_mass : float
+        Mass of ISO/TS 15066 in kg.
+    robot_mass : ndarray (n,)
+        The mass that the forces are computed with, in kg.
+    status : ndarray (n,) of str
+        ``"moving"``, ``"at_rest"`` (no velocity, so no direction), ``"unbounded_mass"``.
+    force : ndarray (n,) or None
+        Predicted peak force in N of a contact without a covering, with a person at rest.
+    margin : ndarray (n,) or None
+        Share of the force limit that is left, negative beyond it.
+    verdict : ndarray (n,) of str or None
+        ``"within_limits"``, ``"exceeds"``, ``"not_permitted"`` or ``"not_checked"`` for the force; the pressure is not
+        checked, for it needs a contact area.
+    limit : ContactLimit or None
+        The limit of the forces.
+    warnings : tuple of ResultWarning
+        Why masses may not be what they seem.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    speed: Array
+    effective_mass: Array
+    iso_mass: float
+    robot_mass: Array
+    status: Words
+    force: Array | None
+    margin: Array | None
+    verdict: Words | None
+    limit: ContactLimit | None
+    warnings: tuple[ResultWarning, ...]
+
+    @property
+    def worst(self) -> int:
+        """Index of the worst instant: the largest force with a limit, else the largest energy of the point."""
+        if self.force is not None:
+            return int(np.argmax(self.force))
+        moving = np.where(self.speed > 0.0, self.robot_mass, 0.0)
+        return int(np.argmax(moving * self.speed**2))
+
+    def columns(self) -> Columns:
+        """Return the table as columns.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Time, position, velocity, speed, masses, status, and with a limit force, margin and verdict.
+        """
+        names = [*plane_of("position", self.position, "m"), *plane_of("velocity", self.velocity, "m/s")]
+        table: Columns = {"t_s": self.time, **dict(names), "speed_m_per_s": self.speed}
+        table |= {"effective_mass_kg": self.effective_mass, "robot_mass_kg": self.robot_mass, "status": self.status}
+        if self.force is not None and self.margin is not None and self.verdict is not None:
+            table |= {"force_N": self.force, "margin": self.margin, "verdict": self.verdict}
+        return table
+
+
+def along(
+    arm: Arm,
+    time: object,
+    joints: object,
+    *,
+    link: str,
+    point: object = (0.0, 0.0, 0.0),
+    limit: ContactLimit | None = None,
+    robot_mass: str = "larger",
+    check_limits: bool = True,
+    threads: int | None = None,
+) -> MassHistory:
+    """Return masses, speeds and contact forces of a point along a recorded motion.
+
+    At each instant the direction is that of the velocity of the point. Rates of the joints are differences of
+    second order of the record.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm.
+    time : array_like (n,)
+        Instants in s, increasing.
+    joints : mapping or array_like (n, joints)
+        Values of the joints at these instants.
+    link : str
+        The link that the point is fixed to.
+    point : array_like (3,)
+        The point in the frame of the link, in m.
+    limit : ContactLimit or None
+        A limit of contact, for example ``standards.limits().contact("chest", "transient")``: predicted forces are
+        those of a contact without a covering on its region.
+    robot_mass : {"larger", "iso", "directional"}
+        Which mass the robot has in the contact.
+    check_limits : bool
+        Whether values outside the limits of their joints are errors.
+    threads : int or None
+        Number of threads; all cores when ``None``. It changes no bit.
+
+    Returns
+    -------
+    MassHistory
+        One row for each instant, and the worst of them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import arms, standards
+    >>> time = np.linspace(0.0, 1.0, 101)
+    >>> joints = {"shoulder": 0.3 * np.sin(time), "elbow": 1.4 - 0.5 * time}
+    >>> limit = standards.limits().contact("chest", "transient")
+    >>> history = arms.along(arms.Arm.example(), time, joints, link="tool", limit=limit)
+    >>> str(history.verdict[history.worst])
+    'within_limits'
+    """
+    word("robot_mass", robot_mass, RULES)
+    clock, poses = _instants(time), poses_of(joints, arm.joint_names)
+    rates, spot = _rates_of(clock, poses), vectors_of("point", point)
+    if spot.ndim != 1:
+        raise ShapeError("point", "(3,)", spot.shape)
+    place: dict[str, Any] = {"link": link, "point": spot, "check_limits": check_limits, "threads": threads}
+    velocity = arm.velocity(poses, rates, **place)
+    speed = np.linalg.norm(velocity, axis=1)
+    moving = speed > 0.0
+    mass = arm.extremes(poses, **place).worst_mass.copy()
+    if moving.any():
+        mass[moving] = arm.effective_mass(poses[moving], direction=velocity[moving], **place)
+    chosen = mass_by_rule(robot_mass, mass, arm.iso_mass)
+    force = None if limit is None else _bare_force(limit, speed, chosen)
+    return MassHistory(
+        time=clock,
+        position=arm.position(poses, **place),
+        velocity=velocity,
+        speed=speed,
+        effective_mass=mass,
+        iso_mass=arm.iso_mass,
+        robot_mass=chosen,
+        status=np.where(moving, np.where(np.isinf(mass), "unbounded_mass", "moving"), "at_rest"),
+        force=force,
+        margin=None if limit is None or force is None else limit.force_margin(force),
+        verdict=None if limit is None or force is None else limit.force_verdict(force),
+        limit=limit,
+        warnings=arm.warnings,
+    )
+
+
+def plane_of(name: str, values: Array, unit: str) -> list[tuple[str, Array]]:
+    """Return the columns of vectors in space, named as those of vectors in the plane are."""
+    prefix = {"position": "", "velocity": "v", "direction": "u"}[name]
+    suffix = {"m": "_m", "m/s": "_m_per_s", "": ""}[unit]
+    return [(f"{prefix}{axis}{suffix}", values[:, index]) for index, axis in enumerate("xyz")]
+
+
+def _instants(given: object) -> Array:
+    """Return the instants of a record, which increase."""
+    time = vector("time", given)
+    if len(time) < 3:
+        raise InvalidParameterError("time", "hold at least 3 instants", len(time))
+    if not np.isfinite(time).all():
+        raise InvalidParameterError("time", "be finite", float(time[~np.isfinite(time)][0]))
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if len(back):
+        first = int(back[0]) + 1
+        raise InvalidParameterError(f"time[{first}]", f"exceed {float(time[first - 1])!r}", float(time[first]))
+    return time
+
+
+def _rates_of(time: Array, joints: Array) -> Array:
+    """Return the rates of recorded joints, by differences of second order."""
+    if joints.ndim != 2 or len(joints) != len(time):
+        raise ShapeError("joints", f"({len(time)}, {joints.shape[-1]})", joints.shape)
+    return np.asarray(np.gradient(joints, time, axis=0, edge_order=2))
+
+
+def _bare_force(limit: ContactLimit, speed: Array, mass: Array) -> Array:
+    """Return the peak forces of contacts without a covering on the region of a limit, in N."""
+    if limit.spring_constant is None or limit.body_mass is None:
+        rule = "have a spring constant and a body mass, for a force to be predicted"
+        raise InvalidParameterError("limit", rule, limit.region)
+    return _hrsafety.bare_forces(speed, np.ascontiguousarray(mass), limit.body_mass, limit.spring_constant)

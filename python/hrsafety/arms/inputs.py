@@ -1,0 +1,146 @@
+"""Arguments of arms: values of joints by name, points, arrays that broadcast."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hrsafety._arguments import Array, meant, number, numbers, readable
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+
+__all__ = ["Rows", "armature_of", "broadcast", "locked_of", "poses_of", "urdf_text", "vectors_of"]
+
+Rows = tuple[Array, list[int]]
+MOST_BYTES = 2**25
+"""Largest URDF that is read."""
+
+
+def urdf_text(source: object) -> tuple[str, str]:
+    """Return the text of a URDF, and what names it in messages: a file, or the text itself."""
+    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return source.lstrip("\ufeff \t\r\n"), ""
+    if not isinstance(source, (str, os.PathLike)):
+        raise InvalidParameterError("path_or_text", "be a path or the text of a URDF", source)
+    path = readable("path_or_text", Path(source))
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise InvalidParameterError(path.name, f"have at most {MOST_BYTES} bytes", size)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InvalidParameterError(
+            path.name, "be text in UTF-8", Shown(f"byte {error.start}: {error.reason}")
+        ) from None
+    return text.lstrip(), path.name
+
+
+def locked_of(given: object) -> tuple[str, ...]:
+    """Return the names of locked joints."""
+    if given is None:
+        return ()
+    names = [given] if isinstance(given, str) else given
+    if not isinstance(names, Iterable) or isinstance(names, bytes):
+        raise InvalidParameterError("locked", "be names of joints", given)
+    found = tuple(names)
+    for name in found:
+        if not isinstance(name, str):
+            raise InvalidParameterError("locked", "be names of joints", name)
+    return found
+
+
+def armature_of(given: object, joint_names: Sequence[str]) -> tuple[tuple[str, float], ...]:
+    """Return the motor inertias by joint from a mapping, a sequence in the order of the joints, or one number."""
+    if given is None:
+        return ()
+    if isinstance(given, Mapping):
+        return tuple((_name("armature", name), _inertia(name, value)) for name, value in given.items())
+    values = numbers("armature", given)
+    if values.shape not in {(), (len(joint_names),)}:
+        raise ShapeError("armature", f"({len(joint_names)},)", values.shape)
+    every = np.broadcast_to(values, len(joint_names)).tolist()
+    return tuple((name, _inertia(name, value)) for name, value in zip(joint_names, every, strict=True))
+
+
+def _name(argument: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise InvalidParameterError(argument, "have names of joints as keys", name)
+    return name
+
+
+def _inertia(name: object, value: object) -> float:
+    return number(f"armature[{name!r}]", value)
+
+
+def poses_of(given: object, joint_names: tuple[str, ...], argument: str = "joints") -> Array:
+    """Return poses as an array (..., n) in the order of the joints; joints that are not named are at 0."""
+    count = len(joint_names)
+    if given is None:
+        return np.zeros(count)
+    if not isinstance(given, Mapping):
+        poses = numbers(argument, given)
+        if poses.ndim == 0 or poses.shape[-1] != count:
+            raise ShapeError(argument, f"(..., {count})", poses.shape)
+        return poses
+    columns = {}
+    for name, value in given.items():
+        if name not in joint_names:
+            rule = f"name joints that take a value: {', '.join(joint_names)}"
+            raise InvalidParameterError(argument, rule, name, meant(name, joint_names))
+        columns[name] = numbers(f"{argument}[{name!r}]", value)
+    shape = _common(argument, {name: column.shape for name, column in columns.items()})
+    poses = np.zeros((*shape, count))
+    for index, name in enumerate(joint_names):
+        if name in columns:
+            poses[..., index] = columns[name]
+    return poses
+
+
+def vectors_of(argument: str, given: object) -> Array:
+    """Return vectors as an array (..., 3)."""
+    vectors = numbers(argument, given)
+    if vectors.ndim == 0 or vectors.shape[-1] != 3:
+        raise ShapeError(argument, "(..., 3)", vectors.shape)
+    return vectors
+
+
+def _common(argument: str, shapes: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise InvalidParameterError(argument, "have shapes that broadcast together", Shown(shown)) from None
+
+
+def broadcast(most: int, **arrays: Array) -> tuple[tuple[int, ...], list[Rows]]:
+    """Return the shape of the result, and each array as rows with the distance of neighbors along every axis.
+
+    Parameters
+    ----------
+    most : int
+        Largest number of results.
+    **arrays : ndarray
+        Arrays by the names of the arguments; the last axis of each stays together.
+
+    Returns
+    -------
+    tuple
+        The shape, and for each array its numbers and its strides in rows.
+    """
+    shape = _common(" and ".join(arrays), {name: array.shape[:-1] for name, array in arrays.items()})
+    results = math.prod(shape)
+    if results > most:
+        raise InvalidParameterError(" and ".join(arrays), f"ask for at most {most} results", results)
+    return shape, [(array.ravel(), _strides(array.shape[:-1], len(shape))) for array in arrays.values()]
+
+
+def _strides(shape: tuple[int, ...], axes: int) -> list[int]:
+    """Return how many rows apart neighbors are along each axis of the result."""
+    strides, rows = [], 1
+    for length in reversed(shape):
+        strides.append(rows if length > 1 else 0)
+        rows *= length
+    return [0] * (axes - len(shape)) + strides[::-1]

@@ -1,0 +1,112 @@
+"""Masses of a point of an arm, and the words that belong beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hrsafety._arguments import Array, word
+from hrsafety.plausibility import ResultWarning
+
+__all__ = ["NO_MOTOR_INERTIA", "RULES", "Extremes", "PointMasses", "mass_by_rule"]
+
+NO_MOTOR_INERTIA = "no motor inertia given: effective masses are lower bounds, on the unsafe side"
+RULES = ("larger", "iso", "directional")
+
+
+class Extremes(NamedTuple):
+    """The heaviest and the lightest direction of a point; leading axes are those of the poses and points.
+
+    Attributes
+    ----------
+    worst_mass : ndarray (...)
+        Largest effective mass in kg, inf where a direction is unbounded.
+    worst_direction : ndarray (..., 3)
+        Unit vector along it in world axes, its largest component positive.
+    least_mass : ndarray (...)
+        Least effective mass in kg.
+    least_direction : ndarray (..., 3)
+        Unit vector along it in world axes, its largest component positive.
+    """
+
+    worst_mass: Array
+    worst_direction: Array
+    least_mass: Array
+    least_direction: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointMasses:
+    """All masses of a point of an arm: by direction, by ISO/TS 15066, and what to know about both.
+
+    Parameters
+    ----------
+    position : ndarray (..., 3)
+        The point in world axes, in m.
+    direction : ndarray (..., 3)
+        Unit vectors that were asked about.
+    effective_mass : ndarray (...)
+        Mass along them in kg, inf where it is unbounded.
+    iso_mass : float
+        Half of the moving mass plus the payload, in kg.
+    extremes : Extremes
+        The heaviest and the lightest direction.
+    mobility : ndarray (..., 3, 3)
+        L = J M^-1 J^T in 1/kg.
+    warnings : tuple of ResultWarning
+        Why the masses may not be what they seem: no motor inertia, links that are hardly real.
+
+    Examples
+    --------
+    >>> from hrsafety import arms
+    >>> arm = arms.Arm.example()
+    >>> masses = arm.point_masses({"elbow": 1.4}, link="tool", direction=(0, 0, 1))
+    >>> float(masses.robot_mass("larger")) == max(masses.effective_mass, masses.iso_mass)
+    True
+    """
+
+    position: Array
+    direction: Array
+    effective_mass: Array
+    iso_mass: float
+    extremes: Extremes
+    mobility: Array
+    warnings: tuple[ResultWarning, ...]
+
+    @property
+    def unbounded(self) -> Array:
+        """Whether no motion of the joints moves the point along the direction."""
+        return np.isinf(self.effective_mass)
+
+    def robot_mass(self, rule: str = "larger") -> Array:
+        """Return the mass of the robot by a rule.
+
+        Parameters
+        ----------
+        rule : {"larger", "iso", "directional"}
+            The larger one of both masses, that of ISO/TS 15066, or that along the direction.
+
+        Returns
+        -------
+        ndarray (...)
+            Masses in kg.
+        """
+        return mass_by_rule(rule, self.effective_mass, self.iso_mass)
+
+    def __str__(self) -> str:
+        """Return both masses and the warnings."""
+        shown = np.array2string(np.asarray(self.effective_mass), precision=6)
+        lines = [f"effective mass  {shown} kg", f"ISO mass        {self.iso_mass:.6g} kg (M/2 + payload)"]
+        return "\n".join([*lines, *(str(each) for each in self.warnings)])
+
+
+def mass_by_rule(rule: str, directional: Array, iso: float) -> Array:
+    """Return the mass of the robot by a rule, with the shape of the directional masses."""
+    word("robot_mass", rule, RULES)
+    if rule == "directional":
+        return directional
+    if rule == "iso":
+        return np.full(np.shape(directional), iso)
+    return np.asarray(np.maximum(directional, iso))

@@ -1,0 +1,356 @@
+"""Protective separation distance, its inverse, and the speed over the distance to a person."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Parameters, number, numbers, vector
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.tables import Columns, Table
+
+__all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
+
+WALKING_SPEED = 1.6
+"""Speed of a person in m/s whose speed is not measured."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StoppingData(Parameters):
+    """Measured stops: times and distances over speed, load and extension.
+
+    Values in between are linear; outside the table nothing is known (``outside_table``).
+
+    Parameters
+    ----------
+    speed : array_like (n,)
+        Speeds of the robot in m/s, increasing.
+    time, distance : array_like (n,), (n, loads) or (n, loads, extensions)
+        Stopping times in s and distances in m. They must not fall as the speed grows.
+    load : array_like or float
+        Payloads in kg, or shares of the largest one.
+    extension : array_like or float
+        Extensions of the arm in m, or shares of the largest one.
+
+    Examples
+    --------
+    >>> from hrsafety import standards
+    >>> stops = standards.StoppingData(speed=[0.0, 0.5, 1.0], time=[0.0, 0.2, 0.3], distance=[0.0, 0.05, 0.16])
+    >>> found = standards.separation_distance(0.75, reaction_time=0.1, stopping=stops)
+    >>> f"{found:.4f} m"
+    '0.7400 m'
+    """
+
+    speed: Array
+    time: Array
+    distance: Array
+    load: Array | float = 0.0
+    extension: Array | float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the axes and the values."""
+        axes = [np.atleast_1d(numbers(name, getattr(self, name))) for name in ("speed", "load", "extension")]
+        for name, axis in zip(("speed", "load", "extension"), axes, strict=True):
+            if axis.ndim != 1:
+                raise ShapeError(name, "(n,)", axis.shape)
+        shape = tuple(len(axis) for axis in axes)
+        for name in ("time", "distance"):
+            values = numbers(name, getattr(self, name))
+            full = (*values.shape, *(1,) * (3 - values.ndim))
+            if full != shape:
+                raise ShapeError(name, str(shape), values.shape)
+            self._set(**{name: values.reshape(shape)})
+        self._set(speed=axes[0], load=axes[1], extension=axes[2])
+        self.curve(float(axes[1][0]), float(axes[2][0]))
+
+    def curve(self, load: float | None = None, extension: float | None = None) -> _hrsafety.StoppingCurve:
+        """Return the stops at one load and extension.
+
+        Parameters
+        ----------
+        load, extension : float or None
+            Within the table; needed where the table has more than one.
+
+        Returns
+        -------
+        StoppingCurve
+            For `separation_distance` and `separation_speed`.
+        """
+        values = {"load": load, "extension": extension}
+        for name, value in values.items():
+            axis = np.atleast_1d(getattr(self, name))
+            if value is None:
+                if len(axis) > 1:
+                    raise InvalidParameterError(name, "be given: the stops were measured for several", Shown("none"))
+                values[name] = float(axis[0])
+        axes = [np.atleast_1d(getattr(self, name)).tolist() for name in ("speed", "load", "extension")]
+        place = [number(name, value) for name, value in values.items()]
+        return _hrsafety.StoppingCurve(axes, np.ravel(self.time), np.ravel(self.distance), *place)
+
+
+def separation_distance(
+    robot_speed: object,
+    *,
+    reaction_time: object,
+    deceleration: object = None,
+    human_speed: object = WALKING_SPEED,
+    intrusion: object = 0.0,
+    uncertainty: object = 0.0,
+    target_speed: object = 0.0,
+    stopping: StoppingData | None = None,
+    load: float | None = None,
+    extension: float | None = None,
+) -> Any:
+    """Return the protective separation distance of a robot and a person.
+
+    S = v_h (T_r + (v - v_t)/a) + v T_r + (v^2 - v_t^2)/2a + C + Z. Arguments broadcast.
+
+    Parameters
+    ----------
+    robot_speed : array_like
+        Speed v of the robot towards the person in m/s, at least `target_speed`.
+    reaction_time : array_like
+        Time T_r before the robot begins to brake in s.
+    deceleration : array_like or None
+        Constant deceleration a in m/s^2; needed without `stopping`.
+    human_speed : array_like
+        Speed v_h of the person in m/s.
+    intrusion : array_like
+        Intrusion distance C in m.
+    uncertainty : array_like
+        Uncertainty Z = Z_d + Z_r of both positions in m.
+    target_speed : array_like
+        Speed v_t that the robot slows down to in m/s: 0 stops it before contact, an allowed contact speed does not.
+    stopping : StoppingData or None
+        Measured stops in place of `deceleration`. The whole stop counts, also with a target speed.
+    load, extension : float or None
+        Where to read them.
+
+    Returns
+    -------
+    float or ndarray
+        Distances S in m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of range, or a speed lies outside the measured stops.
+
+    Examples
+    --------
+    >>> from hrsafety import standards
+    >>> rules = {"reaction_time": 0.1, "deceleration": 3.0, "intrusion": 0.2, "uncertainty": 0.1}
+    >>> f"{standards.separation_distance(1.5, target_speed=0.3, **rules):.2f} m"
+    '1.61 m'
+    """
+    rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
+    speeds, rows, braking, shape = _rows("robot_speed", robot_speed, rules, deceleration, stopping)
+    if stopping is None:
+        found = _hrsafety.separation_distances(speeds, braking, rows)
+    else:
+        found = _stops(stopping).curve(load, extension).distances(speeds, rows)
+    return found.reshape(shape) if shape else float(found[0])
+
+
+def separation_speed(
+    distance: object,
+    *,
+    reaction_time: object,
+    deceleration: object = None,
+    human_speed: object = WALKING_SPEED,
+    intrusion: object = 0.0,
+    uncertainty: object = 0.0,
+    target_speed: object = 0.0,
+    stopping: StoppingData | None = None,
+    load: float | None = None,
+    extension: float | None = None,
+) -> Any:
+    """Return the largest speed that a distance to a person allows: the inverse of `separation_distance`.
+
+    Parameters
+    ----------
+    distance : array_like
+        Distance to the person in m.
+    reaction_time, deceleration, human_speed, intrusion, uncertainty, target_speed, stopping, load, extension
+        As for `separation_distance`.
+
+    Returns
+    -------
+    float or ndarray
+        Speeds in m/s: `target_speed` where the distance is too short for more, and never more than the largest
+        measured one.
+
+    Examples
+    --------
+    >>> from hrsafety import standards
+    >>> rules = {"reaction_time": 0.1, "deceleration": 3.0, "intrusion": 0.2, "uncertainty": 0.1}
+    >>> f"{standards.separation_speed(1.0, target_speed=0.3, **rules):.7f} m/s"
+    '0.9106939 m/s'
+    """
+    rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
+    distances, rows, braking, shape = _rows("distance", distance, rules, deceleration, stopping)
+    if stopping is None:
+        found = _hrsafety.separation_speeds(distances, braking, rows)
+    else:
+        found, _ = _stops(stopping).curve(load, extension).speeds(distances, rows)
+    return found.reshape(shape) if shape else float(found[0])
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SpeedCurve(Table):
+    """Allowed speed over the distance to a person.
+
+    Parameters
+    ----------
+    distance : ndarray (n,)
+        Distances in m.
+    speed : ndarray (n,)
+        Allowed speeds in m/s.
+    mode : ndarray (n,) of str
+        ``"contact"`` where the allowed contact speed is the larger one, else ``"separation"``.
+    capped : ndarray (n,) of bool
+        Whether the largest speed of the robot is what limits it.
+    outside_table : ndarray (n,) of bool
+        Whether the distance allows more than the largest measured speed, which is then the speed.
+    status : str
+        ``"permitted"`` where contact has an allowed speed, ``"not_permitted"`` where it has none.
+    """
+
+    distance: Array
+    speed: Array
+    mode: npt.NDArray[np.str_]
+    capped: npt.NDArray[np.bool_]
+    outside_table: npt.NDArray[np.bool_]
+    status: str = field(default="permitted")
+
+    def columns(self) -> Columns:
+        """Return the table as columns.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Distance, speed, mode and both flags.
+        """
+        return {
+            "distance_m": self.distance,
+            "speed_m_per_s": self.speed,
+            "mode": self.mode,
+            "capped": self.capped,
+            "outside_table": self.outside_table,
+        }
+
+
+def speed_over_distance(
+    distance: object,
+    *,
+    contact_speed: float | None,
+    max_speed: float,
+    reaction_time: float,
+    deceleration: float | None = None,
+    human_speed: float = WALKING_SPEED,
+    intrusion: float = 0.0,
+    uncertainty: float = 0.0,
+    target_speed: float = 0.0,
+    stopping: StoppingData | None = None,
+    load: float | None = None,
+    extension: float | None = None,
+) -> SpeedCurve:
+    """Return the speed that is allowed at each distance: that of contact or that of separation, the larger one.
+
+    Parameters
+    ----------
+    distance : array_like (n,)
+        Distances to the person in m.
+    contact_speed : float or None
+        Allowed contact speed of the robot in m/s; ``None`` where contact is not permitted, such as with the head
+        within reach.
+    max_speed : float
+        Largest speed of the robot in m/s.
+    reaction_time, deceleration, human_speed, intrusion, uncertainty, target_speed, stopping, load, extension
+        As for `separation_distance`; a target speed of `contact_speed` slows down to it instead of to rest.
+
+    Returns
+    -------
+    SpeedCurve
+        Speeds with the mode of each.
+
+    Examples
+    --------
+    >>> from hrsafety import standards
+    >>> curve = standards.speed_over_distance(
+    ...     [0.2, 1.0, 5.0], contact_speed=0.25, max_speed=1.5, reaction_time=0.1, deceleration=3.0
+    ... )
+    >>> curve.mode.tolist(), curve.capped.tolist()
+    (['contact', 'separation', 'separation'], [False, False, True])
+    """
+    given = vector("distance", distance)
+    most = number("max_speed", max_speed)
+    if not 0.0 < most < np.inf:
+        raise InvalidParameterError("max_speed", "be finite and positive", max_speed)
+    contact = 0.0 if contact_speed is None else number("contact_speed", contact_speed)
+    if not 0.0 <= contact < np.inf:
+        raise InvalidParameterError("contact_speed", "be finite and not negative, or None", contact_speed)
+    target = number("target_speed", target_speed)
+    if target > contact:
+        raise InvalidParameterError("target_speed", f"be at most contact_speed ({contact:g})", target_speed)
+    rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target)
+    distances, rows, braking, _ = _rows("distance", given, rules, deceleration, stopping)
+    if stopping is None:
+        apart = _hrsafety.separation_speeds(distances, braking, rows)
+        beyond = np.zeros(len(given), dtype=bool)
+    else:
+        apart, beyond = _stops(stopping).curve(load, extension).speeds(distances, rows)
+    speed = np.maximum(apart, contact)
+    return SpeedCurve(
+        distance=given,
+        speed=np.minimum(speed, most),
+        mode=np.where(apart > contact, "separation", "contact"),
+        capped=speed > most,
+        outside_table=beyond & (apart >= contact) & (speed <= most),
+        status="not_permitted" if contact_speed is None else "permitted",
+    )
+
+
+# ---- crossing the boundary ----------------------------------------------------------------------
+
+
+def _stops(stopping: object) -> StoppingData:
+    if not isinstance(stopping, StoppingData):
+        raise InvalidParameterError("stopping", "be StoppingData", stopping)
+    return stopping
+
+
+def _rules(
+    human_speed: object, reaction_time: object, intrusion: object, uncertainty: object, target_speed: object
+) -> dict[str, object]:
+    """Return what a distance depends on beside the speed and the stop, by name."""
+    return {
+        "human_speed": human_speed,
+        "reaction_time": reaction_time,
+        "intrusion": intrusion,
+        "uncertainty": uncertainty,
+        "target_speed": target_speed,
+    }
+
+
+def _rows(
+    name: str, value: object, rules: dict[str, object], deceleration: object, stopping: StoppingData | None
+) -> tuple[Array, dict[str, Array], Array, tuple[int, ...]]:
+    """Return all numbers as columns of one length, and the shape that they broadcast to."""
+    if (deceleration is None) == (stopping is None):
+        rule = "be given, or stopping in its place"
+        raise InvalidParameterError("deceleration", rule, Shown("none") if deceleration is None else Shown("both"))
+    given = {name: value, **rules, "deceleration": 1.0 if deceleration is None else deceleration}
+    arrays = {key: numbers(key, each) for key, each in given.items()}
+    try:
+        spread = np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shown = ", ".join(f"{key} {array.shape}" for key, array in arrays.items() if array.ndim)
+        raise InvalidParameterError(name, "broadcast with the other arguments", Shown(shown)) from None
+    columns = {key: np.ascontiguousarray(array).ravel() for key, array in zip(arrays, spread, strict=True)}
+    first, braking = columns.pop(name), columns.pop("deceleration")
+    return first, columns, braking, spread[0].shape

@@ -1,0 +1,162 @@
+"""Separation distances: arguments, measured stops, the speed over the distance."""
+
+from __future__ import annotations
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from hrsafety import standards
+from hrsafety.errors import InvalidParameterError, ShapeError
+
+RULES = {"reaction_time": 0.1, "deceleration": 3.0, "intrusion": 0.2, "uncertainty": 0.1}
+STOPS = standards.StoppingData(
+    speed=[0.0, 0.5, 1.0, 2.0],
+    load=[0.0, 10.0],
+    time=[[0.0, 0.0], [0.2, 0.3], [0.3, 0.5], [0.7, 0.9]],
+    distance=[[0.0, 0.0], [0.05, 0.07], [0.16, 0.2], [0.6, 0.8]],
+)
+MEASURED = {"reaction_time": 0.1, "intrusion": 0.2, "uncertainty": 0.1, "stopping": STOPS, "load": 5.0}
+
+
+def test_arguments_broadcast_and_numbers_stay_numbers() -> None:
+    assert type(standards.separation_distance(1.0, **RULES)) is float
+    speeds = np.linspace(0.0, 2.0, 5)
+    table = standards.separation_distance(speeds, **(RULES | {"human_speed": np.array([[0.0], [1.6]])}))
+    assert table.shape == (2, 5)
+    assert table[1, 2] == standards.separation_distance(1.0, **RULES)
+    # The path of a person who stands still is left out, nothing else.
+    assert table[0, 2] == pytest.approx(0.1 + 1.0 / 6.0 + 0.3, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"robot_speed": -0.1}, r"robot_speed must be finite and not negative, got -0.1"),
+        ({"robot_speed": [1.0, math.nan]}, r"robot_speed\[1\] must be finite"),
+        ({"target_speed": 1.1}, r"robot_speed must be at least target_speed \(1.1\), got 1.0"),
+        ({"deceleration": 0.0}, r"deceleration must be finite and positive, got 0.0"),
+        ({"deceleration": None}, r"deceleration must be given, or stopping in its place, got none"),
+        ({"stopping": STOPS}, r"deceleration must be given, or stopping in its place, got both"),
+        ({"reaction_time": [0.1, 0.2], "robot_speed": [1.0, 1.0, 1.0]}, r"robot_speed must broadcast with the other"),
+        ({"uncertainty": "wide"}, r"uncertainty must be a number or an array of numbers, got 'wide'"),
+        ({"human_speed": math.inf}, r"human_speed must be finite and not negative"),
+    ],
+)
+def test_bad_arguments_are_named(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(InvalidParameterError, match=message):
+        standards.separation_distance(**({"robot_speed": 1.0} | RULES | arguments))
+
+
+def test_too_close_is_the_target_speed() -> None:
+    assert standards.separation_speed(0.45, **RULES) == 0.0
+    assert standards.separation_speed(0.0, target_speed=0.3, **RULES) == 0.3
+    assert standards.separation_speed(0.46, **RULES) == 0.0  # C + Z + v_h T_r
+    assert standards.separation_speed(0.47, **RULES) > 0.0
+
+
+# ---- measured stops -------------------------------------------------------------------------
+
+
+def test_measured_stops_are_linear_in_between() -> None:
+    expected = 1.6 * (0.1 + 0.4) + 1.0 * 0.1 + 0.18 + 0.3
+    assert standards.separation_distance(1.0, **MEASURED) == pytest.approx(expected, rel=1e-15)
+    half = standards.separation_distance(1.5, **MEASURED)
+    assert half == pytest.approx(1.6 * (0.1 + 0.6) + 1.5 * 0.1 + 0.44 + 0.3, rel=1e-15)
+
+
+def test_nothing_is_extrapolated() -> None:
+    with pytest.raises(
+        InvalidParameterError, match=r"robot_speed must be within the measured stops, 0.0 to 2.0 \(outside_table"
+    ):
+        standards.separation_distance(2.1, **MEASURED)
+    with pytest.raises(
+        InvalidParameterError, match=r"load must be within the measured stops, 0.0 to 10.0 \(outside_table"
+    ):
+        standards.separation_distance(1.0, **(MEASURED | {"load": 11.0}))
+    with pytest.raises(InvalidParameterError, match=r"load must be given"):
+        standards.separation_distance(1.0, **(MEASURED | {"load": None}))
+    assert standards.separation_speed(50.0, **MEASURED) == 2.0
+
+
+def test_inverse_of_measured_stops() -> None:
+    speeds = np.linspace(0.0, 2.0, 41)
+    distances = standards.separation_distance(speeds, **MEASURED)
+    assert np.all(np.diff(distances) > 0.0)
+    assert standards.separation_speed(distances, **MEASURED) == pytest.approx(speeds, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"distance": [0.0, 0.2, 0.1]}, r"distance\[2, 0, 0\] must not fall as the speed grows \(from 0.2\), got 0.1"),
+        ({"time": [0.0, -0.1, 0.1]}, r"time\[1, 0, 0\] must be finite and not negative"),
+        ({"speed": [0.0, 0.0, 1.0]}, r"speed\[1\] must exceed the value before it"),
+        ({"time": [0.0, 0.1]}, r"time must have shape \(3, 1, 1\)"),
+        ({"load": [0.0, 1.0]}, r"time must have shape \(3, 2, 1\)"),
+    ],
+)
+def test_bad_stops_are_named(fields: dict[str, object], message: str) -> None:
+    right = {"speed": [0.0, 0.5, 1.0], "time": [0.0, 0.1, 0.2], "distance": [0.0, 0.1, 0.2]}
+    with pytest.raises((InvalidParameterError, ShapeError), match=message):
+        standards.StoppingData(**(right | fields))
+
+
+def test_stops_are_pickled_by_value() -> None:
+    again = pickle.loads(pickle.dumps(STOPS))
+    assert standards.separation_distance(1.3, **(MEASURED | {"stopping": again})) == standards.separation_distance(
+        1.3, **MEASURED
+    )
+
+
+# ---- speed over the distance ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("braking", [RULES, MEASURED])
+def test_the_curve_is_continuous_and_names_its_mode(braking: dict[str, object]) -> None:
+    distance = np.linspace(0.0, 6.0, 6001)
+    curve = standards.speed_over_distance(distance, contact_speed=0.3, max_speed=1.2, **braking)
+    assert curve.speed[0] == 0.3
+    assert curve.speed[-1] == 1.2
+    assert np.all(np.diff(curve.speed) >= 0.0)
+    assert np.diff(curve.speed).max() < 0.01
+    assert set(curve.mode[curve.speed > 0.3]) == {"separation"}
+    assert set(curve.mode[curve.speed == 0.3]) == {"contact"}
+    assert curve.capped[-1]
+    assert not curve.outside_table.any()
+
+
+def test_without_permitted_contact_the_robot_stops() -> None:
+    curve = standards.speed_over_distance([0.0, 0.3, 2.0], contact_speed=None, max_speed=2.0, **RULES)
+    assert curve.status == "not_permitted"
+    assert curve.speed[:2].tolist() == [0.0, 0.0]
+    assert curve.speed[2] == standards.separation_speed(2.0, **RULES)
+
+
+def test_the_end_of_the_table_is_a_flag() -> None:
+    curve = standards.speed_over_distance([1.0, 9.0], contact_speed=0.3, max_speed=5.0, **MEASURED)
+    assert curve.outside_table.tolist() == [False, True]
+    assert curve.speed[1] == 2.0
+
+
+def test_slowing_down_to_a_speed_above_that_of_contact_is_refused() -> None:
+    with pytest.raises(InvalidParameterError, match=r"target_speed must be at most contact_speed \(0.3\)"):
+        standards.speed_over_distance([1.0], contact_speed=0.3, max_speed=1.0, target_speed=0.4, **RULES)
+
+
+# ---- guards ---------------------------------------------------------------------------------
+
+
+def test_guards() -> None:
+    found = standards.minimum_distance(0.32, capability=0.014)
+    assert found == (0.512, 0.64, 1.6, 0.0)
+    assert standards.minimum_distance(0.3).distance == pytest.approx(1.6 * 0.3 + 0.85)
+    assert standards.minimum_distance(0.3, height=0.5).intrusion == 1.0
+    with pytest.raises(InvalidParameterError, match=r"height must be at least 0.3 for a capability of 0.07"):
+        standards.minimum_distance(0.3, height=0.2, capability=0.07)
+    with pytest.raises(InvalidParameterError, match=r"capability must be at most 0.04"):
+        standards.minimum_distance(0.3, capability=0.05)
+    with pytest.raises(InvalidParameterError, match=r"stopping_time must be finite and positive"):
+        standards.minimum_distance(0.0)
