@@ -1,0 +1,264 @@
+//! Events of a collision: values that fall below zero.
+
+use super::Collision;
+use super::mechanics::{Carried, Local, Mechanics, Past, SPEED, State, TOTAL};
+use super::step::{Step, step};
+
+/// What can happen within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The bodies part.
+    Release,
+    /// `eps` turns.
+    Turn,
+    /// A kink of the covering's force, or its bottoming: the next one above, or below.
+    Kink {
+        /// Whether it is met while the compression rises.
+        upwards: bool,
+    },
+    /// The compression passes the largest one so far.
+    Largest,
+    /// The measured points end.
+    End,
+}
+
+/// Every event.
+const EVENTS: [Event; 6] = [
+    Event::Release,
+    Event::Turn,
+    Event::Kink { upwards: true },
+    Event::Kink { upwards: false },
+    Event::Largest,
+    Event::End,
+];
+
+/// Compressions that matter, and on which side of them the motion is.
+#[derive(Clone, Debug)]
+pub struct Marks {
+    /// Kinks in order.
+    pub kinks: Vec<f64>,
+    /// Number of kinks below.
+    pub piece: usize,
+    /// Largest compression at a reversal, if unloading differs, and whether the motion is below it.
+    pub largest: Option<(f64, bool)>,
+    /// End of measured points.
+    pub end: Option<f64>,
+}
+
+/// Sizes of compression, speed and force, for tolerances.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    /// Length, in m.
+    pub length: f64,
+    /// Speed, in m/s.
+    pub speed: f64,
+    /// Force, in N.
+    pub force: f64,
+    /// How exactly events are located, over these sizes.
+    pub sharpness: f64,
+}
+
+impl Marks {
+    /// Value of an event and its rate; infinite where it cannot happen.
+    fn value<const N: usize>(
+        &self,
+        event: Event,
+        mechanics: &Mechanics<'_, N>,
+        past: &Past,
+        (state, local): (&State<N>, &Local),
+    ) -> [f64; 2] {
+        const NEVER: [f64; 2] = [f64::INFINITY, 0.0];
+        let depth = [local.compression, local.compression_rate];
+        let above = |mark: f64| [depth[0] - mark, depth[1]];
+        let below = |mark: f64| [mark - depth[0], -depth[1]];
+        match event {
+            Event::Release => release(mechanics, state, local),
+            Event::Turn => {
+                let sign = if past.loading { 1.0 } else { -1.0 };
+                [sign * state[SPEED], sign * local.acceleration]
+            }
+            Event::Kink { upwards: true } => {
+                self.kinks.get(self.piece).copied().map_or(NEVER, below)
+            }
+            Event::Kink { upwards: false } => match self.piece.checked_sub(1) {
+                Some(index) => above(self.kinks[index]),
+                None => NEVER,
+            },
+            Event::Largest => match self.largest {
+                Some((mark, true)) => below(mark),
+                Some((mark, false)) => above(mark),
+                None => NEVER,
+            },
+            Event::End => self.end.map_or(NEVER, below),
+        }
+    }
+}
+
+/// What is left of the touch.
+fn release<const N: usize>(
+    mechanics: &Mechanics<'_, N>,
+    state: &State<N>,
+    local: &Local,
+) -> [f64; 2] {
+    let collision: &Collision<'_> = mechanics.collision;
+    match mechanics.carried {
+        Carried::Nothing if collision.pad.is_some_and(|pad| pad.covering.damping > 0.0) => {
+            [local.force, local.force_rate]
+        }
+        Carried::Nothing | Carried::Series => [state[TOTAL], state[SPEED]],
+        Carried::Damped => [local.deflection, local.deflection_rate],
+    }
+}
+
+/// A start with what is known there.
+pub struct Start<'a, const N: usize> {
+    /// Time, in s.
+    pub time: f64,
+    /// State.
+    pub state: &'a State<N>,
+    /// Its derivative.
+    pub rates: &'a State<N>,
+    /// Forces there.
+    pub local: &'a Local,
+}
+
+/// The first event within a step, and the step that leads to it.
+pub fn first_event<const N: usize>(
+    mechanics: &Mechanics<'_, N>,
+    past: &Past,
+    marks: &Marks,
+    sizes: &Sizes,
+    start: &Start<'_, N>,
+    (mut taken, mut length): (Step<N>, f64),
+) -> (Option<Event>, Step<N>, f64) {
+    let mut found = None;
+    loop {
+        let mut first: Option<(Event, f64)> = None;
+        for event in EVENTS {
+            if found == Some(event) {
+                continue;
+            }
+            let size = size_of(event, mechanics, sizes);
+            let end = marks.value(event, mechanics, past, (&taken.state, &taken.local));
+            if end[0] >= -4.0 * size {
+                continue;
+            }
+            let before = marks.value(event, mechanics, past, (start.state, start.local));
+            let at = if before[0] <= 0.0 {
+                0.0
+            } else {
+                cubic_root(before, end, length)
+            };
+            if first.is_none_or(|(_, earliest)| at < earliest) {
+                first = Some((event, at));
+            }
+        }
+        let Some((event, _)) = first else {
+            return (found, taken, length);
+        };
+        found = Some(event);
+        let before = marks.value(event, mechanics, past, (start.state, start.local));
+        if before[0] <= 0.0 {
+            taken.state = *start.state;
+            taken.rates = *start.rates;
+            taken.local = *start.local;
+            return (found, taken, 0.0);
+        }
+        let value =
+            |taken: &Step<N>| marks.value(event, mechanics, past, (&taken.state, &taken.local));
+        let size = size_of(event, mechanics, sizes);
+        (taken, length) = located(mechanics, past, start, (taken, length), before, size, value);
+    }
+}
+
+fn size_of<const N: usize>(event: Event, mechanics: &Mechanics<'_, N>, sizes: &Sizes) -> f64 {
+    let by = match event {
+        Event::Turn => sizes.speed,
+        Event::Release if mechanics.carried == Carried::Nothing => {
+            if mechanics
+                .collision
+                .pad
+                .is_some_and(|pad| pad.covering.damping > 0.0)
+            {
+                sizes.force
+            } else {
+                sizes.length
+            }
+        }
+        _ => sizes.length,
+    };
+    sizes.sharpness * by
+}
+
+/// The shorter step to where a value that falls below zero within the given one is zero.
+pub fn located<const N: usize>(
+    mechanics: &Mechanics<'_, N>,
+    past: &Past,
+    start: &Start<'_, N>,
+    (taken, length): (Step<N>, f64),
+    before: [f64; 2],
+    size: f64,
+    value: impl Fn(&Step<N>) -> [f64; 2],
+) -> (Step<N>, f64) {
+    let (mut low, mut at_low) = (0.0, before);
+    let (mut high, mut at_high) = (length, value(&taken));
+    let mut found = (taken, length);
+    for round in 0..60 {
+        let width = high - low;
+        let inside = if round % 4 == 3 {
+            0.5 * width
+        } else {
+            cubic_root(at_low, at_high, width)
+        };
+        let at = low + inside.clamp(1e-3 * width, (1.0 - 1e-3) * width);
+        if at <= low || at >= high {
+            break;
+        }
+        let tried = step(mechanics, past, start.time, start.state, start.rates, at);
+        let now = value(&tried);
+        found = (tried, at);
+        if now[0].abs() <= size {
+            break;
+        }
+        if now[0] > 0.0 {
+            (low, at_low) = (at, now);
+        } else {
+            (high, at_high) = (at, now);
+        }
+    }
+    found
+}
+
+/// Where the cubic through two values with their rates, the first above zero and the second below, is zero.
+fn cubic_root(first: [f64; 2], last: [f64; 2], length: f64) -> f64 {
+    let (a, b) = (first[0], last[0]);
+    let (da, db) = (first[1] * length, last[1] * length);
+    let line = a / (a - b);
+    if !(da.is_finite() && db.is_finite()) {
+        return line * length;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut x = line;
+    for _ in 0..12 {
+        let y = 1.0 - x;
+        let value = a * (1.0 + 2.0 * x) * y * y + da * x * y * y + b * x * x * (3.0 - 2.0 * x)
+            - db * x * x * y;
+        let slope = 6.0 * x * y * (b - a) + da * y * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0);
+        if value > 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        if (next - x).abs() < 1e-12 {
+            return next * length;
+        }
+        x = next;
+    }
+    x * length
+}

@@ -1,0 +1,487 @@
+//! The motion from the first touch to the release.
+
+use super::events::{Event, Marks, Sizes, Start, first_event, located};
+use super::injury::injury_of;
+use super::mechanics::{BODY_SPEED, Carried, Local, Mechanics, PART, Past, SPEED, State, TOTAL};
+use super::outcome::{Node, Outcome, Status};
+use super::statics::rest_of;
+use super::step::{Step, step};
+use super::{Collision, Region};
+use crate::covering::Shape;
+
+/// Most steps of a collision.
+const MOST_STEPS: usize = 2_000_000;
+/// Compression, over the largest, at which a motion starts that would rest at none.
+const FIRST: f64 = 1e-7;
+/// Windows of the head injury criterion, in s.
+pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
+
+/// What of a collision is wanted beyond its loads.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// The motion.
+    pub nodes: bool,
+    /// The head injury criterion with an acceleration of gravity, in m/s^2.
+    pub injury: Option<f64>,
+}
+
+/// Loads of a collision that has been checked.
+#[must_use]
+pub fn simulate(collision: &Collision<'_>, wanted: Wanted) -> Outcome {
+    if collision.closing_speed <= 0.0 {
+        return Outcome::nothing(Status::NoImpact);
+    }
+    let held =
+        collision.robot.is_held() || (collision.body.is_held() && collision.body.mass.is_finite());
+    if held {
+        Run::<5>::new(collision, wanted).finish(wanted)
+    } else {
+        Run::<3>::new(collision, wanted).finish(wanted)
+    }
+}
+
+/// Whether `d = 0` stays where it is although the bodies close in.
+fn rests_at_touch(collision: &Collision<'_>) -> bool {
+    let Some(pad) = collision.pad else {
+        return false;
+    };
+    let slope = pad.force(0.0)[1];
+    slope.is_infinite() || (slope == 0.0 && collision.region.force(0.0)[1] == 0.0)
+}
+
+/// A value with its time.
+#[derive(Clone, Copy)]
+struct Best {
+    value: f64,
+    time: f64,
+}
+
+impl Best {
+    const NONE: Self = Self {
+        value: f64::NEG_INFINITY,
+        time: 0.0,
+    };
+
+    fn offer(&mut self, value: f64, time: f64) {
+        if value > self.value {
+            *self = Self { value, time };
+        }
+    }
+}
+
+/// Peaks: force, `eps`, `delta`, `d`, apex pressure, acceleration of the body.
+const PEAKS: usize = 6;
+
+struct Run<'a, const N: usize> {
+    mechanics: Mechanics<'a, N>,
+    past: Past,
+    marks: Marks,
+    sizes: Sizes,
+    scales: State<N>,
+    time: f64,
+    state: State<N>,
+    rates: State<N>,
+    local: Local,
+    peaks: [Best; PEAKS],
+    nodes: Option<Vec<Node>>,
+    evaluations: usize,
+}
+
+impl<'a, const N: usize> Run<'a, N> {
+    fn new(collision: &'a Collision<'a>, wanted: Wanted) -> Self {
+        let speed = collision.closing_speed;
+        let energy = 0.5 * collision.reduced_mass() * speed * speed;
+        let rest = rest_of(collision.pad, collision.region, energy);
+        let length = rest.compression + rest.deflection;
+        let mechanics = Mechanics::<N>::new(collision);
+        let mut scales = [length; N];
+        scales[SPEED] = speed;
+        if mechanics.carried != Carried::Nothing {
+            scales[PART] = rest.compression;
+        }
+        if N > BODY_SPEED {
+            scales[BODY_SPEED] = speed;
+        }
+        let past = Past {
+            loading: true,
+            largest_strain: 0.0,
+            largest_work: 0.0,
+            braking: false,
+        };
+        let mut state = [0.0; N];
+        state[SPEED] = speed;
+        let mut time = 0.0;
+        if mechanics.carried == Carried::Series && rests_at_touch(collision) {
+            state[TOTAL] = FIRST * length;
+            time = state[TOTAL] / speed;
+            state[PART] = mechanics.share(state[TOTAL], speed, &past);
+        }
+        let local = mechanics.local(time, &state, &past);
+        let rates = mechanics.rates(&state, &local);
+        let pad = collision.pad;
+        Self {
+            marks: Marks {
+                kinks: pad.map_or_else(Vec::new, |pad| pad.kinks()),
+                piece: 0,
+                largest: None,
+                end: pad
+                    .filter(|pad| pad.covering.material.is_measured())
+                    .map(|pad| pad.bound()),
+            },
+            sizes: Sizes {
+                length,
+                speed,
+                force: rest.force,
+                sharpness: (1e-3 * collision.tolerance).max(1e-15),
+            },
+            nodes: (wanted.nodes || wanted.injury.is_some()).then(Vec::new),
+            mechanics,
+            past,
+            scales,
+            time,
+            state,
+            rates,
+            local,
+            peaks: [Best::NONE; PEAKS],
+            evaluations: 1,
+        }
+    }
+
+    fn finish(mut self, wanted: Wanted) -> Outcome {
+        let status = self.travel();
+        let mut outcome = self.outcome(status);
+        if let Some(nodes) = self.nodes {
+            if let Some(gravity) = wanted.injury
+                && self.mechanics.collision.body.mass.is_finite()
+            {
+                outcome.injury =
+                    INJURY_WINDOWS.map(|width| injury_of(&nodes, width) / gravity.powf(2.5));
+            }
+            if wanted.nodes {
+                outcome.nodes = nodes;
+            }
+        }
+        outcome
+    }
+
+    /// Times at which the law of motion changes, the horizon last.
+    fn breaks(&self) -> Vec<(f64, bool)> {
+        let collision = self.mechanics.collision;
+        let mut breaks = Vec::with_capacity(3);
+        if let Some(stop) = collision.stop {
+            let rest = stop.time + collision.closing_speed / stop.deceleration;
+            breaks.extend([(stop.time, true), (rest, true)]);
+        }
+        breaks.retain(|(time, _)| *time < collision.horizon);
+        breaks.push((collision.horizon, false));
+        breaks
+    }
+
+    fn travel(&mut self) -> Status {
+        let breaks = self.breaks();
+        let mut next = breaks.iter().copied();
+        let Some((mut until, mut changes)) = next.next() else {
+            return Status::Horizon;
+        };
+        let mut length = 0.05 * self.sizes.length / self.sizes.speed;
+        for _ in 0..MOST_STEPS {
+            while self.time >= until {
+                if !changes {
+                    return Status::Horizon;
+                }
+                self.past.braking = true;
+                let Some(following) = next.next() else {
+                    return Status::Horizon;
+                };
+                (until, changes) = following;
+                self.refresh();
+            }
+            let left = until - self.time;
+            let last = length >= left * (1.0 - 1e-12);
+            let tried = if last { left } else { length };
+            let taken = step(
+                &self.mechanics,
+                &self.past,
+                self.time,
+                &self.state,
+                &self.rates,
+                tried,
+            );
+            self.evaluations += 6;
+            let excess = self.excess(&taken);
+            if !(excess <= 1.0) {
+                let factor = if excess.is_finite() {
+                    (0.9 * excess.powf(-0.2)).max(0.2)
+                } else {
+                    0.2
+                };
+                length = tried * factor;
+                if length < 1e-14 * self.sizes.length / self.sizes.speed {
+                    return Status::Unfinished;
+                }
+                continue;
+            }
+            let start = Start {
+                time: self.time,
+                state: &self.state,
+                rates: &self.rates,
+                local: &self.local,
+            };
+            let whole = (taken, tried);
+            let (event, taken, used) = first_event(
+                &self.mechanics,
+                &self.past,
+                &self.marks,
+                &self.sizes,
+                &start,
+                whole,
+            );
+            let end = if event.is_none() && last {
+                until
+            } else {
+                self.time + used
+            };
+            self.accept(taken, used, end, event);
+            match event {
+                Some(Event::Release) => return Status::Released,
+                Some(Event::End) => return Status::BeyondData,
+                Some(event) => self.pass(event),
+                None => (),
+            }
+            let growth = (0.9 * excess.max(1e-10).powf(-0.2)).min(5.0);
+            if event.is_none() && !last || growth < 1.0 {
+                length = tried * growth;
+            } else if event.is_some() {
+                // What was a good length before an event often is too long behind it.
+                length = length.min(tried * growth).max(used);
+            }
+        }
+        Status::Unfinished
+    }
+
+    /// Largest error over its tolerance.
+    fn excess(&self, taken: &Step<N>) -> f64 {
+        let collision = self.mechanics.collision;
+        if let Some(pad) = collision.pad
+            && !pad.covering.material.is_measured()
+            && taken.local.compression >= pad.bound()
+        {
+            return f64::INFINITY;
+        }
+        let mut worst = 0.0_f64;
+        for (error, scale) in taken.error.iter().zip(&self.scales) {
+            if *scale > 0.0 {
+                let share = error.abs() / (collision.tolerance * scale);
+                if !(share <= worst) {
+                    worst = share;
+                }
+            }
+        }
+        worst
+    }
+
+    fn accept(&mut self, mut taken: Step<N>, used: f64, end: f64, event: Option<Event>) {
+        if event == Some(Event::Turn) {
+            // The side before the turn: what belongs to rising compression still counts.
+            taken.state[SPEED] = 0.0;
+            taken.local = self.mechanics.local(end, &taken.state, &self.past);
+            taken.rates = self.mechanics.rates(&taken.state, &taken.local);
+        }
+        if used > 0.0 {
+            self.peaks_within(&taken, used, end);
+        }
+        if let Some(nodes) = &mut self.nodes {
+            nodes.push(
+                self.mechanics
+                    .node(self.time, &self.state, &self.local, &self.past),
+            );
+            nodes.push(
+                self.mechanics
+                    .node(end, &taken.state, &taken.local, &self.past),
+            );
+        }
+        self.time = end;
+        self.state = taken.state;
+        self.rates = taken.rates;
+        self.local = taken.local;
+        self.settle();
+        for (scale, entry) in self.scales.iter_mut().zip(&self.state) {
+            *scale = scale.max(entry.abs());
+        }
+    }
+
+    /// Brings `d` back to where the forces of covering and region are equal.
+    fn settle(&mut self) {
+        if self.mechanics.carried != Carried::Series {
+            return;
+        }
+        let least = 1e-2 * self.sizes.sharpness.max(1e-13) * self.scales[PART];
+        for _ in 0..8 {
+            let mismatch = self.local.mismatch;
+            if !(mismatch.abs() > least) {
+                break;
+            }
+            let (part, total) = (self.state[PART], self.state[TOTAL]);
+            let moved = part - mismatch;
+            // Steps out of [0, eps] are halved.
+            self.state[PART] = if moved < 0.0 {
+                0.5 * part.max(0.0)
+            } else if moved > total {
+                0.5 * (part + total)
+            } else {
+                moved
+            };
+            self.refresh();
+            self.evaluations += 1;
+        }
+    }
+
+    /// The motion behind an event.
+    fn pass(&mut self, event: Event) {
+        match event {
+            Event::Turn => {
+                self.past.loading = !self.past.loading;
+                if !self.past.loading && self.mechanics.forgets() {
+                    self.remember();
+                }
+            }
+            Event::Kink { upwards: true } => self.marks.piece += 1,
+            Event::Kink { upwards: false } => self.marks.piece -= 1,
+            Event::Largest => {
+                if let Some((_, below)) = &mut self.marks.largest {
+                    *below = !*below;
+                }
+            }
+            Event::Release | Event::End => (),
+        }
+        self.refresh();
+    }
+
+    /// Keeps the strain of a reversal if it is the largest so far.
+    fn remember(&mut self) {
+        let Some(pad) = self.mechanics.collision.pad else {
+            return;
+        };
+        let strain = self.local.compression / pad.covering.thickness;
+        if strain > self.past.largest_strain {
+            self.past.largest_strain = strain;
+            self.past.largest_work = pad.covering.material.work(strain);
+            self.marks.largest = Some((self.local.compression, false));
+        }
+    }
+
+    fn refresh(&mut self) {
+        self.local = self.mechanics.local(self.time, &self.state, &self.past);
+        self.rates = self.mechanics.rates(&self.state, &self.local);
+    }
+
+    /// Values that may peak, with their rates.
+    fn rising(&self, state: &State<N>, local: &Local) -> [[f64; 2]; PEAKS] {
+        [
+            [local.force, local.force_rate],
+            [state[TOTAL], state[SPEED]],
+            [local.deflection, local.deflection_rate],
+            [local.compression, local.compression_rate],
+            self.mechanics.apex(state, local, &self.past),
+            [
+                local.body_acceleration,
+                self.mechanics.body_jerk(state, local),
+            ],
+        ]
+    }
+
+    fn peaks_within(&mut self, taken: &Step<N>, used: f64, end: f64) {
+        let before = self.rising(&self.state, &self.local);
+        let after = self.rising(&taken.state, &taken.local);
+        for index in 0..PEAKS {
+            let [value, rate] = after[index];
+            self.peaks[index].offer(before[index][0], self.time);
+            self.peaks[index].offer(value, end);
+            let [first, first_rate] = before[index];
+            // `eps` peaks at an event.
+            let alike = index == 1 || (self.mechanics.is_in_step() && (N < 5 || index != 5));
+            if alike || !(first_rate > 0.0 && rate < 0.0) {
+                continue;
+            }
+            let size = 1e-6 * self.sizes.sharpness.max(1e-13) * (first.abs() + value.abs()) / used;
+            let start = Start {
+                time: self.time,
+                state: &self.state,
+                rates: &self.rates,
+                local: &self.local,
+            };
+            let (found, at) = located(
+                &self.mechanics,
+                &self.past,
+                &start,
+                (*taken, used),
+                [first_rate, (rate - first_rate) / used],
+                size.max(1e-9 * first_rate.abs().max(rate.abs()) * self.sizes.sharpness.sqrt()),
+                |tried| {
+                    let rate = self.rising(&tried.state, &tried.local)[index][1];
+                    // No second derivative is at hand: an infinite one asks for the straight line.
+                    [rate, f64::INFINITY]
+                },
+            );
+            let value = self.rising(&found.state, &found.local)[index][0];
+            self.peaks[index].offer(value, self.time + at);
+        }
+    }
+
+    fn outcome(&self, status: Status) -> Outcome {
+        let collision = self.mechanics.collision;
+        if matches!(status, Status::BeyondData | Status::Unfinished) {
+            return Outcome {
+                evaluations: self.evaluations,
+                ..Outcome::nothing(status)
+            };
+        }
+        let [force, total, deflection, compression, apex, acceleration] =
+            self.peaks.map(|best| best.value);
+        let free = |value: f64| {
+            if collision.body.mass.is_finite() {
+                value
+            } else {
+                f64::NAN
+            }
+        };
+        let mut outcome = Outcome {
+            status,
+            release_time: self.time,
+            peak_force: force,
+            peak_force_time: self.peaks[0].time,
+            peak_total_compression: total,
+            peak_body_deflection: if collision.region == Region::Rigid {
+                0.0
+            } else {
+                deflection
+            },
+            rebound_speed: if status == Status::Released {
+                -self.state[SPEED]
+            } else {
+                f64::NAN
+            },
+            peak_body_acceleration: free(acceleration),
+            body_speed_end: free(self.mechanics.body_speed(&self.state)),
+            end_force: self.local.force,
+            evaluations: self.evaluations,
+            ..Outcome::nothing(status)
+        };
+        if let Some(pad) = collision.pad {
+            outcome.peak_covering_compression = compression;
+            outcome.peak_strain = compression / pad.covering.thickness;
+            outcome.bottomed = compression > pad.bottom();
+            outcome.peak_pressure = match pad.covering.shape {
+                Shape::Flat { area } => force / area,
+                Shape::Curved { .. } | Shape::Cylinder { .. } => apex,
+            };
+            let level = matches!(pad.covering.shape, Shape::Flat { .. })
+                && self.mechanics.is_in_step()
+                && pad.force(compression)[1] == 0.0;
+            if level {
+                outcome.peak_force_time = f64::NAN;
+            }
+        }
+        outcome
+    }
+}

@@ -1,0 +1,91 @@
+use serde_json::Value;
+
+use super::reading::{collision, pad};
+use super::{Outcome, Status, Wanted, simulate};
+
+fn cases() -> Value {
+    serde_json::from_str(include_str!("../../../../tests/golden/contact_cases.json")).unwrap()
+}
+
+const GRAVITY: f64 = 9.80665;
+
+/// What the cases call it, found, and how near it has to be.
+fn found(name: &str, outcome: &Outcome) -> Option<(f64, f64)> {
+    Some(match name {
+        "release_time" => (outcome.release_time, 1e-6),
+        "peak_force" => (outcome.peak_force, 1e-7),
+        "peak_force_time" => (outcome.peak_force_time, 1e-6),
+        "peak_total_compression" => (outcome.peak_total_compression, 1e-7),
+        "peak_body_deflection" => (outcome.peak_body_deflection, 1e-7),
+        "peak_covering_compression" => (outcome.peak_covering_compression, 1e-7),
+        "peak_strain" => (outcome.peak_strain, 1e-7),
+        "peak_pressure" => (outcome.peak_pressure, 1e-7),
+        "rebound_speed" => (outcome.rebound_speed, 1e-7),
+        "peak_body_acceleration_g" => (outcome.peak_body_acceleration / GRAVITY, 1e-7),
+        "body_speed_end" => (outcome.body_speed_end, 1e-7),
+        "hic15" => (outcome.injury[0], 1e-6),
+        "hic36" => (outcome.injury[1], 1e-6),
+        _ => return None,
+    })
+}
+
+#[test]
+fn golden_impacts_to_their_tolerance() {
+    let mut missed = Vec::new();
+    for case in cases()["impacts"].as_array().unwrap() {
+        let input = &case["input"];
+        let pad = (!input["covering"].is_null()).then(|| pad(&input["covering"]).unwrap());
+        let collision = collision(input, pad.as_ref(), 1e-10);
+        collision.check().unwrap();
+        let wanted = Wanted {
+            injury: Some(GRAVITY),
+            ..Wanted::default()
+        };
+        let outcome = simulate(&collision, wanted);
+        let expected = case["output"].as_object().unwrap();
+        let mut compared = 0;
+        for (name, value) in expected {
+            let Some((number, tolerance)) = found(name, &outcome) else {
+                continue;
+            };
+            compared += 1;
+            let ok = match value.as_f64() {
+                None => number.is_nan(),
+                Some(value) => (number - value).abs() <= tolerance * value.abs(),
+            };
+            if !ok {
+                missed.push(format!(
+                    "{} {name}: {number} instead of {value}",
+                    case["name"]
+                ));
+            }
+        }
+        let end = expected["end_force"].as_f64().unwrap();
+        let words =
+            outcome.status.word() == expected["status"] && outcome.bottomed == expected["bottomed"];
+        if compared < 6 || !words || (outcome.end_force - end).abs() > 1e-7 * outcome.peak_force {
+            missed.push(format!("{}: {outcome:?}", case["name"]));
+        }
+        if std::env::var("SHOW").is_ok() {
+            eprintln!("{} {}", case["name"], outcome.evaluations);
+        }
+    }
+    assert!(
+        missed.is_empty(),
+        "{} missed\n{}",
+        missed.len(),
+        missed.join("\n")
+    );
+}
+
+#[test]
+fn no_closing_speed_is_no_impact() {
+    let cases = cases();
+    let input = &cases["impacts"][4]["input"];
+    let mut collision = collision(input, None, 1e-8);
+    collision.closing_speed = 0.0;
+    assert_eq!(
+        simulate(&collision, Wanted::default()).status,
+        Status::NoImpact
+    );
+}

@@ -1,0 +1,57 @@
+//! Where a rising function reaches a value.
+
+/// Steps after which a bracket has no room left.
+const MAX_STEPS: usize = 200;
+
+/// Largest argument in [0, `bound`) whose value is at most `target`, of a function from (0, 0) that does
+/// not fall; it gives its value and slope. Newton steps on logarithms, in which power laws are lines.
+#[must_use]
+pub fn largest(target: f64, bound: f64, function: impl Fn(f64) -> [f64; 2]) -> f64 {
+    if target <= 0.0 {
+        return 0.0;
+    }
+    between(target, 0.0, bound, function)
+}
+
+/// The same in [`low`, `bound`), where the value at `low` is at most `target`.
+#[must_use]
+pub fn between(target: f64, low: f64, bound: f64, function: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let (mut low, mut high) = (low, bound);
+    let mut x = if high.is_finite() {
+        0.5 * (low + high)
+    } else if low > 0.0 {
+        2.0 * low
+    } else {
+        1.0
+    };
+    for _ in 0..MAX_STEPS {
+        let [value, slope] = function(x);
+        if value <= target {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x * ((target / value).ln() * value / (slope * x)).exp();
+        if slope > 0.0 && (newton - x).abs() <= 2.0 * f64::EPSILON * x {
+            return x;
+        }
+        let inside = newton > low && newton < high;
+        let next = if inside {
+            newton
+        } else if high.is_finite() {
+            // A bracket from 0 may span many powers of ten.
+            if low > 0.0 {
+                (low * high).sqrt()
+            } else {
+                0.0625 * high
+            }
+        } else {
+            16.0 * low
+        };
+        if high - low <= f64::EPSILON * low {
+            return low;
+        }
+        x = next;
+    }
+    x
+}
