@@ -7,6 +7,7 @@ The cores check the bounds of what they allocate again.
 from __future__ import annotations
 
 __all__ = [
+    "MOST_CELLS",
     "MOST_COUNT",
     "MOST_DRAWN",
     "MOST_DRAWS",
@@ -46,7 +47,9 @@ MOST_LANES = 1024
 
 # Obstacles that are drawn for a scenario: each takes about 60 microseconds and 1 kB.
 MOST_OBSTACLES = 10_000
-# Rays of a beam.
+# Cells of an occupancy grid: 32 MB as bits.
+MOST_CELLS = 2**28
+# Rays of a beam, beams of a scan.
 MOST_RAYS = 100_000
 # Points that a planner draws at one step.
 MOST_DRAWS = 10**6

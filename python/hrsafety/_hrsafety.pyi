@@ -30,17 +30,20 @@ __all__ = [
     "Follower",
     "FollowerLayouts",
     "GainProblem",
+    "Guide",
     "Head",
     "HolonomicRobot",
     "Hunt",
     "Joint",
     "Law",
+    "Lidar",
     "Manipulator",
     "Measurement",
     "MicrophoneArray",
     "Mover",
     "Obstacle",
     "OmniKinematics",
+    "Plan",
     "ReferencePath",
     "Run",
     "Scenario",
@@ -52,6 +55,7 @@ __all__ = [
     "Slip",
     "Sonar",
     "StoppingCurve",
+    "StaticMap",
     "Tracking",
     "TriOmniKinematics",
     "Ultrasonic",
@@ -68,6 +72,7 @@ __all__ = [
     "built_simulate",
     "burst_trial_delays",
     "cast_rays",
+    "check_takeover",
     "collision_feet",
     "collision_points",
     "contiguous_level",
@@ -144,6 +149,7 @@ __all__ = [
     "sonar_readings",
     "sound_delays",
     "speed_of_sound",
+    "squared_cell_distances",
     "steady_gains",
     "stopping_segments",
     "track",
@@ -1550,6 +1556,115 @@ class Sensor:
     @staticmethod
     def ultrasonic(array: Ultrasonic) -> Sensor:
         """Rides on the robot."""
+
+    @staticmethod
+    def lidar(lidar: Lidar) -> Sensor:
+        """Rides on the robot."""
+
+# ---- static maps ----------------------------------------------------------------------------
+
+_Flags = npt.NDArray[np.bool_]
+
+@final
+class StaticMap:
+    """What stands still."""
+
+    def __new__(
+        cls,
+        *,
+        polylines: Sequence[tuple[_Array, float]],
+        polygons: Sequence[_Array],
+        discs: _Array,
+        grids: Sequence[tuple[_Flags, float, _Pair, float]],
+    ) -> Self: ...
+    def clearance(self, points: _Array) -> _Array:
+        """Return distances of points (n, 2), zero inside, in m."""
+
+    def segment_clearance(self, start: _Pair, end: _Pair) -> float:
+        """Return the least distance of the points of a segment, in m."""
+
+    def nearest(self, points: _Array) -> _Array:
+        """Return nearest boundary points (n, 2) in m; NaN without shapes."""
+
+    def ray(self, start: _Pair, bearings: Sequence[float]) -> list[float]:
+        """Return distances along bearings in m, infinite where nothing is hit."""
+
+    def boundary_points(self, position: _Pair, reach: float, kappa: float) -> _Array:
+        """Return boundary points (n, 2) that a law sees, in m."""
+
+    def segments(self) -> _Array:
+        """Return ends and radii (n, 5), in m."""
+
+    def bounds(self) -> tuple[_Pair, _Pair] | None:
+        """Return lower and upper corner in m."""
+
+def squared_cell_distances(occupied: _Flags) -> _Array:
+    """Squared distances of cells from the nearest occupied one, in cells."""
+
+@final
+class Guide:
+    """Options of the guide."""
+
+    def __new__(
+        cls, *, spacing: float, margin: float, look_ahead: float, bounds: tuple[_Pair, _Pair] | None
+    ) -> Self: ...
+    @property
+    def spacing(self) -> float: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def look_ahead(self) -> float: ...
+    @property
+    def bounds(self) -> tuple[_Pair, _Pair] | None: ...
+    def plan(self, map: StaticMap, radius: float, start: _Pair, goal: _Pair) -> Plan:
+        """Return the plan of a robot of a radius in m."""
+
+def check_takeover(progress: float, window: float) -> None:
+    """Check when a takeover begins."""
+
+@final
+class Plan:
+    """Plan through a map."""
+
+    def cost(self, points: _Array) -> _Array:
+        """Return costs at points (n, 2) in m, NaN without a plan there."""
+
+    def local_goal(self, position: _Pair) -> tuple[_Pair, float, bool] | None:
+        """Return place, cost-to-go and whether it is the goal."""
+
+    def path(self, position: _Pair) -> _Array:
+        """Return the path to the goal (n, 2), in m."""
+
+@final
+class Lidar:
+    """Lidar on a robot."""
+
+    def __new__(
+        cls,
+        *,
+        map: StaticMap | None,
+        beams: int,
+        field_of_view: float,
+        range_min: float,
+        range_max: float,
+        range_noise: float,
+        sees_obstacles: bool,
+        kappa: float,
+        influence: float,
+        reach: float | None,
+        max_speed: float,
+    ) -> Self: ...
+    def bearings(self) -> list[float]:
+        """Return angles of the beams, in rad."""
+
+    def scan(self, pose: _Triple, discs: _Array, seed: int) -> list[float]:
+        """Return ranges from (x, y, heading) among discs (n, 3), in m."""
+
+    def points(self, pose: _Triple, ranges: Sequence[float]) -> _Array:
+        """Return points (n, 2) that a scan hit, in m."""
+
+    def regions(self, scenario: Scenario) -> _Pair:
+        """Return critical and active radius of a boundary point, in m."""
 
 def steady_gains(*, acceleration_deviation: float, position_deviation: float, period: float) -> _Pair:
     """Steady gains of a Kalman filter."""

@@ -9,7 +9,7 @@ from hrsafety import impact, plotting, reactive
 from hrsafety import navigation as nav
 
 BELOW = {
-    nav: ("gains", "laws", "metrics", "robots", "sensing", "tracking"),
+    nav: ("gains", "laws", "maps", "metrics", "robots", "sensing", "tracking"),
     impact: ("criteria", "identification", "joints"),
     reactive: ("follower", "skirt", "sonar", "sound"),
     plotting: ("comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),

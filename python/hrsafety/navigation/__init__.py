@@ -4,15 +4,13 @@ from typing import TYPE_CHECKING
 
 from hrsafety import errors
 from hrsafety._namespace import names_below
-from hrsafety.navigation import gains, knowledge, laws, metrics, robots, sensing, tracking
+from hrsafety.navigation import gains, knowledge, laws, maps, metrics, robots, sensing, tracking
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
-from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
 from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
 from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
-from hrsafety.navigation.laws.impedance import VirtualImpedanceLaw
 from hrsafety.navigation.laws.planners import (
     FieldDStar,
     OptimalReciprocalCollisionAvoidance,
@@ -21,6 +19,7 @@ from hrsafety.navigation.laws.planners import (
 )
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.many import simulate_many
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
@@ -38,7 +37,6 @@ __all__ = [
     "Disc",
     "FieldDStar",
     "ForceTerms",
-    "GainSearch",
     "GeCui",
     "HolonomicRobot",
     "Human",
@@ -58,10 +56,10 @@ __all__ = [
     "RunTable",
     "Scenario",
     "Situation",
+    "StaticMap",
     "Trajectory",
     "VelocityObstacle",
     "VirtualForceField",
-    "VirtualImpedanceLaw",
     "compare",
     "evaluate",
     "force_terms",
@@ -69,6 +67,7 @@ __all__ = [
     "gains",
     "laws",
     "lyapunov",
+    "maps",
     "metrics",
     "optimize_gains",
     "region_radii",
@@ -82,5 +81,5 @@ __all__ = [
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
     __getattr__, __dir__ = names_below(
-        __name__, __all__, [gains, laws, metrics, robots, sensing, tracking, knowledge, errors]
+        __name__, __all__, [gains, laws, maps, metrics, robots, sensing, tracking, knowledge, errors]
     )

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from hrsafety._arguments import instance
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.plausibility import ResultWarning
 
@@ -24,7 +25,8 @@ class Sensing(NamedTuple):
     robot : str
         ``"exact"``, ``"measurement"`` or ``"camera"``.
     obstacles : tuple of str
-        ``"exact"``, or those of ``"measurement"``, ``"camera"`` and ``"ultrasonic"`` that told of them.
+        ``"exact"``, or those of ``"measurement"``, ``"camera"``, ``"ultrasonic"`` and ``"lidar"`` that told of
+        them.
     """
 
     robot: str
@@ -55,7 +57,7 @@ def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
     scenario : Scenario
         Whose measurement counts too.
     built : AsBuilt
-        Cameras and ultrasonic arrays.
+        Cameras, ultrasonic arrays and lidars.
 
     Returns
     -------
@@ -79,7 +81,8 @@ def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
     told = {
         "measurement": measured in ("both", "obstacles"),
         "camera": instance("built", built, AsBuilt).obstacle_vision is not None,
-        "ultrasonic": bool(built.sensors),
+        "ultrasonic": any(isinstance(sensor, Ultrasonic) for sensor in built.sensors),
+        "lidar": any(isinstance(sensor, Lidar) for sensor in built.sensors),
     }
     robot = "measurement" if measured in ("both", "robot") else "exact"
     return Sensing(
@@ -120,14 +123,32 @@ def echo_regions(scenario: Scenario, sonar: Ultrasonic) -> EchoRegions:
 
 
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
-    """Warn of arrays that do not reach as far as the regions that they must see."""
-    for index, sonar in enumerate(built.sensors):
-        regions = echo_regions(scenario, sonar)
-        if regions.active_radius > regions.reach:
-            yield ResultWarning(
-                REGION_BEYOND_RANGE,
-                f"sensors[{index}].most_range",
-                f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
-                f"radius {regions.active_radius:.3g} m of an echo: what moves at {sonar.max_speed:g} m/s is seen too "
-                "late; give a larger most_range or a smaller max_speed",
-            )
+    """Warn of sensors that do not reach as far as the regions that they must see."""
+    for index, sensor in enumerate(built.sensors):
+        if isinstance(sensor, Lidar):
+            yield from _lidar_warnings(scenario, sensor, index)
+        else:
+            yield from _sonar_warnings(scenario, sensor, index)
+
+
+def _lidar_warnings(scenario: Scenario, lidar: Lidar, index: int) -> Iterator[ResultWarning]:
+    _, active = lidar._native.regions(scenario._native)
+    if active > lidar.range_max:
+        yield ResultWarning(
+            REGION_BEYOND_RANGE,
+            f"sensors[{index}].range_max",
+            f"sensors[{index}] sees {lidar.range_max:.3g} m far, less than the active radius {active:.3g} m of a "
+            "boundary point: what is seen is seen too late; give a larger range_max or a smaller max_speed",
+        )
+
+
+def _sonar_warnings(scenario: Scenario, sonar: Ultrasonic, index: int) -> Iterator[ResultWarning]:
+    regions = echo_regions(scenario, sonar)
+    if regions.active_radius > regions.reach:
+        yield ResultWarning(
+            REGION_BEYOND_RANGE,
+            f"sensors[{index}].most_range",
+            f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
+            f"radius {regions.active_radius:.3g} m of an echo: what moves at {sonar.max_speed:g} m/s is seen too "
+            "late; give a larger most_range or a smaller max_speed",
+        )

@@ -186,7 +186,7 @@ class Guide(Parameters):
         _hrsafety.check_takeover(*takeover.values())
         self._set(_native=_hrsafety.Guide(bounds=self.box, **given))
 
-    def plan(self, map: StaticMap, *, radius: float, start: npt.ArrayLike, goal: npt.ArrayLike) -> Plan:  # noqa: A002
+    def plan(self, map: StaticMap, *, radius: float, start: npt.ArrayLike, goal: npt.ArrayLike) -> Plan:
         """Return the plan of a robot in a map.
 
         Parameters

@@ -67,8 +67,7 @@ def _entries(file: Path) -> dict[str, Any]:
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidParameterError("path", "be a YAML file", Shown(f"{file.name} ({error})")) from None
     found: dict[str, Any] = {}
-    last = ""
-    pending = ""
+    listed = pending = ""
     for index, line in enumerate(text.splitlines(), start=1):
         bare = _without_comment(line).strip()
         if not bare or bare in ("---", "..."):
@@ -78,15 +77,16 @@ def _entries(file: Path) -> dict[str, Any]:
             pending = ""
         match = _ENTRY.fullmatch(bare)
         if match:
-            last, value = match.groups()
+            key, value = match.groups()
+            listed = "" if value else key
             if value.startswith("[") and not value.endswith("]"):
-                found[last], pending = [value], last
+                found[key], pending = [value], key
             elif value.startswith("["):
-                found[last] = [_unquoted(each) for each in value[1:-1].split(",")]
+                found[key] = [_unquoted(each) for each in value[1:-1].split(",")]
             else:
-                found[last] = _unquoted(value) if value else []
-        elif bare.startswith("-") and isinstance(found.get(last), list):
-            found[last].append(_unquoted(bare[1:]))
+                found[key] = _unquoted(value) if value else []
+        elif bare.startswith("-") and listed:
+            found[listed].append(_unquoted(bare[1:]))
         else:
             shown = Shown(f"{line.strip()[:80]!r} in line {index}")
             raise InvalidParameterError(f"{file.name}", "be lines 'key: value' of a map", shown)

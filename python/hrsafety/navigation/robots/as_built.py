@@ -17,6 +17,7 @@ from hrsafety.navigation.robots.tracking_laws import (
     VirtualTorque,
 )
 from hrsafety.navigation.robots.wheels import WheelDrive
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.navigation.sensing.vision import Vision
 
@@ -85,8 +86,8 @@ class AsBuilt(Parameters):
     robot_vision, obstacle_vision : Vision or None
         Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
         shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.
-    sensors : sequence of Ultrasonic
-        Ultrasonic arrays on the robot. With one, obstacles are known by their echoes, and by the
+    sensors : sequence of Ultrasonic or Lidar
+        Ultrasonic arrays and lidars on the robot. With one, obstacles are known by what it tells, and by the
         camera or the measurement of obstacles where there is one too; nothing else is known of them.
     pose_fusion : PoseFusion
         How a two-wheel robot knows its pose.
@@ -110,7 +111,7 @@ class AsBuilt(Parameters):
     tracking: Tracking | VirtualTorque = field(default_factory=FullSpeedTracking)
     robot_vision: Vision | None = None
     obstacle_vision: Vision | None = None
-    sensors: Sequence[Ultrasonic] = ()
+    sensors: Sequence[Ultrasonic | Lidar] = ()
     pose_fusion: PoseFusion = field(default_factory=PoseFusion)
     _native: _hrsafety.AsBuilt = field(init=False, repr=False, compare=False)
 
@@ -125,8 +126,8 @@ class AsBuilt(Parameters):
         for name in ("robot_vision", "obstacle_vision"):
             if getattr(self, name) is not None:
                 instance(name, getattr(self, name), Vision)
-        arrays = sequence("sensors", "be a sequence of Ultrasonic", self.sensors)
-        self._set(sensors=tuple(instance(f"sensors[{i}]", array, Ultrasonic) for i, array in enumerate(arrays)))
+        arrays = sequence("sensors", "be a sequence of Ultrasonic or Lidar", self.sensors)
+        self._set(sensors=tuple(instance(f"sensors[{i}]", array, Ultrasonic, Lidar) for i, array in enumerate(arrays)))
         instance("tracking", self.tracking, FullSpeedTracking, NonlinearTracking, ExponentialTracking, VirtualTorque)
         self._set(_native=self._build())
 
@@ -136,7 +137,7 @@ class AsBuilt(Parameters):
         Returns
         -------
         AsBuilt
-            Without cameras and sonars.
+            Without cameras, sonars and lidars.
 
         Examples
         --------
@@ -152,7 +153,10 @@ class AsBuilt(Parameters):
             found.append(kind.robot_camera(self.robot_vision._native))
         if self.obstacle_vision is not None:
             found.append(kind.obstacle_camera(self.obstacle_vision._native))
-        return found + [kind.ultrasonic(array._native) for array in self.sensors]
+        for sensor in self.sensors:
+            rides = kind.lidar(sensor._native) if isinstance(sensor, Lidar) else kind.ultrasonic(sensor._native)
+            found.append(rides)
+        return found
 
     def _build(self) -> _hrsafety.AsBuilt:
         fusion = self.pose_fusion

@@ -9,6 +9,7 @@ from hrsafety.navigation.sensing.calibration_study import (
 )
 from hrsafety.navigation.sensing.camera import Camera, nearest_rotation
 from hrsafety.navigation.sensing.estimators import AlphaBeta, Differences, Kalman, TrackedPositions, track_positions
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.navigation.sensing.vision import ColorPatch, Observation, PositionNoise, Vision, observe
@@ -21,6 +22,7 @@ __all__ = [
     "ColorPatch",
     "Differences",
     "Kalman",
+    "Lidar",
     "Measurement",
     "Observation",
     "PositionNoise",

@@ -130,7 +130,9 @@ class Lidar(Parameters):
             raise ShapeError("people", "(n, 3)", discs.shape)
         if not np.isfinite(discs).all() or (discs[:, 2] <= 0.0).any():
             row = int(np.argmax(~np.isfinite(discs).all(axis=1) | (discs[:, 2] <= 0.0)))
-            raise InvalidParameterError(f"people[{row}]", "be finite with a positive radius", tuple(discs[row].tolist()))
+            raise InvalidParameterError(
+                f"people[{row}]", "be finite with a positive radius", tuple(discs[row].tolist())
+            )
         return np.asarray(self._native.scan(_pose(position, heading), discs, checked_seed("seed", seed)))
 
     def points(self, position: npt.ArrayLike, heading: float, ranges: npt.ArrayLike) -> Array:

@@ -43,6 +43,7 @@ impl Guidance {
     ///
     /// # Errors
     /// The caller asked to stop.
+    #[allow(clippy::needless_pass_by_value)] // an iterator over what the caller has
     pub fn observe(
         &mut self,
         time: f64,
