@@ -31,10 +31,7 @@ fn pairs<'a>(rows: &'a Rows<'_>) -> PyResult<&'a [[f64; 2]]> {
 }
 
 /// A matrix with two columns.
-fn two_columns(
-    py: Python<'_>,
-    points: impl Iterator<Item = [f64; 2]>,
-) -> PyResult<Matrix<'_>> {
+fn two_columns(py: Python<'_>, points: impl Iterator<Item = [f64; 2]>) -> PyResult<Matrix<'_>> {
     let flat: Vec<f64> = points.flatten().collect();
     let rows = flat.len() / 2;
     flat.into_pyarray(py).reshape([rows, 2])

@@ -47,6 +47,8 @@ fn costs_in_the_trap_are_the_check_values() {
         assert!((cost - expected).abs() < 5e-5, "{place:?}: {cost}");
     }
     assert_eq!(plan.cost(Point::new(40.0, 0.0)), None);
+    // Nothing is seen from within a wall.
+    assert_eq!(plan.cost(Point::new(3.0, 0.0)), None);
 }
 
 /// Goes straight to one local goal after the other; returns the length of the way.

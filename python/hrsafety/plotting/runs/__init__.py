@@ -5,6 +5,7 @@ from hrsafety.plotting.runs.energies import energy
 from hrsafety.plotting.runs.fields import force_field, potential_valley
 from hrsafety.plotting.runs.histories import distances, lyapunov
 from hrsafety.plotting.runs.layouts import layout
+from hrsafety.plotting.runs.plans import guide_plan
 from hrsafety.plotting.runs.scenes import paths
 from hrsafety.plotting.runs.sequences import time_sequence
 
@@ -13,6 +14,7 @@ __all__ = [
     "distances",
     "energy",
     "force_field",
+    "guide_plan",
     "layout",
     "lyapunov",
     "paths",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import callback
-from hrsafety.plotting import inputs, movies, notes, shapes, style
+from hrsafety.plotting import inputs, movies, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -216,6 +216,7 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
     figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
     axes = figure.subplots()
     style.frame_scene(axes, limits)
+    walls.add_maps(axes, walls.maps_of([run]))
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
         if regions and not shapes.is_mobile(obstacle):
             shapes.add(axes, shapes.region_patches(obstacle, shapes.center(obstacle), look.color))

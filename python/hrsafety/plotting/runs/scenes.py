@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.plotting import floor, inputs, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style, walls
 from hrsafety.plotting import labels as placing
 
 if TYPE_CHECKING:
@@ -41,7 +41,8 @@ def paths(
     """Draw the paths of one or several runs through one scene.
 
     A marker on each path points in the direction of motion every second. Stationary obstacles
-    are shown with their active and critical regions. A moving obstacle leaves a dotted path.
+    are shown with their active and critical regions, and so are the maps that laws and lidars know.
+    A moving obstacle leaves a dotted path.
     If the robot entered its active region, it is shown, with its regions, where it was when
     the robot came closest, together with the robot and a line between the two; with several
     runs, edged in the color of the run, and once where it hardly moved between them. Of more than six obstacles the
@@ -91,6 +92,7 @@ def paths(
     looks = _run_looks(runs)
     handles = _path_handles(runs, names, looks, limits, regions=regions)
     figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
+    walls.add_maps(axes, walls.maps_of(runs))
     named: list[Annotation] = []
     for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
         if shapes.is_mobile(obstacle):
@@ -124,6 +126,7 @@ def _coincide(run: Trajectory, other: Trajectory) -> bool:
 def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool, whole: bool) -> style.Limits:
     """Return limits that hold all paths, the obstacles that matter to them and, if wanted, all that stand."""
     points: list[Any] = shapes.scene_points(runs[0].scenario.obstacles) if whole else []
+    points += walls.points_of(walls.maps_of(runs)) if whole else []
     for run in runs:
         points += [run.position, run.scenario.start, run.scenario.goal]
         for index, obstacle in enumerate(run.scenario.obstacles):
@@ -212,7 +215,7 @@ def _path_handles(
     """Return the legend of a picture of paths: only what is in view."""
     handles: list[Artist] = [floor.handle(name, **look) for name, look in zip(names, looks, strict=True)]
     handles.append(floor.handle("each second", marker=(3, 0, -90.0), markersize=8))
-    handles += shapes.start_and_goal_handles()
+    handles += shapes.start_and_goal_handles() + walls.handles(walls.maps_of(runs))
     if any(not np.isfinite(run.arrival_time) for run in runs):
         handles.append(floor.handle("end, not arrived", marker="s", markersize=7))
     if any(np.isfinite(run.contact_time).any() for run in runs):

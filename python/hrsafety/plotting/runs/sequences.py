@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety._arguments import count
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import floor, inputs, shapes, style
+from hrsafety.plotting import floor, inputs, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -94,7 +94,7 @@ def _limits(run: Trajectory, instants: Sequence[float], *, whole: bool) -> style
     points: list[Any] = [run.position, run.scenario.start, run.scenario.goal]
     obstacles = run.scenario.obstacles
     if whole:
-        points += shapes.scene_points(obstacles)
+        points += shapes.scene_points(obstacles) + walls.points_of(walls.maps_of([run]))
         rows = [inputs.row_at(run, instant) for instant in instants]
         for index, obstacle in enumerate(obstacles if len(obstacles) <= shapes.MOST_COLORS else ()):
             places = run.obstacle_position[rows, index]
@@ -126,6 +126,7 @@ def _checked_instants(run: Trajectory, instants: int | Sequence[float]) -> list[
 def _draw_instant(axes: Axes, run: Trajectory, row: int, *, regions: bool) -> None:
     """Draw everything that is there at one row of a run."""
     scenario = run.scenario
+    walls.add_maps(axes, walls.maps_of([run]))
     for index, (obstacle, look) in enumerate(zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True)):
         place = run.obstacle_position[row, index]
         if not np.isfinite(place).all():
@@ -151,5 +152,6 @@ def _handles(run: Trajectory, *, regions: bool) -> list[Artist]:
         Line2D([], [], label="robot, path so far", **robot),
         Line2D([0, 1], [0, 0], label="way of 1 s", **arrow),
         *shapes.start_and_goal_handles(),
+        *walls.handles(walls.maps_of([run])),
         *shapes.obstacle_handles(run.scenario.obstacles, regions=regions),
     ]

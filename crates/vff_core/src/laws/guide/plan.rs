@@ -140,7 +140,7 @@ impl Plan {
     }
 
     fn seen_clearance(&self, position: Vector2<f64>) -> f64 {
-        self.map.clearance_up_to(position, self.least) - SPARE
+        seen_clearance(&self.map, self.least, position)
     }
 
     /// How the plan looks from a position; `None` if no node with a plan is seen nearby.
@@ -243,6 +243,12 @@ impl Plan {
     }
 }
 
+/// Clearance that what is seen from a position keeps; from within a wall nothing is seen.
+fn seen_clearance(map: &StaticMap, least: f64, position: Vector2<f64>) -> f64 {
+    let kept = map.clearance_up_to(position, least) - SPARE;
+    if kept > 0.0 { kept } else { f64::INFINITY }
+}
+
 /// The nearest free node that sees the goal, and its distance from it.
 fn goal_node(
     nodes: &Nodes,
@@ -250,7 +256,7 @@ fn goal_node(
     least: f64,
     goal: Vector2<f64>,
 ) -> Result<(usize, f64)> {
-    let seen = map.clearance_up_to(goal, least) - SPARE;
+    let seen = seen_clearance(map, least, goal);
     let near = nodes.square(goal, GOAL_REACH).filter_map(|node| {
         let place = nodes.place(node);
         let free = map.clearance_up_to(place, least) >= least;
