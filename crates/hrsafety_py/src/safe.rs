@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
+use vff_core::laws::guide::TakeoverRule;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{self, Friendly, Guard, KnownVelocity, Limits, Person, View, Walls};
 use vff_core::laws::yielding;
@@ -10,6 +11,7 @@ use vff_core::world::geometry::RobotState;
 
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, parameter_class};
+use crate::maps::{Guide, StaticMap};
 
 parameter_class! {
     /// How a robot gives way.
@@ -120,7 +122,13 @@ pub fn shield_speed_bound(gap: f64, angle: f64, deceleration: f64, person_speed:
 pub fn safe_law(law: &AnyLaw, given: &Keywords<'_>) -> PyResult<AnyLaw> {
     let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
     let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
+    let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
+    let guide: Option<PyRef<'_, Guide>> = given.take("guide")?;
+    let (progress, window) = given.take("takeover_rule")?;
     let family = SafeNavigation {
+        map: map.map(|map| map.0.clone()),
+        guide: guide.map(|guide| guide.0),
+        rule: TakeoverRule { progress, window },
         shield: shield.map(|shield| shield.0),
         yielding: yielding.map(|yielding| yielding.0),
         takeover: given.take("takeover")?,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
@@ -193,13 +194,19 @@ def _crossings(path: Path) -> list[scenarios.Crossing]:
     return _KNOWN[path]
 
 
+def _appeared(run: nav.Trajectory) -> npt.NDArray[np.float64]:
+    """Return when everybody came into the scene, in s; minus infinity for who was there at the start."""
+    seen = np.isfinite(run.distance)
+    first = run.time[np.argmax(seen, axis=0)]
+    return np.where(seen[0] | ~seen.any(axis=0), -np.inf, first)
+
+
 def _cross(case: Case) -> Iterator[Row]:
     for index in case.cases:
         place, law = _crossing(case, index)
         run = nav.simulate(place, law)
         touched = ~np.isnan(run.contact_time)
-        appeared = np.array([person.motion.time[0] if hasattr(person, "motion") else 0.0 for person in place.obstacles])
-        counted = touched & (run.contact_time > appeared + APPEARING) if len(appeared) else touched
+        counted = touched & (run.contact_time > _appeared(run) + APPEARING)
         arrived = not np.isnan(run.arrival_time)
         yield Row(
             case=index,

@@ -12,6 +12,8 @@ from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import as_law
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.laws.yielding import Yielding
+from hrsafety.navigation.maps.guide import Guide
+from hrsafety.navigation.maps.static_map import StaticMap
 
 __all__ = ["SafeNavigation"]
 
@@ -33,6 +35,11 @@ class SafeNavigation(Law):
     ----------
     law : law
         What wants a velocity: any law of the package, or one of your own.
+    map : StaticMap or None
+        What stands and is known before. Laws see its boundary points; what stands in the scene and lies
+        in the map is known by the map alone.
+    guide : Guide or None
+        Plan and local goal for the law; with it, the law is taken over from where it makes no progress.
     shield : Shield or None
         The shield.
     yielding : Yielding or None
@@ -41,7 +48,8 @@ class SafeNavigation(Law):
         Limit of the wanted velocity in m/s, for which regions are sized; the robot may be faster to give
         way. ``None``: the largest speed of the robot.
     takeover : bool or None
-        Whether the law is taken over from where it makes no progress. ``None``: with yielding.
+        Whether the law is taken over from where it makes no progress. ``None``: with yielding or a
+        guide.
     critical_distance : float or None or "regions"
         Distance between the surfaces in m at which force laws brake, in place of the critical regions of
         the scene; active regions stay. ``None``: 0.02 m with a shield and yielding, else the regions of
@@ -62,6 +70,8 @@ class SafeNavigation(Law):
     """
 
     law: Law
+    map: StaticMap | None = field(default=None, kw_only=True)
+    guide: Guide | None = field(default=None, kw_only=True)
     shield: Shield | None = field(default=None, kw_only=True)
     yielding: Yielding | None = field(default=None, kw_only=True)
     preferred_speed: float | None = field(default=None, kw_only=True)
@@ -72,6 +82,10 @@ class SafeNavigation(Law):
     def __post_init__(self) -> None:
         """Check the values."""
         self._set(law=as_law(self.law))
+        if self.map is not None:
+            instance("map", self.map, StaticMap)
+        if self.guide is not None:
+            instance("guide", self.guide, Guide)
         if self.shield is not None:
             instance("shield", self.shield, Shield)
         if self.yielding is not None:
@@ -80,11 +94,15 @@ class SafeNavigation(Law):
             self._set(preferred_speed=number("preferred_speed", self.preferred_speed))
         if not (self.takeover is None or isinstance(self.takeover, bool)):
             raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
-        takes_over = self.yielding is not None if self.takeover is None else self.takeover
+        helped = self.yielding is not None or self.guide is not None
+        guide = Guide() if self.guide is None else self.guide
         native = self.law._native.guarded(
             shield=None if self.shield is None else self.shield._native,
             yielding=None if self.yielding is None else self.yielding._native,
-            takeover=takes_over,
+            map=None if self.map is None else self.map._native,
+            guide=None if self.guide is None else self.guide._native,
+            takeover=helped if self.takeover is None else self.takeover,
+            takeover_rule=(guide.takeover_progress, guide.takeover_window),
             preferred_speed=self.preferred_speed,
             critical_distance=self._critical_distance(),
         )
@@ -152,4 +170,4 @@ class SafeNavigation(Law):
         return replace(self, **own)  # type: ignore[arg-type]  # checked at construction
 
 
-_FIELDS = frozenset({"law", "shield", "yielding", "preferred_speed", "takeover", "critical_distance"})
+_FIELDS = frozenset({"law", "map", "guide", "shield", "yielding", "preferred_speed", "takeover", "critical_distance"})

@@ -76,7 +76,7 @@ impl SafeLaw {
         };
         let guidance = family.guidance(scenario)?;
         let rule = match guidance {
-            Some(_) => TakeoverRule::with_map(),
+            Some(_) => family.rule,
             None => TakeoverRule::without_map(inner.robot.max_speed),
         };
         let zero = Vector2::zeros();

@@ -13,7 +13,7 @@ pub use plans::Plans;
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::lanes::{Planar, Real, Vector2};
-use crate::laws::guide::{Guidance, Guide};
+use crate::laws::guide::{Guidance, Guide, TakeoverRule};
 use crate::laws::safe::surroundings::boundary_obstacle;
 use crate::laws::shield::Shield;
 use crate::laws::yielding::Yielding;
@@ -40,6 +40,8 @@ pub struct SafeNavigation {
     pub yielding: Option<Yielding>,
     /// Whether a robot that makes no progress heads for its (local) goal by itself.
     pub takeover: bool,
+    /// When that is, under a guide.
+    pub rule: TakeoverRule,
     /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
     /// `None`.
     pub preferred_speed: Option<f64>,
@@ -59,6 +61,7 @@ impl SafeNavigation {
             shield: None,
             yielding: None,
             takeover: false,
+            rule: TakeoverRule::with_map(),
             preferred_speed: None,
             critical_distance: None,
         }
@@ -78,6 +81,7 @@ impl SafeNavigation {
         if let Some(guide) = self.guide {
             guide.checked()?;
         }
+        self.rule.checked()?;
         if let Some(speed) = self.preferred_speed {
             positive("preferred_speed", speed)?;
         }

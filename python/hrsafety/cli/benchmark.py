@@ -1,0 +1,98 @@
+"""``hrsafety benchmark SUITE``: run laws through a fixed protocol and show the shares."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from hrsafety import navigation as nav
+from hrsafety.benchmarks import SUITES, Result, benchmark, entry
+from hrsafety.benchmarks.results import HEAD, NAMES
+from hrsafety.benchmarks.runs import case_of
+from hrsafety.cli import output, progress, terminal
+from hrsafety.errors import InvalidParameterError
+from hrsafety.pages import Picture, require_jinja, written
+
+__all__ = ["run_suite"]
+
+OPTIONS = {"laws": "--laws", "cases": "--cases", "data": "--data", "out": "--out", "person_speed": "--person-speed"}
+
+
+def run_suite(options: argparse.Namespace) -> None:
+    """Run a suite, print its table, and write rows, table and page into a folder.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety benchmark``.
+    """
+    place = None if options.out is None else output.planned_folder(options.out)
+    if place is not None:
+        output.require_matplotlib("benchmark --out")
+        require_jinja("benchmark --out")
+    try:
+        with progress.live() as shown:
+            result = benchmark(
+                options.suite,
+                options.laws,
+                cases=options.cases,
+                person_speed=options.person_speed,
+                seed=options.seed,
+                data=options.data,
+                out=place,
+                threads=options.threads,
+                progress=None if shown is None else lambda done, total: shown("episodes", done, total, None),
+            )
+    except InvalidParameterError as error:
+        name = OPTIONS.get(error.argument)
+        raise error if name is None else error.renamed(name) from None
+    print(terminal.table([HEAD], result.cells(), left=(0,)))
+    if place is None:
+        return
+    print()
+    for path in _write(options, result, Path(options.out)):
+        print(f"wrote {path}")
+
+
+def _write(options: argparse.Namespace, result: Result, place: Path) -> Iterator[Path]:
+    """Write table and page beside the rows."""
+    stem = f"{result.suite}-{'+'.join(str(len(rows)) for rows in list(result.rows.values())[:1])}"
+    yield output.write_csv(place / f"{stem}.csv", HEAD, result.cells())
+    every = [(name, *(getattr(row, each) for each in NAMES)) for name, rows in result.rows.items() for row in rows]
+    yield output.write_csv(place / f"{stem}-episodes.csv", ("law", *NAMES), every)
+    pictures = list(_failures(options, result))
+    page = written(
+        "benchmark.html",
+        title=f"Benchmark {result.suite}",
+        summary=SUITES[result.suite].summary,
+        head=HEAD,
+        rows=result.cells(),
+        pictures=pictures,
+        person_speed=options.person_speed,
+    )
+    yield output.write_text(place / f"{stem}.html", page)
+
+
+def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
+    """Draw the first episodes of every entry that did not succeed."""
+    from hrsafety import plotting
+
+    suite = SUITES[result.suite]
+    if suite.scene is None:
+        return
+    settings = {
+        "person_speed": options.person_speed,
+        "seed": suite.seed if options.seed is None else options.seed,
+        "data": None if options.data is None else Path(options.data),
+        "threads": options.threads,
+    }
+    for name in result.rows:
+        for case in result.failures(name):
+            place, law = suite.scene(case_of(settings, entry(name), [case]), case)
+            run = nav.simulate(place, law, stop_on_contact=result.suite != "recordings")
+            yield Picture(
+                name=f"{name}-{case}".replace("+", "_"),
+                caption=f"{name}, episode {case}: {run.outcome}",
+                png=_png(plotting.plot_path(run)),
+            )
