@@ -1829,19 +1829,19 @@ class Arm:
         cls, urdf: str, payloads: Sequence[_Load], armature: Sequence[tuple[str, float]], locked: Sequence[str]
     ) -> Self: ...
     def facts(self) -> dict[str, Any]:
-        """What is known of the arm without a pose."""
+        """Return what is known of the arm without a pose."""
     def effective_mass(self, given: Mapping[str, object], directions: _Rows) -> _Array:
-        """Effective masses along directions."""
+        """Return effective masses along directions."""
     def point_states(self, given: Mapping[str, object]) -> dict[str, _Array]:
-        """Positions, mobilities, heaviest and lightest directions of points."""
+        """Return positions, mobilities, heaviest and lightest directions of points."""
     def velocities(self, given: Mapping[str, object], rates: _Rows) -> _Array:
-        """Velocities of points for rates of all joints."""
+        """Return velocities of points for rates of all joints."""
 
 def urdf_joint_names(urdf: str) -> list[str]:
-    """Names of the joints of a URDF that take values."""
+    """Return the names of the joints of a URDF that take values."""
 
 def bare_forces(closing_speed: _Array, robot_mass: _Array, body_mass: float, stiffness: float) -> _Array:
-    """Contact forces of closing speeds on a linear region without a covering."""
+    """Return contact forces of closing speeds on a linear region without a covering."""
 
 # ---- separation -----------------------------------------------------------------------------
 
@@ -1853,17 +1853,17 @@ class StoppingCurve:
         cls, axes: Sequence[Sequence[float]], time: _Array, distance: _Array, load: float, extension: float
     ) -> Self: ...
     def distances(self, robot_speed: _Array, rows: Mapping[str, _Array]) -> _Array:
-        """Distances for robots that stop as measured."""
+        """Return distances for robots that stop as measured."""
     def speeds(self, distance: _Array, rows: Mapping[str, _Array]) -> tuple[_Array, npt.NDArray[np.bool_]]:
-        """Speeds that distances allow, and whether more might be allowed beyond the table."""
+        """Return speeds that distances allow, and whether more might be allowed beyond the table."""
 
 def separation_distances(robot_speed: _Array, deceleration: _Array, rows: Mapping[str, _Array]) -> _Array:
-    """Distances with a constant deceleration."""
+    """Return distances with a constant deceleration."""
 
 def separation_speeds(distance: _Array, deceleration: _Array, rows: Mapping[str, _Array]) -> _Array:
-    """Speeds that distances allow with a constant deceleration."""
+    """Return speeds that distances allow with a constant deceleration."""
 
 def guard_distance(
     stopping_time: float, capability: float | None, height: float | None
 ) -> tuple[float, float, float, float]:
-    """Least distance of a guard, the first result, the speed of approach and the intrusion distance."""
+    """Return the least distance of a guard, the first result, the speed of approach and the intrusion distance."""

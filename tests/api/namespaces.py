@@ -5,14 +5,16 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any
 
-from hrsafety import impact, plotting, reactive
+from hrsafety import arms, impact, plotting, reactive, standards
 from hrsafety import navigation as nav
 
 BELOW = {
     nav: ("gains", "laws", "maps", "metrics", "robots", "sensing", "tracking"),
     impact: ("criteria", "identification", "joints"),
+    arms: (),
+    standards: (),
     reactive: ("follower", "skirt", "sonar", "sound"),
-    plotting: ("comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),
+    plotting: ("arms", "comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),
 }
 
 

@@ -158,7 +158,7 @@ def test_the_same_set_from_toml(tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(
         'id = "plant"\ntitle = "Own limits"\nedition = "2025-03"\n[[limits]]\nregion = "chest"\ncontact = "transient"\n'
-        'force_N = 100\nspring_constant_N_per_mm = 25.0\neffective_mass_kg = 40\nsource = "own tests"\ncertainty = "certain"\n'
+        'force_N = 100\nspring_constant_N_per_mm = 25.0\neffective_mass_kg = 40\nsource = "tests"\n'
     )
     limit = standards.limits(path).contact("chest", "transient")
     assert (limit.set_id, limit.edition, limit.force) == ("plant", "2025-03", 100.0)

@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce published results, simulate, design foam, search gains, sweep."""
+"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms."""
 
 from __future__ import annotations
 
@@ -143,10 +143,18 @@ def _sweep(options: argparse.Namespace) -> None:
     sweep_file(options)
 
 
+def _arm(options: argparse.Namespace) -> None:
+    from hrsafety.cli.arm import show_arm
+
+    with _as_options("link", "point", "direction", "samples", "seed"):
+        show_arm(options)
+
+
 _COMMANDS = {
     "reproduce": _reproduce,
     "simulate": _simulate,
     "foam": _foam,
     "optimize": _optimize,
     "sweep": _sweep,
+    "arm": _arm,
 }

@@ -67,6 +67,16 @@ command resumes after a stop, whatever stopped it. The folder receives summary.h
 pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
 """
 
+_ARM_EXAMPLE = """examples:
+  hrsafety arm robot.urdf --link tool0 --joint elbow=1.2 --joint wrist=-0.4
+  hrsafety arm robot.urdf --link tool0 --payload 2.0 --poses poses.csv --out masses
+
+The table has the mass of a point along the world axes, its least and worst direction, and the mass
+of ISO/TS 15066 beside them. Without --joint and --poses the arm stands in the middle of its limits
+and in drawn poses. The folder receives masses.csv and mass_ellipse.png, the mass ellipse in the
+pose with the worst mass.
+"""
+
 
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
@@ -143,6 +153,7 @@ def parser() -> argparse.ArgumentParser:
     _add_foam(commands)
     _add_optimize(commands)
     _add_sweep(commands)
+    _add_arm(commands)
     return whole
 
 
@@ -275,3 +286,37 @@ def _add_sweep(commands: Any) -> None:
     )
     parser.add_argument("--workers", type=_count, metavar="N", help="compute chunks in so many processes")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute chunks on the Dask cluster of this scheduler")
+
+
+def _add_arm(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "arm",
+        summary="show the mass of a point of an arm by pose and direction",
+        example=_ARM_EXAMPLE,
+    )
+    parser.add_argument("robot", metavar="ROBOT.urdf", help="URDF of the arm, macros expanded")
+    parser.add_argument("--out", metavar="DIR", default="arm", help="folder to write into [%(default)s]")
+    _add_strict(parser)
+    place = parser.add_argument_group("point")
+    place.add_argument("--link", metavar="NAME", help="link that the point is fixed to [the last one that moves]")
+    place.add_argument(
+        "--point", nargs=3, type=_number, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "Z"), help="in its frame, in m"
+    )
+    place.add_argument("--direction", nargs=3, type=_number, metavar=("X", "Y", "Z"), help="one more, in world axes")
+    poses = parser.add_argument_group("poses")
+    poses.add_argument("--joint", metavar="NAME=VALUE", action="append", help="value in rad or m; can be repeated")
+    poses.add_argument("--poses", metavar="FILE.csv", help="table of poses whose header names joints")
+    poses.add_argument("--samples", type=_count, default=5, metavar="N", help="drawn poses [%(default)s]")
+    poses.add_argument("--seed", type=_count, default=0, metavar="N", help="of the draws [%(default)s]")
+    poses.add_argument("--no-limits", action="store_true", help="take values outside the limits of the joints")
+    arm = parser.add_argument_group("arm (what a URDF does not hold)")
+    arm.add_argument("--payload", type=_number, metavar="KG", help="mass that the arm carries, as a point")
+    arm.add_argument("--payload-link", metavar="NAME", help="link that carries it [that of --link]")
+    arm.add_argument(
+        "--payload-center", nargs=3, type=_number, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "Z"), help="in its frame"
+    )
+    arm.add_argument(
+        "--armature", metavar="NAME=VALUE", action="append", help="reflected motor inertia in kg m^2; can be repeated"
+    )
+    arm.add_argument("--lock", metavar="NAME", action="append", help="joint that keeps its value; can be repeated")

@@ -1,7 +1,7 @@
 """Pictures of results: paths, forces, distances, energies, studies and animations.
 
-Every function takes results of `hrsafety.navigation` or `hrsafety.impact`, computes no physics, and returns a
-``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
+Every function takes results of `hrsafety.navigation`, `hrsafety.impact` or `hrsafety.arms`, computes no physics,
+and returns a ``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
 with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
 units. matplotlib is imported when a picture is asked for; without it the functions raise
 `MissingExtraError`, which names ``pip install hrsafety[plot]``.
@@ -10,7 +10,8 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_below
-from hrsafety.plotting import comparisons, gains, impacts, reactive, robots, runs, sweeps
+from hrsafety.plotting import arms, comparisons, gains, impacts, reactive, robots, runs, sweeps
+from hrsafety.plotting.arms.ellipses import mass_ellipse
 from hrsafety.plotting.comparisons.arena import plot_arena_distances, plot_arena_paths, plot_arena_sequence
 from hrsafety.plotting.comparisons.repeated import repeated_distances, repeated_paths
 from hrsafety.plotting.comparisons.standings import plot_arena_standings
@@ -33,6 +34,7 @@ from hrsafety.plotting.sweeps.overviews import sweep_parallel, sweep_scatter
 __all__ = [
     "MissingExtraError",
     "animate",
+    "arms",
     "clearances",
     "comparisons",
     "distances",
@@ -48,6 +50,7 @@ __all__ = [
     "impacts",
     "layout",
     "lyapunov",
+    "mass_ellipse",
     "measured_impact",
     "outcomes",
     "pareto_front",
@@ -72,4 +75,6 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_below(__name__, __all__, [comparisons, gains, impacts, reactive, robots, runs, sweeps])
+    __getattr__, __dir__ = names_below(
+        __name__, __all__, [arms, comparisons, gains, impacts, reactive, robots, runs, sweeps]
+    )

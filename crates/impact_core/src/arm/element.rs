@@ -156,10 +156,12 @@ pub fn elements<'a, 'input>(node: Node<'a, 'input>) -> impl Iterator<Item = Node
         .filter(move |child| child.is_element() && child.tag_name().namespace() == root)
 }
 
-/// Whether two names differ in at most two letters that are missing, added or changed.
+/// Whether two names differ in at most two letters that are missing, added or changed, short ones
+/// in at most one.
 fn near(one: &str, other: &str) -> bool {
     let (one, other) = (one.to_lowercase(), other.to_lowercase());
-    if one.len().abs_diff(other.len()) > 2 || other.len() < 4 {
+    let most = if one.len() > 4 { 2 } else { 1 };
+    if one.len().abs_diff(other.len()) > most {
         return false;
     }
     let letters: Vec<char> = other.chars().collect();
@@ -173,7 +175,7 @@ fn near(one: &str, other: &str) -> bool {
             row[place + 1] = changed.min(diagonal + 1).min(row[place] + 1);
         }
     }
-    row[letters.len()] <= 2
+    row[letters.len()] <= most
 }
 
 #[cfg(test)]
@@ -185,6 +187,8 @@ mod tests {
         assert!(near("inertial", "inertal"));
         assert!(near("inertial", "Inertial"));
         assert!(near("origin", "orgin"));
+        assert!(near("axis", "axi"));
+        assert!(!near("link", "limit"));
         assert!(!near("inertial", "visual"));
         assert!(!near("link", "transmission"));
         assert!(!near("joint", "sensor"));
