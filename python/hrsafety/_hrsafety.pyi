@@ -127,6 +127,7 @@ __all__ = [
     "record_burst",
     "recorded_metrics",
     "region_radii",
+    "run_outcomes",
     "search_gains",
     "search_gains_globally",
     "shield_speed_bound",
@@ -431,6 +432,9 @@ def region_radii(
     measurement: Measurement | None,
 ) -> tuple[float, float]:
     """Return critical and active radius of an obstacle for a robot."""
+
+def run_outcomes() -> list[tuple[str, str]]:
+    """Return the words for how a run can end, and what they say."""
 
 def simulate(
     scenario: Scenario,

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
-from hrsafety import _hrsafety, impact, sweep
+from hrsafety import _hrsafety, impact, scenarios, sweep
 from hrsafety import navigation as nav
+from hrsafety.cli import verdict
+from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import CRITERIA, Loads
 from hrsafety.navigation.laws.declared import LAWS, Gain, Law, gain
+from hrsafety.navigation.outcomes import OUTCOMES, Outcome
+from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.scenarios.laws import SHORT_NAMES, law_named
 
 GLOSSARY = (Path(__file__).resolve().parents[2] / "docs" / "theory" / "symbols.md").read_text(encoding="utf-8")
@@ -129,3 +134,38 @@ def test_keywords_of_native_classes_are_complete_and_known() -> None:
         _hrsafety.Head(mass=5.0, damping=1.0, stiffness=1.0, length=1.0)
     with pytest.raises(TypeError, match="argument 'mass'"):
         _hrsafety.Head(mass="5", damping=1.0, stiffness=1.0)
+
+
+# ---- outcomes of a run --------------------------------------------------------------------------------
+
+
+def test_words_of_outcomes_are_those_of_the_core() -> None:
+    assert get_args(Outcome) == tuple(OUTCOMES)
+    assert all(OUTCOMES.values())
+    stub = Path(_hrsafety.__file__).with_name("_hrsafety.pyi").read_text(encoding="utf-8")
+    found = re.search(r"^_Outcome = Literal\[(.*)\]$", stub, re.MULTILINE)
+    assert found
+    assert tuple(word.strip('" ') for word in found[1].split(",")) == tuple(OUTCOMES)
+
+
+def test_columns_pictures_and_exit_words_follow_the_outcomes() -> None:
+    study = sweep.NavigationStudy(scenarios=scenarios.configuration("c1"), law=nav.VirtualForceField())
+    assert next(each for each in study.columns() if each.name == "outcome").words == tuple(OUTCOMES)
+    assert {word for word in OUTCOMES if word not in {"arrived", "collided"}} <= set(verdict.FAILURES)
+    assert {word.replace("_", " ") for word in OUTCOMES if word != "collided"} <= set(OUTCOME_COLORS)
+
+
+@pytest.mark.parametrize("word", OUTCOMES)
+def test_the_glossary_has_every_outcome(word: str) -> None:
+    assert word.replace("_", " ") in next(line for line in GLOSSARY.splitlines() if "`outcome`" in line)
+
+
+def test_no_module_lists_the_outcomes_again() -> None:
+    lists = (ast.Tuple, ast.List, ast.Set, ast.Dict)
+    found = set()
+    for path in Path(nav.__file__).parents[1].rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, lists):
+                words = {each.value for each in ast.walk(node) if isinstance(each, ast.Constant)}
+                found |= {path.name} if set(OUTCOMES) <= words else set()
+    assert found == {"outcomes.py"}

@@ -3,7 +3,7 @@
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::{BatchOptions, BatchTable, Instructions, Width, run_batch};
+use vff_core::run::{BatchOptions, BatchTable, Instructions, Outcome, Width, run_batch};
 use vff_core::world::scenario;
 
 use crate::arrays::Fields;
@@ -11,7 +11,7 @@ use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::Scenario;
-use crate::run::{outcome_word, run_options, weights_of};
+use crate::run::{run_options, weights_of};
 use crate::watch::{Report, watched_law};
 
 /// Summary columns of every gain set in every scenario.
@@ -70,7 +70,7 @@ pub fn columns<'py>(
     let fields = Fields::new(py);
     let (rows, obstacles) = (table.len(), table.obstacles);
     index_columns(&fields, sets, rows)?;
-    fields.words("outcome", table.outcome.into_iter().map(outcome_word))?;
+    fields.words("outcome", table.outcome.into_iter().map(Outcome::word))?;
     fields.vector("end_time", table.end_time)?;
     fields.vector("arrival_time", table.arrival_time)?;
     fields.vector("energy", table.energy)?;

@@ -5,13 +5,13 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use numeric::error::Failure;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::{Episode, Navigation, Request};
+use vff_core::run::{Episode, Navigation, Outcome, Request};
 
 use crate::built::{AsBuilt, built_fields};
 use crate::errors::{CoreError, SimulationError};
 use crate::laws::Law;
 use crate::parameters::Scenario;
-use crate::run::{outcome_word, trajectory_fields};
+use crate::run::trajectory_fields;
 use crate::situation::situation_fields;
 use crate::watch::{Report, here};
 
@@ -84,7 +84,7 @@ impl Run {
     /// The word for how it ended, if it has.
     #[getter]
     fn outcome(&self) -> PyResult<Option<&'static str>> {
-        Ok(self.idle()?.outcome().map(outcome_word))
+        Ok(self.idle()?.outcome().map(Outcome::word))
     }
 
     /// Fields of the trajectory so far; `motors`: with what motors and controller know.

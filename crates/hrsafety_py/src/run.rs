@@ -17,14 +17,11 @@ use crate::parameters::{Scenario, word};
 use crate::python_law::raised;
 use crate::watch::{Report, here};
 
-/// The word for an outcome.
-pub fn outcome_word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Arrived => "arrived",
-        Outcome::Collided => "collided",
-        Outcome::TimedOut => "timed_out",
-        Outcome::Stopped => "stopped",
-    }
+/// Words for how a run can end, and what they say.
+#[pyfunction]
+pub fn run_outcomes() -> Vec<(&'static str, &'static str)> {
+    let words = Outcome::ALL.into_iter().map(Outcome::words);
+    words.map(|[word, meaning]| (word, meaning)).collect()
 }
 
 /// Options of a run from their Python form.
@@ -84,7 +81,7 @@ pub fn trajectory_fields<'py>(
         [rows, obstacles, 2],
     )?;
     fields.matrix("distance", columns.distance, rows, obstacles)?;
-    fields.value("outcome", outcome_word(summary.outcome))?;
+    fields.value("outcome", summary.outcome.word())?;
     fields.value("arrival_time", summary.arrival_time.unwrap_or(f64::NAN))?;
     fields.value("energy", summary.energy)?;
     fields.value("path_length", summary.path_length)?;

@@ -14,15 +14,9 @@ from hrsafety import scenarios
 from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.simulate_page import RunTable
+from hrsafety.navigation.outcomes import OUTCOMES
 
 __all__ = ["simulate_file"]
-
-OUTCOME_WORDS = {
-    "arrived": "arrived without a contact",
-    "collided": "touched an obstacle",
-    "timed_out": "timed out",
-    "stopped": "stopped before the goal",
-}
 
 
 def simulate_file(options: argparse.Namespace) -> None:
@@ -98,7 +92,7 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
     run = score.trajectory
     arrival = f"{run.arrival_time:.2f} s" if run.arrival_time == run.arrival_time else "-"
     parts = f"time H_T {score.arrival_time:.3f}, H_D {score.avoidance:.3f}, H_E {score.energy_saving:.3f}"
-    yield "outcome", OUTCOME_WORDS[run.outcome]
+    yield "outcome", OUTCOMES[run.outcome]
     yield "arrival time", arrival
     yield "simulated", f"{run.time[-1]:.2f} s"
     yield "path length", f"{run.path_length:.2f} m"

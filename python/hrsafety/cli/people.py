@@ -19,6 +19,7 @@ from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.simulate_page import RunTable
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -187,8 +188,8 @@ def _totals(summary: nav.RunTable, met: _Encounters) -> Iterator[str]:
     entered = summary.entered_active
     near = np.sort(met.distance[met.distance < met.active])
     yield f"runs       {len(summary)}: {int(arrived.sum())} reached the goal"
-    for word in ("arrived", "collided", "timed_out", "stopped"):
-        yield f"  {word:<10} {int((summary.outcome == word).sum()):4d}{_OUTCOME_NOTES[word]}"
+    for word, meaning in OUTCOMES.items():
+        yield f"  {word:<10} {int((summary.outcome == word).sum()):4d}  {meaning}"
     yield (
         f"  of those that collided, {int((touched & arrived).sum())} reached the goal; at a contact the robot moved "
         f"in {int(while_moving.sum())} and only stood in {int((touched & ~while_moving).sum())}"
@@ -210,14 +211,6 @@ def _totals(summary: nav.RunTable, met: _Encounters) -> Iterator[str]:
             f"           {int((met.distance <= met.contact).sum())} at most {met.contact:g} m (contact), "
             f"{int((met.distance <= met.critical).sum())} at most {met.critical:g} m (critical region)"
         )
-
-
-_OUTCOME_NOTES = {
-    "arrived": "  reached the goal without a contact",
-    "collided": "  touched somebody, whatever came after",
-    "timed_out": "",
-    "stopped": "",
-}
 
 
 PERSON_COLUMNS = ("run", "start_time_s", "ped_id", "min_distance_m", "min_clearance_m")

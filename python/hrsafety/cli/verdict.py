@@ -13,13 +13,16 @@ from hrsafety._arguments import meant
 from hrsafety.cli import output, terminal
 from hrsafety.cli.exit_codes import FAILED_RUN
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]
 
 Counts = Mapping[str, int]
 
-FAILURES = ("contact", "moving_contact", "timed_out", "stopped", "not_arrived", "any")
+# Ends of a run that are neither an arrival nor a contact.
+_SHORT_OF_GOAL = tuple(word for word in OUTCOMES if word not in {"arrived", "collided"})
+FAILURES = ("contact", "moving_contact", *_SHORT_OF_GOAL, "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
 # First word of the last line and its look on a terminal.
 _LOOKS = {"FAILED": "bold red", "passed": "green", "NOTE": "yellow"}
@@ -63,8 +66,7 @@ def counted(runs: nav.RunTable | nav.Trajectory) -> Counts:
     masks = {
         "contact": outcome == "collided",
         "moving_contact": np.asarray(runs.contacts_moving) > 0,
-        "timed_out": outcome == "timed_out",
-        "stopped": outcome == "stopped",
+        **{word: outcome == word for word in _SHORT_OF_GOAL},
         "not_arrived": ~np.isfinite(runs.arrival_time),
         "any": outcome != "arrived",
     }
@@ -91,7 +93,7 @@ def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int) -> st
         return f"FAILED  {said}; --fail-on {shares}: exit code {FAILED_RUN}"
     if not counts["any"]:
         return f"passed  {said}"
-    happened = ",".join(word for word in ("contact", "timed_out", "stopped") if counts[word])
+    happened = ",".join(word for word in ("contact", *_SHORT_OF_GOAL) if counts[word])
     note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
     return f"NOTE    {said}; exit code 0 all the same, {note}"
 

@@ -13,10 +13,11 @@ from hrsafety._arguments import Pair, checked_seed, flag, instance, number, pair
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
 from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
+from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.trajectory import Outcome, Trajectory
+from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["Run"]
 

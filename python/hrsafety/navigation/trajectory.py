@@ -13,16 +13,16 @@ from hrsafety._arguments import Array
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.tracking_laws import Tracking
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane, with_units
 
-__all__ = ["Integrator", "Outcome", "Trajectory", "without_obstacles"]
+__all__ = ["Integrator", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
-Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
 
 
 class Followed(Protocol):

@@ -16,6 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import run_warnings
+from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
@@ -47,9 +48,8 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
         "obstacle_speed": "m/s",
     }
 )
-_OUTCOMES = ("arrived", "collided", "timed_out", "stopped")
 _FIRST = (
-    Column(name="outcome", kind="word", words=_OUTCOMES),
+    Column(name="outcome", kind="word", words=tuple(OUTCOMES)),
     Column(name="end_time", unit="s"),
     Column(name="arrival_time", unit="s"),
     Column(name="energy", unit="J"),

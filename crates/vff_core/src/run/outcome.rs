@@ -16,6 +16,28 @@ pub enum Outcome {
     Stopped,
 }
 
+impl Outcome {
+    /// Every outcome.
+    pub const ALL: [Self; 4] = [Self::Arrived, Self::Collided, Self::TimedOut, Self::Stopped];
+
+    /// Its word, and what it says.
+    #[must_use]
+    pub fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Arrived => ["arrived", "arrived without a contact"],
+            Self::Collided => ["collided", "touched an obstacle"],
+            Self::TimedOut => ["timed_out", "timed out"],
+            Self::Stopped => ["stopped", "stopped before the goal"],
+        }
+    }
+
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        self.words()[0]
+    }
+}
+
 /// What is left of a run in the same few numbers for every scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunTotals {

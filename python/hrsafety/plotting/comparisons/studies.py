@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.plotting import notes, style
 
@@ -206,7 +207,7 @@ def _checked_outcomes(name: str, values: object) -> npt.NDArray[np.str_]:
     words = np.asarray(values.outcome if isinstance(values, RunTable) else values)
     if words.ndim != 1:
         raise ShapeError(argument, "(n,)", words.shape)
-    known = {"arrived", "collided", "timed_out", "stopped"}
+    known = set(OUTCOMES)
     strange = sorted({str(word) for word in words} - known)
     if len(words) == 0 or strange:
         shown = strange[0] if strange else "an empty group"
@@ -237,7 +238,7 @@ def _checked_contacts(
 
 def _counts(words: npt.NDArray[np.str_], contacts: tuple[Counts, Counts] | None) -> dict[str, int]:
     """Return the number of runs of each outcome, runs with a contact split if counts are known."""
-    whole = ("arrived", "timed_out", "stopped")
+    whole = [word for word in OUTCOMES if word != "collided"]
     counts = {word.replace("_", " "): int(np.count_nonzero(words == word)) for word in whole}
     collided = words == "collided"
     if contacts is None:
