@@ -281,6 +281,17 @@ def test_no_file_names_a_place_of_one_machine() -> None:
     assert not found
 
 
+def test_failing_random_cases_are_written_where_they_are_committed() -> None:
+    """proptest writes them beside the tests, or beside the sources of the crate, unless it is told not to."""
+    sources = (REPOSITORY / "crates").rglob("*.rs")
+    assert not [path for path in sources if "failure_persistence" in path.read_text(encoding="utf-8")]
+    places = ["crates/vff_core/tests/lanes.proptest-regressions", "crates/vff_core/proptest-regressions/laws/law.txt"]
+    command = ["git", "check-ignore", "--no-index", *places]
+    assert subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False).stdout == ""
+    command = ["git", "ls-files", "--others", "--exclude-standard", "--", "*proptest-regressions*"]
+    assert subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True).stdout == ""
+
+
 def test_nothing_is_left_to_fill_in() -> None:
     marks = ["TO" + "DO", "FIX" + "ME", "FILL" + "ME", "X" * 3]
     pattern = re.compile(r"\b(" + "|".join(marks) + r")\b")

@@ -136,7 +136,6 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: 500,
         rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
         ..ProptestConfig::default()
     })]
 

@@ -71,7 +71,6 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: 200,
         rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
         ..ProptestConfig::default()
     })]
 

@@ -33,7 +33,6 @@ fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
         rng_seed: RngSeed::Fixed(20_110),
-        failure_persistence: None,
         max_global_rejects: 20 * cases,
         ..ProptestConfig::default()
     }

@@ -22,7 +22,6 @@ fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
         rng_seed: RngSeed::Fixed(20_190),
-        failure_persistence: None,
         ..ProptestConfig::default()
     }
 }

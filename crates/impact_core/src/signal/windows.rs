@@ -299,7 +299,6 @@ mod tests {
         #![proptest_config(ProptestConfig {
             cases: 64,
             rng_seed: RngSeed::Fixed(2),
-            failure_persistence: None,
             ..ProptestConfig::default()
         })]
 

@@ -102,7 +102,6 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: 300,
         rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
         ..ProptestConfig::default()
     })]
 
