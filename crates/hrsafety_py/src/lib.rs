@@ -132,7 +132,9 @@ mod _hrsafety {
         skirt_safe_distance, skirt_states, skirt_test,
     };
     #[pymodule_export]
-    use crate::run::{evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate};
+    use crate::run::{
+        evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,
+    };
     #[pymodule_export]
     use crate::safe::{Shield, Yielding, shield_speed_bound};
     #[pymodule_export]

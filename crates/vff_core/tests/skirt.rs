@@ -3,11 +3,11 @@
 use numeric::parallel::Work;
 use numeric::random::Stream;
 use vff_core::error::Failure;
-use vff_core::run::skirt::ring::PUBLISHED_WHEEL_GAP;
 use vff_core::run::skirt::{
     Action, DiscScene, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan,
     TestRow, Travel, robot, test_batch,
 };
+use vff_core::sensing::sonar::ring::PUBLISHED_WHEEL_GAP;
 use vff_core::world::shape::PlacedShape;
 
 const OPTIONS: SkirtOptions = SkirtOptions {
@@ -135,7 +135,7 @@ fn any_number_of_threads_gives_the_same_rows() {
     for threads in [None, Some(2), Some(5)] {
         assert_eq!(test_batch(&skirt, &plan(3), work(threads)).unwrap(), one);
     }
-    let single = plan(3).run(&skirt, 77, |_| ()).unwrap();
+    let single = plan(3).run(&skirt, 77, |_| (), &|| false).unwrap();
     assert_eq!(single.0, one[77]);
 }
 
@@ -163,10 +163,9 @@ fn a_disc_straight_ahead_is_escaped_the_way_the_robot_came() {
     let mut actions = Vec::new();
     let scene = alone([0.0, -1.5], true);
     let noise = Stream::new(0, 1);
-    let found = robot::run(&skirt, &MOTION, &scene, south, noise, |now| {
-        actions.push(now.action);
-    })
-    .unwrap();
+    let watch = |now: &robot::Moment<'_>| actions.push(now.action);
+    let start = (south, noise);
+    let found = robot::run(&skirt, &MOTION, &scene, start, watch, &|| false).unwrap();
     let north = Action::Move(vff_core::run::skirt::Direction::North);
     assert!(actions.contains(&north));
     assert!(found.contact_time.is_none());
@@ -178,7 +177,15 @@ fn a_disc_straight_ahead_is_escaped_the_way_the_robot_came() {
 fn a_disc_below_the_sensors_is_hit() {
     let skirt = skirt(OPTIONS);
     let scene = alone([1.5, 0.0], false);
-    let found = robot::run(&skirt, &MOTION, &scene, 0.0, Stream::new(0, 1), |_| ()).unwrap();
+    let found = robot::run(
+        &skirt,
+        &MOTION,
+        &scene,
+        (0.0, Stream::new(0, 1)),
+        |_| (),
+        &|| false,
+    )
+    .unwrap();
     let time = found.contact_time.unwrap();
     // 0.97 m at 0.3 m/s, and 0.25 s lost in speeding up.
     assert!((time - (0.97 / 0.3 + 0.25)).abs() < 0.05, "{time}");
@@ -196,9 +203,8 @@ fn a_robot_walled_in_spins_and_stands() {
     };
     let skirt = skirt(OPTIONS);
     let mut last = None;
-    robot::run(&skirt, &MOTION, &scene, 0.0, Stream::new(0, 1), |now| {
-        last = Some((now.action, now.yaw_rate));
-    })
-    .unwrap();
+    let watch = |now: &robot::Moment<'_>| last = Some((now.action, now.yaw_rate));
+    let start = (0.0, Stream::new(0, 1));
+    robot::run(&skirt, &MOTION, &scene, start, watch, &|| false).unwrap();
     assert_eq!(last, Some((Action::Spin, 0.5)));
 }

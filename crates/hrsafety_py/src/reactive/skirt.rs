@@ -5,14 +5,15 @@ use numeric::parallel::Work;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::laws::escape::states::TABLE_1;
 use vff_core::robots::wheels::TriOmni;
-use vff_core::run::skirt::ring::{
-    Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
-};
-use vff_core::run::skirt::states::TABLE_1;
+use vff_core::run::skirt::robot::Moment;
 use vff_core::run::skirt::{
     Action, Direction, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan, Travel,
     normal_distances, test_batch,
+};
+use vff_core::sensing::sonar::ring::{
+    Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
 };
 
 use crate::arrays::Fields;
@@ -401,9 +402,10 @@ pub fn skirt_run<'py>(
     .checked(&skirt.0)
     .map_err(CoreError::from)?;
     let mut record = Record::default();
-    let (row, drawn) = plan
-        .run(&skirt.0, index, |moment| record.push(moment))
-        .map_err(CoreError::from)?;
+    let (row, drawn) = watched(py, Report::none(), |control| {
+        let watch = |moment: &Moment<'_>| record.push(moment);
+        plan.run(&skirt.0, index, watch, &|| control.interrupted())
+    })?;
     let fields = Fields::new(py);
     record.fill(&fields)?;
     let discs = drawn.discs.len();
@@ -441,7 +443,7 @@ struct Record {
 }
 
 impl Record {
-    fn push(&mut self, moment: &vff_core::run::skirt::robot::Moment<'_>) {
+    fn push(&mut self, moment: &Moment<'_>) {
         self.time.push(moment.time);
         self.position.extend(<[f64; 2]>::from(moment.pose.position));
         self.heading.push(moment.pose.angle());

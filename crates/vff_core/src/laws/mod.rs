@@ -1,6 +1,7 @@
 //! Navigation laws behind one interface.
 
 mod borenstein_koren;
+pub mod escape;
 pub mod field;
 pub mod field_d_star;
 mod ge_cui;
@@ -11,6 +12,7 @@ mod masoud;
 pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
+pub mod reflex;
 pub mod registry;
 pub mod safe;
 pub mod shield;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::laws::{Command, Situation, Stop, force_toward};
-use crate::robots::drives::{Drive, Fix, Order, Reading};
+use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
@@ -49,7 +49,7 @@ struct Known {
 pub struct Navigation<L = Everything> {
     scenario: Arc<Scenario>,
     law: Option<Box<dyn Steering>>,
-    robot: Box<dyn Drive>,
+    robot: Box<dyn MotorDrive>,
     listener: L,
     stop_on_contact: bool,
     /// How long a force acts, in s.

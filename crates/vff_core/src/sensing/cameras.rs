@@ -80,6 +80,24 @@ impl ObstacleCamera {
     }
 }
 
+impl ObstacleCamera {
+    /// Of everything that stands or moves, with one stream for each thing from the first one on, for
+    /// a time in s.
+    pub fn of_everything(
+        count: usize,
+        vision: &Vision,
+        (seed, first): (u64, u64),
+        duration: f64,
+    ) -> Result<Self> {
+        vision.check_frames(duration)?;
+        let sensor = |(stream, _)| VisionSensor::new(vision, seed, stream).map(Some);
+        Ok(Self {
+            sensors: (first..).zip(0..count).map(sensor).collect::<Result<_>>()?,
+            obstacles: Vec::new(),
+        })
+    }
+}
+
 impl Sensor for ObstacleCamera {
     fn watch(&mut self, truth: &Truth<'_>) {
         for (sensor, body) in self.sensors.iter_mut().zip(truth.bodies) {

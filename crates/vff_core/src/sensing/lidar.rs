@@ -279,7 +279,7 @@ impl Sensor for Scans {
                 shape: body.shape,
             }));
         }
-        let actual = Frame::at(truth.robot.position.into(), truth.heading);
+        let actual = truth.frame();
         let options = &self.options;
         options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
         options.points(known, &self.ranges, &mut self.points);

@@ -9,8 +9,7 @@ pub(crate) const MARK_STREAM: u64 = 1 << 62;
 
 /// Where the second mark is, at a distance in m ahead of the center.
 pub(crate) fn second(truth: &Truth<'_>, distance: f64) -> Vector2<f64> {
-    let (sin, cos) = truth.heading.sin_cos();
-    truth.robot.position + Vector2::new(cos, sin) * distance
+    truth.robot.position + truth.heading.direction() * distance
 }
 
 /// Heading in rad from the measured places of both marks, (7.3.1).

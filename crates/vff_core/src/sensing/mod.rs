@@ -3,6 +3,7 @@
 pub mod camera;
 pub(crate) mod cameras;
 pub mod estimator;
+pub mod fixes;
 pub mod lidar;
 mod linearized;
 mod marks;
@@ -18,7 +19,9 @@ pub mod ultrasonic;
 pub mod vision;
 
 pub use camera::{Camera, CameraPose, Lens};
+pub(crate) use cameras::ObstacleCamera;
 pub use estimator::{Estimate, Estimator, Track};
+pub use fixes::{FixNoise, Fixes, Heard};
 pub use lidar::Lidar;
 pub use linearized::{LinearizedCamera, PARAMETERS};
 pub use options::SensorOptions;

@@ -1,8 +1,10 @@
 //! What every sensor can do: watch the scene, and tell the controller of the robot or of obstacles.
 
-use crate::world::frame::Frame;
+use crate::lanes::Vector2;
+use crate::world::frame::{Frame, Heading};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::PlacedObstacle;
+use crate::world::shape::PlacedShape;
 
 /// The scene as it is.
 #[derive(Clone, Copy, Debug)]
@@ -11,10 +13,39 @@ pub struct Truth<'a> {
     pub time: f64,
     /// State of the robot.
     pub robot: RobotState<f64>,
-    /// Heading of the robot in rad.
-    pub heading: f64,
+    /// Heading of the robot.
+    pub heading: Heading,
     /// The obstacles.
     pub bodies: &'a [Body],
+    /// Outlines of what gives echoes, where a world keeps them beside its bodies or in place of them.
+    pub outlines: &'a [PlacedShape],
+    /// Where a sound comes from, in m, if there is one.
+    pub source: Option<Vector2<f64>>,
+}
+
+impl<'a> Truth<'a> {
+    /// A robot with a heading in rad among obstacles.
+    #[must_use]
+    pub fn among(time: f64, robot: RobotState<f64>, heading: f64, bodies: &'a [Body]) -> Self {
+        Self {
+            time,
+            robot,
+            heading: Heading::Angle(heading),
+            bodies,
+            outlines: &[],
+            source: None,
+        }
+    }
+
+    /// Where the robot is and where it looks.
+    #[inline]
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        Frame {
+            position: self.robot.position,
+            direction: self.heading.direction(),
+        }
+    }
 }
 
 /// The robot as a sensor knows it.

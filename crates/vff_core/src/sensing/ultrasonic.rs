@@ -5,12 +5,11 @@ use numeric::random::Stream;
 
 use crate::error::{Result, not_negative};
 use crate::sensing::sensor::{Sensor, Truth};
-use crate::sensing::sonar::SonarArray;
-use crate::sensing::sonar::ranging::Normals;
+use crate::sensing::sonar::{Sonar, SonarArray};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::motion::{BodyState, Motion};
-use crate::world::obstacle::{Limits, Obstacle, PlacedShape, Regions, Shape};
+use crate::world::obstacle::{Limits, Obstacle, Regions, Shape};
 use crate::world::region::{self, Sensing};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
@@ -86,13 +85,11 @@ impl Ultrasonic {
 
 /// An array at work.
 pub(crate) struct Echoes {
-    options: Ultrasonic,
+    assumed_speed: f64,
     obstacles: Vec<PlacedObstacle>,
-    readings: Vec<f64>,
+    sonar: Sonar,
     /// Last points of the sensors in the world, in m.
     points: Vec<Option<Vector2<f64>>>,
-    shapes: Vec<PlacedShape>,
-    noise: Normals,
     samples: usize,
 }
 
@@ -109,12 +106,14 @@ impl Echoes {
         };
         Ok(Self {
             obstacles: vec![placed; count],
-            readings: vec![f64::INFINITY; count],
+            sonar: Sonar::new(
+                &options.array,
+                Stream::new(scenario.seed, ECHO_STREAM + index),
+                f64::INFINITY,
+            ),
             points: vec![None; count],
-            shapes: Vec::with_capacity(scenario.obstacles.len()),
-            noise: Normals::new(Stream::new(scenario.seed, ECHO_STREAM + index)),
             samples: 0,
-            options: options.clone(),
+            assumed_speed: options.assumed_speed,
         })
     }
 }
@@ -125,30 +124,17 @@ impl Sensor for Echoes {
     }
 
     fn observe(&mut self, truth: &Truth<'_>, known: &Frame, bodies: &mut [Body]) {
-        let present = truth.bodies.iter().filter(|body| body.state.present);
-        self.shapes.clear();
-        self.shapes.extend(present.map(|body| PlacedShape {
-            center: body.state.position.into(),
-            shape: body.shape,
-        }));
-        let array = &self.options.array;
-        let actual = Frame::at(truth.robot.position.into(), truth.heading);
-        array.measure(
-            &actual,
-            &self.shapes,
-            self.samples,
-            &mut self.readings,
-            &mut self.noise,
-        );
+        self.sonar.observe(truth, known, &mut []);
+        let array = self.sonar.array();
         for sensor in array.firing().fired(self.points.len(), self.samples) {
             let beam = known.carrying(&array.mounts()[sensor]);
-            let reading = self.readings[sensor];
+            let reading = self.sonar.readings()[sensor];
             let point = beam.position + beam.direction * reading;
             self.points[sensor] = reading.is_finite().then_some(point);
         }
         self.samples += 1;
         for (body, point) in bodies.iter_mut().zip(&self.points) {
-            body.state = state_of(*point, known.position, self.options.assumed_speed);
+            body.state = state_of(*point, known.position, self.assumed_speed);
         }
     }
 }
@@ -217,12 +203,7 @@ mod tests {
             position: place.into(),
             velocity: Vector2::zeros(),
         };
-        let truth = Truth {
-            time: 0.0,
-            robot,
-            heading: 0.0,
-            bodies: discs,
-        };
+        let truth = Truth::among(0.0, robot, 0.0, discs);
         echoes.observe(&truth, &Frame::at(place, 0.0), &mut bodies);
         bodies.iter().map(|body| body.state).collect()
     }

@@ -4,6 +4,30 @@ use nalgebra::Vector2;
 
 use crate::error::{Result, finite_pair, positive};
 
+/// Which way a robot faces: as an angle, or as the unit vector of a robot that needs no angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Heading {
+    /// In rad, counterclockwise from x.
+    Angle(f64),
+    /// Unit vector.
+    Direction(Vector2<f64>),
+}
+
+impl Heading {
+    /// Unit vector.
+    #[inline]
+    #[must_use]
+    pub fn direction(self) -> Vector2<f64> {
+        match self {
+            Self::Angle(angle) => {
+                let (sin, cos) = angle.sin_cos();
+                Vector2::new(cos, sin)
+            }
+            Self::Direction(direction) => direction,
+        }
+    }
+}
+
 /// Origin and unit vector of the x axis; y is to its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

@@ -22,4 +22,4 @@ pub use reference::{Reference, ReferencePath};
 pub use torque::{TorqueSteering, VirtualTorque};
 pub use track::{TrackOptions, TrackRow, TrackRun, TrackStart, track, track_batch};
 pub use tracker::{Tracker, Tracking};
-pub use velocity_drive::VelocityDrive;
+pub use velocity_drive::{VelocityDrive, VelocityRule};

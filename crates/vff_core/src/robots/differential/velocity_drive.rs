@@ -6,6 +6,16 @@ use super::drive::{Integration, Twist};
 use crate::error::{Result, not_negative, positive};
 use crate::world::frame::Frame;
 
+/// What becomes of the virtual velocity between two steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VelocityRule {
+    /// It is integrated on.
+    #[default]
+    Integrated,
+    /// It starts every step from the velocity of the robot.
+    Reset,
+}
+
 /// A robot with two driven wheels that turns toward a wanted velocity and never drives backward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityDrive {

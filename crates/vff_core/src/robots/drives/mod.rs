@@ -1,19 +1,24 @@
 //! How a commanded force becomes motion, one motion step after the other.
 
 mod driven;
+mod limited_omni;
 mod omni;
 mod point_mass;
 mod two_wheels;
 mod velocity;
+mod virtual_velocity;
 
+pub(crate) use limited_omni::{Course, LimitedOmni, OmniLimits};
 pub(crate) use omni::OmniRobot;
 pub(crate) use point_mass::{IdealHolonomic, PointMass};
 pub(crate) use two_wheels::TwoWheels;
 pub use two_wheels::{PoseFusion, Steered};
 pub(crate) use velocity::velocity_of;
+pub(crate) use virtual_velocity::VirtualVelocity;
 
 use crate::lanes::{Planar, Vector2};
 use crate::robots::HolonomicRobot;
+use crate::world::frame::Frame;
 use crate::world::geometry::RobotState;
 
 /// Most wheels of a robot.
@@ -94,8 +99,33 @@ pub(crate) struct Order {
     pub clear: bool,
 }
 
-/// What turns the force that a law holds into motion, one motion step after the other.
-pub(crate) trait Drive: Send {
+/// Where a robot without a model of its motors is at the end of a motion step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    /// Place and front.
+    pub frame: Frame,
+    /// Velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Speed along its course over the step in m/s.
+    pub speed: f64,
+    /// Turn rate over the step in rad/s.
+    pub turn_rate: f64,
+}
+
+/// What turns what a law asks for into motion, one motion step after the other.
+pub(crate) trait Drive {
+    /// What it is told at a sample.
+    type Order;
+    /// What is known at the end of a motion step.
+    type Reading;
+    /// Holds an order until the next sample.
+    fn hold(&mut self, order: &Self::Order);
+    /// Moves by one motion step.
+    fn step(&mut self) -> Self::Reading;
+}
+
+/// A drive whose motors are modeled, under a law that asks for forces.
+pub(crate) trait MotorDrive: Drive<Order = Order, Reading = Reading> + Send {
     /// Number of its wheels.
     fn wheels(&self) -> usize;
     /// Whether its energy is that of ideal wheels on a point mass.
@@ -104,8 +134,4 @@ pub(crate) trait Drive: Send {
     }
     /// Heading in rad as the robot itself knows it between measurements.
     fn known_heading(&self) -> f64;
-    /// Holds an order until the next sample.
-    fn hold(&mut self, order: &Order);
-    /// Goes on by one motion step.
-    fn step(&mut self) -> Reading;
 }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::robots::drives::driven::{DrivenWheels, WheelSize};
-use crate::robots::drives::{Drive, Order, PointMass, Reading, Start, WHEELS};
+use crate::robots::drives::{Drive, MotorDrive, Order, PointMass, Reading, Start, WHEELS};
 use crate::robots::wheels::{OmniKinematics, Slip, WheelDrive};
 use crate::world::geometry::RobotState;
 
@@ -43,7 +43,7 @@ impl OmniRobot {
     }
 }
 
-impl Drive for OmniRobot {
+impl MotorDrive for OmniRobot {
     fn wheels(&self) -> usize {
         WHEELS
     }
@@ -51,6 +51,11 @@ impl Drive for OmniRobot {
     fn known_heading(&self) -> f64 {
         self.wanted_heading
     }
+}
+
+impl Drive for OmniRobot {
+    type Order = Order;
+    type Reading = Reading;
 
     fn hold(&mut self, order: &Order) {
         self.reference.hold(order.force);

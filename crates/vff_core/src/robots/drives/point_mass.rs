@@ -1,7 +1,7 @@
 //! The point mass that a law drives, alone or with the currents that ideal wheels take.
 
 use crate::lanes::{Planar, Vector2};
-use crate::robots::drives::{Drive, Order, Reading, Start, WHEELS};
+use crate::robots::drives::{Drive, MotorDrive, Order, Reading, Start, WHEELS};
 use crate::robots::{HolonomicRobot, WheelModel};
 use crate::world::geometry::RobotState;
 
@@ -68,7 +68,7 @@ impl IdealHolonomic {
     }
 }
 
-impl Drive for IdealHolonomic {
+impl MotorDrive for IdealHolonomic {
     fn wheels(&self) -> usize {
         WHEELS
     }
@@ -80,6 +80,11 @@ impl Drive for IdealHolonomic {
     fn known_heading(&self) -> f64 {
         self.heading
     }
+}
+
+impl Drive for IdealHolonomic {
+    type Order = Order;
+    type Reading = Reading;
 
     fn hold(&mut self, order: &Order) {
         self.point.hold(order.force);

@@ -8,7 +8,7 @@ use crate::robots::differential::{
 };
 use crate::robots::drives::driven::{DrivenWheels, WheelSize};
 use crate::robots::drives::velocity::VelocitySteering;
-use crate::robots::drives::{Drive, Fix, Order, PointMass, Reading, Start, WHEELS};
+use crate::robots::drives::{Drive, Fix, MotorDrive, Order, PointMass, Reading, Start, WHEELS};
 use crate::robots::wheels::{DifferentialKinematics, Slip, WheelDrive};
 use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
 use crate::world::geometry::RobotState;
@@ -220,7 +220,7 @@ fn spread([right, left]: [f64; DRIVEN]) -> [f64; WHEELS] {
     [right, left, 0.0]
 }
 
-impl Drive for TwoWheels {
+impl MotorDrive for TwoWheels {
     fn wheels(&self) -> usize {
         DRIVEN
     }
@@ -232,6 +232,11 @@ impl Drive for TwoWheels {
             self.known.heading
         }
     }
+}
+
+impl Drive for TwoWheels {
+    type Order = Order;
+    type Reading = Reading;
 
     fn hold(&mut self, order: &Order) {
         self.force = order.force.lane(0);

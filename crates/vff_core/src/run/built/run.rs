@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::robots::drives::{Drive, IdealHolonomic, OmniRobot, TwoWheels};
+use crate::robots::drives::{IdealHolonomic, MotorDrive, OmniRobot, TwoWheels};
 use crate::run::Interrupted;
 use crate::run::built::history::BuiltTrajectory;
 use crate::run::built::{Built, Steered};
@@ -60,7 +60,7 @@ pub(crate) fn robot_under(
     scenario: &Scenario,
     built: &Built,
     law: Option<&AnyLaw>,
-) -> Result<Box<dyn Drive>> {
+) -> Result<Box<dyn MotorDrive>> {
     if scenario.differential.is_some() && law.is_some_and(|law| law.driven().steers_by_velocity()) {
         let steered = Steered::Velocity;
         return robot_of(
@@ -75,7 +75,7 @@ pub(crate) fn robot_under(
 }
 
 /// The robot of a scenario, at its start.
-fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn Drive>> {
+fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn MotorDrive>> {
     built.suiting(scenario)?;
     let start = built.start_in(scenario);
     let wheels = built.wheels.as_deref();

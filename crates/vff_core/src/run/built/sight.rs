@@ -134,12 +134,7 @@ fn sensors_of(scenario: &Scenario, built: &Built, bodies: &[Body]) -> Result<Vec
 }
 
 fn truth_of<'a>(time: f64, reading: &Reading, bodies: &'a [Body]) -> Truth<'a> {
-    Truth {
-        time,
-        robot: reading.robot,
-        heading: reading.heading,
-        bodies,
-    }
+    Truth::among(time, reading.robot, reading.heading, bodies)
 }
 
 /// An obstacle of which nothing has been told yet.

@@ -3,15 +3,23 @@
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result};
-use crate::laws::impedance::bank::{Bank, BankLayout};
-use crate::laws::impedance::law::Prepared;
+use crate::laws::impedance::following::{Following, FollowingLaw, Sight};
+use crate::laws::reflex::{Percept, Reflex};
+use crate::robots::drives::{Drive, VirtualVelocity};
+use crate::run::Interrupted;
+use crate::run::episode::{Episode, Parts};
 use crate::run::follower::scene::FollowerScene;
-use crate::run::follower::settings::{Settings, VelocityRule};
+use crate::run::follower::settings::Settings;
 use crate::run::follower::surroundings::{Surroundings, Touch};
-use crate::sensing::sonar::SonarArray;
-use crate::sensing::sonar::ranging::Normals;
-use crate::sensing::{Vision, VisionSensor};
-use crate::world::frame::Frame;
+use crate::run::options::Clock;
+use crate::sensing::ObstacleCamera;
+use crate::sensing::fixes::Ear;
+use crate::sensing::sensor::{Sensor, Truth};
+use crate::sensing::sonar::{Sonar, SonarArray};
+use crate::world::frame::{Frame, Heading};
+use crate::world::geometry::{Body, RobotState};
+use crate::world::motion::BodyState;
+use crate::world::obstacle::{Obstacle, Regions};
 use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
@@ -20,15 +28,6 @@ const BURSTS: u64 = 1;
 const SONAR: u64 = 2;
 /// First stream of the cameras, one for each obstacle.
 const CAMERA: u64 = 16;
-
-/// Sensors of a bank.
-const BANK: usize = 3;
-
-/// Distance of surfaces that touch or overlap, in m: the force needs a direction.
-const TOUCHING: f64 = 1e-9;
-
-/// Steps between two looks whether to stop.
-const CHECK: usize = 1024;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,30 +88,9 @@ impl SampleObserver for () {
 pub struct Follower {
     settings: Settings,
     array: SonarArray,
-    layout: BankLayout,
-    banks: Vec<Frame>,
-    law: Prepared,
-    /// Weight of a new sample in the filter of the speed.
-    weight: f64,
-    /// Steps between two bursts.
-    burst: usize,
+    law: FollowingLaw,
     /// No sensor can see anything that is farther from the center, in m.
     horizon: f64,
-}
-
-/// What changes during a run.
-struct State {
-    pose: Frame,
-    velocity: Vector2<f64>,
-    /// Velocity of the robot over the last step, in m/s.
-    driven: Vector2<f64>,
-    target: Vector2<f64>,
-    banks: [Bank; 2],
-    /// Positions of the obstacles as a camera knows them.
-    cameras: Vec<VisionSensor>,
-    readings: [f64; 2 * BANK],
-    fixes: Normals,
-    noise: Normals,
 }
 
 impl Follower {
@@ -125,16 +103,25 @@ impl Follower {
         let array = settings.sensors.array()?;
         let farthest = |mount: &Frame| mount.position.x.hypot(mount.position.y);
         let offset = array.mounts().iter().map(farthest).fold(0.0, f64::max);
-        let burst = (settings.fixes.interval / settings.step).round().max(1.0);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
-        let burst = burst as usize;
-        Ok(Self {
+        let reach = array.ranging().reach();
+        let law = FollowingLaw {
+            attraction: settings.attraction,
+            repulsion: settings.impedance.prepared(),
+            sight: if settings.obstacle_vision.is_some() {
+                Sight::Bodies
+            } else {
+                Sight::Echoes
+            },
             layout: settings.sensors.layout()?,
             banks: settings.sensors.banks(),
-            law: settings.impedance.prepared(),
-            weight: settings.bank.rate.weight(settings.step),
-            burst,
-            horizon: array.ranging().reach() + offset,
+            options: settings.bank,
+            timing: (settings.step, settings.bank.rate.weight(settings.step)),
+            body_radius: settings.drive.body_radius,
+            reach,
+        };
+        Ok(Self {
+            law,
+            horizon: reach + offset,
             array,
             settings,
         })
@@ -161,190 +148,249 @@ impl Follower {
         scene: &FollowerScene,
         seed: u64,
         observer: &mut impl SampleObserver,
-        interrupted: &(dyn Fn() -> bool + Sync),
+        interrupted: Interrupted<'_>,
     ) -> Result<FollowerOutcome> {
-        let steps = self.settings.steps(scene.duration)?;
-        let mut state = State::new(self.settings.obstacle_vision.as_ref(), scene, seed)?;
-        let mut around = Surroundings::of(scene, self.horizon);
-        let mut outcome = FollowerOutcome {
-            contact: None,
-            end_time: 0.0,
-            source_distance: f64::NAN,
-            least_clearance: f64::INFINITY,
-            path_length: 0.0,
-            turning: 0.0,
-        };
-        for step in 0..=steps {
-            if step % CHECK == CHECK - 1 && interrupted() {
-                return Err(Failure::Interrupted);
-            }
-            let time = step as f64 * self.settings.step;
-            let source = around.look(scene, time, &state.pose);
-            outcome.end_time = time;
-            outcome.least_clearance = outcome.least_clearance.min(around.least);
-            outcome.source_distance = length(source - state.pose.position);
-            let radius = self.settings.drive.body_radius;
-            let touching = around.least < radius * radius;
-            if touching {
-                outcome.contact = Some(around.contact(&state.pose));
-            }
-            let wheels = self.act(&mut state, &around, step, source, observer);
-            if touching || step == steps {
-                break;
-            }
-            self.advance(&mut state, wheels, &mut outcome);
-            if !(state.pose.position.x + state.pose.position.y).is_finite() {
-                return Err(Failure::NonFinite { run: 0, time });
-            }
-        }
-        outcome.least_clearance = outcome.least_clearance.sqrt() - self.settings.drive.body_radius;
-        Ok(outcome)
+        let mut ended = self.episode(scene, seed, observer)?.run(interrupted)?;
+        // What it would do next stands in the last row.
+        let time = ended.stepped();
+        ended.parts.decide(time, (), interrupted)?;
+        Ok(ended.parts.outcome())
     }
 
-    /// Locates the source, senses, and chooses the speeds of the wheels.
-    #[inline]
-    fn act(
-        &self,
-        state: &mut State,
-        around: &Surroundings,
-        step: usize,
-        source: Vector2<f64>,
-        observer: &mut impl SampleObserver,
-    ) -> [f64; 2] {
+    /// A run at its start.
+    ///
+    /// # Errors
+    /// The duration is out of range.
+    pub(crate) fn episode<'a, O: SampleObserver>(
+        &'a self,
+        scene: &'a FollowerScene,
+        seed: u64,
+        observer: &'a mut O,
+    ) -> Result<Episode<FollowerParts<'a, O>>> {
         let settings = &self.settings;
-        let pose = state.pose;
-        if step.is_multiple_of(self.burst) {
-            let offset = pose.inward(source - pose.position);
-            let (range, direction) = settings.fixes.fix(offset, &mut state.fixes);
-            let advance = settings.attraction.advance(range);
-            state.target = pose.position + pose.outward(direction) * advance;
-        }
-        let repulsion = if settings.obstacle_vision.is_some() {
-            self.repulsion_seen(state, around, step as f64 * settings.step)
-        } else {
-            let readings = &mut state.readings[..self.array.mounts().len()];
-            self.array
-                .measure(&pose, &around.near, step, readings, &mut state.noise);
-            self.repulsion(&mut state.banks, &state.readings, &pose)
+        let step = settings.step;
+        let clock = Clock {
+            step,
+            steps_per_sample: 1,
+            steps: settings.steps(scene.duration)?,
+            interval: step,
         };
-        let offset = state.target - pose.position;
-        let attraction = settings.attraction.force(offset, state.velocity);
-        let gain = settings.step / settings.drive.mass;
-        let mut velocity = state.velocity + (attraction + repulsion) * gain;
-        let speed = length(velocity);
-        if speed > settings.drive.wheel_speed {
-            velocity *= settings.drive.wheel_speed / speed;
-        }
-        state.velocity = velocity;
-        let wheels = settings.drive.wheels(pose.inward(velocity));
-        observer.sample(&Sample {
-            time: step as f64 * settings.step,
-            pose: &pose,
-            virtual_velocity: velocity,
-            wheels,
-            target: state.target,
-            source,
-            attraction,
-            repulsion,
-            readings: &state.readings[..self.array.mounts().len()],
-            shapes: &around.shapes,
+        let vision = settings.obstacle_vision.as_ref();
+        let camera = vision.map(|vision| {
+            let count = scene.obstacles.len();
+            ObstacleCamera::of_everything(count, vision, (seed, CAMERA), scene.duration)
         });
-        wheels
-    }
-
-    /// Repulsive force of the obstacles as a camera knows them, in N: from the surface of the body
-    /// to the nearest point of each within the reach of the sonar.
-    fn repulsion_seen(&self, state: &mut State, around: &Surroundings, time: f64) -> Vector2<f64> {
-        let (robot, driven) = (state.pose.position, state.driven);
-        let radius = self.settings.drive.body_radius;
-        let reach = self.array.ranging().reach();
-        let cameras = state.cameras.iter_mut().zip(&around.shapes);
-        self.law
-            .force_of_points(cameras.filter_map(|(camera, actual)| {
-                camera.sample(time, actual.center.into());
-                let found = camera.estimate(time)?;
-                let known = PlacedShape {
-                    center: found.position.into(),
-                    shape: actual.shape,
-                };
-                let to = known.nearest(robot);
-                let distance = length(to);
-                let gap = (distance - radius).max(TOUCHING);
-                (distance > 0.0 && gap <= reach).then(|| {
-                    (
-                        to * (gap / distance),
-                        Vector2::from(found.velocity) - driven,
-                    )
-                })
-            }))
-    }
-
-    /// Repulsive force of all banks, in N.
-    #[inline]
-    fn repulsion(
-        &self,
-        memory: &mut [Bank; 2],
-        readings: &[f64; 2 * BANK],
-        pose: &Frame,
-    ) -> Vector2<f64> {
-        let mut sum = Vector2::zeros();
-        let timing = (self.settings.step, self.weight);
-        for (index, (bank, mounted)) in memory.iter_mut().zip(&self.banks).enumerate() {
-            let own: [f64; BANK] = std::array::from_fn(|sensor| readings[BANK * index + sensor]);
-            sum += bank.force(
-                &self.layout,
-                &own,
-                &pose.carrying(mounted),
-                &self.law,
-                &self.settings.bank,
-                timing,
-            );
-        }
-        sum
-    }
-
-    /// Moves the robot by one step.
-    #[inline]
-    fn advance(&self, state: &mut State, wheels: [f64; 2], outcome: &mut FollowerOutcome) {
-        let Settings { drive, step, .. } = &self.settings;
-        let twist = drive.twist(wheels);
-        state.pose = twist.moved(&state.pose, *step, drive.integration);
-        state.driven = state.pose.direction * twist.speed;
-        outcome.path_length += twist.speed.abs() * step;
-        outcome.turning += twist.turn_rate.abs() * step;
-        if self.settings.velocity == VelocityRule::Reset {
-            state.velocity = state.driven;
-        }
-    }
-}
-
-impl State {
-    fn new(vision: Option<&Vision>, scene: &FollowerScene, seed: u64) -> Result<Self> {
-        let mut cameras = Vec::new();
-        if let Some(vision) = vision {
-            vision.check_frames(scene.duration)?;
-            for (stream, _) in (CAMERA..).zip(&scene.obstacles) {
-                cameras.push(VisionSensor::new(vision, seed, stream)?);
-            }
-        }
-        Ok(Self {
-            pose: Frame {
-                position: Vector2::zeros(),
-                direction: Vector2::x(),
+        let bodies: Vec<Body> = match vision {
+            Some(_) => scene.obstacles.iter().map(body_of).collect(),
+            None => Vec::new(),
+        };
+        let drive = VirtualVelocity::new(settings.drive, settings.velocity, step);
+        let parts = FollowerParts {
+            place: Place {
+                scene,
+                around: Surroundings::of(scene, self.horizon),
+                bodies: bodies.clone(),
+                source: Vector2::zeros(),
+                pose: drive.frame(),
+                velocity: Vector2::zeros(),
             },
-            velocity: Vector2::zeros(),
-            driven: Vector2::zeros(),
-            target: Vector2::zeros(),
-            banks: [Bank::default(); 2],
-            cameras,
-            readings: [f64::INFINITY; 2 * BANK],
-            fixes: Normals::new(Stream::new(seed, BURSTS)),
-            noise: Normals::new(Stream::new(seed, SONAR)),
-        })
+            senses: Senses {
+                ear: Ear::new(&settings.fixes, step, Stream::new(seed, BURSTS)),
+                sonar: Sonar::new(&self.array, Stream::new(seed, SONAR), f64::INFINITY),
+                camera: camera.transpose()?,
+                seen: bodies,
+            },
+            law: Following::new(&self.law),
+            drive,
+            body_radius: settings.drive.body_radius,
+            outcome: FollowerOutcome {
+                contact: None,
+                end_time: 0.0,
+                source_distance: f64::NAN,
+                least_clearance: f64::INFINITY,
+                path_length: 0.0,
+                turning: 0.0,
+            },
+            ended: false,
+            observer,
+        };
+        Episode::starting(parts, clock)
     }
 }
 
-#[inline]
-fn length(vector: Vector2<f64>) -> f64 {
-    vector.dot(&vector).sqrt()
+/// An obstacle as a camera shows it to the law; its place is that of the last look.
+fn body_of(obstacle: &Obstacle) -> Body {
+    Body {
+        shape: obstacle.shape,
+        // The law of the follower knows no regions.
+        regions: Regions {
+            critical_radius: 0.0,
+            active_radius: 0.0,
+        },
+        state: BodyState {
+            present: true,
+            ..obstacle.motion.at(0.0, &mut 0)
+        },
+    }
+}
+
+/// Where the robot is, and what is around it.
+struct Place<'a> {
+    scene: &'a FollowerScene,
+    around: Surroundings,
+    /// Obstacles for a camera.
+    bodies: Vec<Body>,
+    /// Source of the sound in m.
+    source: Vector2<f64>,
+    pose: Frame,
+    /// Velocity over the last step, in m/s.
+    velocity: Vector2<f64>,
+}
+
+impl Place<'_> {
+    /// Brings obstacles and source to a time in s.
+    #[inline]
+    fn look(&mut self, time: f64) {
+        self.source = self.around.look(self.scene, time, &self.pose);
+        for (body, shape) in self.bodies.iter_mut().zip(&self.around.shapes) {
+            body.state.position = shape.center.into();
+        }
+    }
+
+    /// What there is to sense.
+    #[inline]
+    fn truth(&self, time: f64) -> Truth<'_> {
+        Truth {
+            time,
+            robot: RobotState {
+                position: self.pose.position,
+                velocity: self.velocity,
+            },
+            heading: Heading::Direction(self.pose.direction),
+            bodies: &self.bodies,
+            outlines: &self.around.near,
+            source: Some(self.source),
+        }
+    }
+}
+
+/// Sensors of the robot, and what they have told.
+struct Senses {
+    ear: Ear,
+    sonar: Sonar,
+    /// It tells of the obstacles in place of the sonar.
+    camera: Option<ObstacleCamera>,
+    /// Obstacles as the camera knows them.
+    seen: Vec<Body>,
+}
+
+/// What a run of the follower consists of.
+pub(crate) struct FollowerParts<'a, O> {
+    place: Place<'a>,
+    senses: Senses,
+    law: Following<'a>,
+    drive: VirtualVelocity,
+    body_radius: f64,
+    /// Its least clearance is the squared distance from the center here.
+    outcome: FollowerOutcome,
+    ended: bool,
+    observer: &'a mut O,
+}
+
+impl<O> FollowerParts<'_, O> {
+    /// How the run ended.
+    fn outcome(&self) -> FollowerOutcome {
+        FollowerOutcome {
+            least_clearance: self.outcome.least_clearance.sqrt() - self.body_radius,
+            ..self.outcome
+        }
+    }
+}
+
+impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
+    type Request = ();
+    const ATTENTION: usize = 1024;
+
+    #[inline]
+    fn ended(&self) -> bool {
+        self.ended
+    }
+
+    #[inline]
+    fn decide(&mut self, time: f64, (): (), _: Interrupted<'_>) -> Result<bool> {
+        let (place, senses) = (&self.place, &self.senses);
+        let forces = self.law.answer(&Percept {
+            pose: place.pose,
+            velocity: place.velocity,
+            wanted: self.drive.velocity(),
+            readings: senses.sonar.readings(),
+            heard: senses.ear.heard(),
+            bodies: &senses.seen,
+        });
+        self.drive.hold(&(forces.attraction + forces.repulsion));
+        self.observer.sample(&Sample {
+            time,
+            pose: &place.pose,
+            virtual_velocity: self.drive.velocity(),
+            wheels: self.drive.wheels(),
+            target: self.law.target(),
+            source: place.source,
+            attraction: forces.attraction,
+            repulsion: forces.repulsion,
+            readings: senses.sonar.readings(),
+            shapes: &place.around.shapes,
+        });
+        Ok(true)
+    }
+
+    #[inline]
+    fn travel(&mut self, clock: &Clock, _step: usize) {
+        let moved = self.drive.step();
+        self.place.pose = moved.frame;
+        self.place.velocity = moved.velocity;
+        self.outcome.path_length += moved.speed.abs() * clock.step;
+        self.outcome.turning += moved.turn_rate.abs() * clock.step;
+    }
+
+    #[inline]
+    fn look_around(&mut self, clock: &Clock, step: usize) {
+        let time = clock.time(step);
+        self.place.look(time);
+        let (place, outcome) = (&self.place, &mut self.outcome);
+        let to_source = place.source - place.pose.position;
+        outcome.end_time = time;
+        outcome.least_clearance = outcome.least_clearance.min(place.around.least);
+        outcome.source_distance = to_source.dot(&to_source).sqrt();
+        if place.around.least < self.body_radius * self.body_radius {
+            outcome.contact = Some(place.around.contact(&place.pose));
+            self.ended = true;
+        }
+        if let Some(camera) = &mut self.senses.camera {
+            camera.watch(&place.truth(time));
+        }
+    }
+
+    #[inline]
+    fn check(&self, time: f64) -> Result<()> {
+        let position = self.place.pose.position;
+        if (position.x + position.y).is_finite() {
+            return Ok(());
+        }
+        Err(Failure::NonFinite { run: 0, time })
+    }
+
+    fn time_over(&mut self, _time: f64) {
+        self.ended = true;
+    }
+
+    #[inline]
+    fn sense(&mut self, clock: &Clock, step: usize) {
+        let (truth, senses) = (self.place.truth(clock.time(step)), &mut self.senses);
+        let known = self.place.pose;
+        senses.ear.observe(&truth, &known, &mut []);
+        match &mut senses.camera {
+            Some(camera) => camera.observe(&truth, &known, &mut senses.seen),
+            None => senses.sonar.observe(&truth, &known, &mut []),
+        }
+    }
 }

@@ -2,7 +2,6 @@
 
 pub mod batch;
 pub mod episode;
-pub mod fix;
 pub mod layouts;
 pub mod record;
 pub mod scene;
@@ -11,9 +10,11 @@ mod surroundings;
 
 pub use batch::{run_batch, touching_layouts};
 pub use episode::{Follower, FollowerOutcome};
-pub use fix::{FixNoise, Fixes};
 pub use layouts::{Layouts, Setting};
 pub use record::{FollowerRecord, record};
 pub use scene::{FollowerScene, Leader};
-pub use settings::{Sensors, Settings, VelocityRule};
+pub use settings::{Sensors, Settings};
 pub use surroundings::Touch;
+
+pub use crate::robots::differential::VelocityRule;
+pub use crate::sensing::{FixNoise, Fixes};

@@ -5,24 +5,14 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::laws::impedance::bank::BankLayout;
 use crate::laws::impedance::{Attraction, BankOptions, Impedance};
-use crate::robots::differential::VelocityDrive;
-use crate::run::follower::fix::Fixes;
+use crate::robots::differential::{VelocityDrive, VelocityRule};
 use crate::sensing::Vision;
+use crate::sensing::fixes::Fixes;
 use crate::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
 use crate::world::frame::Frame;
 
 /// Longest run, in steps.
 pub const MOST_STEPS: f64 = 1e7;
-
-/// What becomes of the virtual velocity between two steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum VelocityRule {
-    /// It is integrated on.
-    #[default]
-    Integrated,
-    /// It starts every step from the velocity of the robot.
-    Reset,
-}
 
 /// Three ultrasonic sensors in front of the robot, and three more behind if wanted.
 #[derive(Clone, Debug, PartialEq)]

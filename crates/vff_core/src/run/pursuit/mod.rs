@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Planar;
 use crate::laws::{Situation, Stop};
-use crate::robots::drives::{Drive, Order, Reading};
+use crate::robots::drives::{MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::built::{Built, clock_of, robot_under};
 use crate::run::group::{AnyLaw, Steering};
@@ -127,7 +127,7 @@ struct Pursuit<'a> {
     scenario: &'a Scenario,
     pursuer: &'a Pursuer,
     clock: Clock,
-    robot: Box<dyn Drive>,
+    robot: Box<dyn MotorDrive>,
     law: Box<dyn Steering>,
     tracked: Tracked,
     reading: Reading,

@@ -1,9 +1,11 @@
 //! The avoidance test: eight directions, several times each, in many random layouts.
 
 use crate::error::{Failure, Given, Result};
+use crate::laws::escape::Direction;
+use crate::run::Interrupted;
 use crate::run::skirt::robot::{Course, Moment, Skirt, Travel, run, steps_of};
 use crate::run::skirt::scene::{DiscScene, DiscSceneOptions};
-use crate::run::skirt::states::Direction;
+
 use numeric::parallel::{Work, each_run};
 use numeric::random::Stream;
 
@@ -95,15 +97,17 @@ impl TestPlan {
     /// Runs one test; `watch` sees every step.
     ///
     /// # Errors
-    /// There is no room for the discs, or the state became non-finite.
+    /// There is no room for the discs, the state became non-finite, or the caller asked to stop.
     pub fn run(
         &self,
         skirt: &Skirt,
         index: usize,
         watch: impl FnMut(&Moment<'_>),
+        interrupted: Interrupted<'_>,
     ) -> Result<(TestRow, DiscScene)> {
         let (course, scene, noise) = self.test(skirt, index)?;
-        let course = run(skirt, &self.motion, &scene, course, noise, watch)?;
+        let start = (course, noise);
+        let course = run(skirt, &self.motion, &scene, start, watch, interrupted)?;
         let nearest_seen = scene.seen.get(course.nearest).copied().unwrap_or(true);
         let row = TestRow {
             course,
@@ -120,6 +124,7 @@ impl TestPlan {
 pub fn test_batch(skirt: &Skirt, plan: &TestPlan, work: Work<'_>) -> Result<Vec<TestRow>> {
     let plan = plan.checked(skirt)?;
     each_run(plan.runs(), work, |index| {
-        plan.run(skirt, index, |_| ()).map(|(row, _)| row)
+        plan.run(skirt, index, |_| (), work.interrupted)
+            .map(|(row, _)| row)
     })
 }

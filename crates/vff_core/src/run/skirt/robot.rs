@@ -3,13 +3,18 @@
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result, positive};
-use crate::run::skirt::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
+use crate::laws::escape::{Action, Decider, Policy, Rule, trigger_distances};
+use crate::laws::reflex::{Percept, Reflex};
+use crate::robots::drives::{Course as Order, Drive, LimitedOmni, Moved, OmniLimits};
+use crate::run::Interrupted;
+use crate::run::episode::{Episode, Parts};
+use crate::run::options::Clock;
 use crate::run::skirt::scene::DiscScene;
-use crate::run::skirt::states::{Action, Decider, Policy};
-use crate::run::skirt::trigger::{Rule, trigger_distances};
-use crate::sensing::sonar::ranging::Normals;
-use crate::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
-use crate::world::frame::Frame;
+use crate::sensing::sensor::{Sensor, Truth};
+use crate::sensing::sonar::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
+use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
+use crate::world::frame::{Frame, Heading};
+use crate::world::geometry::RobotState;
 use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
@@ -162,60 +167,68 @@ pub struct Moment<'a> {
 /// time is over; `watch` sees every step.
 ///
 /// # Errors
-/// The state became non-finite.
+/// The state became non-finite, or the caller asked to stop.
 pub fn run(
     skirt: &Skirt,
     motion: &Travel,
     scene: &DiscScene,
-    course: f64,
-    noise: Stream,
-    mut watch: impl FnMut(&Moment<'_>),
+    (course, noise): (f64, Stream),
+    watch: impl FnMut(&Moment<'_>),
+    interrupted: Interrupted<'_>,
 ) -> Result<Course> {
-    let shapes: Vec<PlacedShape> = scene
-        .discs
-        .iter()
-        .zip(&scene.seen)
-        .filter(|(_, seen)| **seen)
-        .map(|(disc, _)| *disc)
-        .collect();
-    let mut normals = Normals::new(noise);
-    let mut readings = vec![skirt.options.most_range; skirt.ring.bearings().len()];
-    let mut robot = Robot::starting(course);
-    let mut found = robot.nearest(scene, skirt.ring.chassis_radius());
+    let ended = episode(skirt, motion, scene, (course, noise), watch)?.run(interrupted)?;
+    Ok(ended.parts.found)
+}
+
+/// A run at its start.
+fn episode<'a, W: FnMut(&Moment<'_>)>(
+    skirt: &'a Skirt,
+    motion: &Travel,
+    scene: &'a DiscScene,
+    (course, noise): (f64, Stream),
+    watch: W,
+) -> Result<Episode<SkirtParts<'a, W>>> {
     let period = skirt.options.firing_period;
-    let steps = steps_of(motion.duration, period);
-    for step in 0..steps {
-        skirt
-            .array
-            .measure(&robot.pose, &shapes, step, &mut readings, &mut normals);
-        let fired = step % readings.len();
-        if !readings[fired].is_finite() {
-            readings[fired] = skirt.options.most_range;
-        }
-        let action = skirt.decider.action(&readings);
-        robot.advance(action, motion, period);
-        let time = (step + 1) as f64 * period;
-        watch(&Moment {
-            time,
-            pose: robot.pose,
-            velocity: robot.velocity,
-            yaw_rate: robot.yaw_rate,
-            readings: &readings,
-            action,
-        });
-        let now = robot.nearest(scene, skirt.ring.chassis_radius());
-        if !now.min_clearance.is_finite() {
-            return Err(Failure::NonFinite { run: 0, time });
-        }
-        if now.min_clearance < found.min_clearance {
-            found = now;
-        }
-        if now.min_clearance <= 0.0 {
-            found.contact_time = Some(time);
-            break;
-        }
-    }
-    Ok(found)
+    let clock = Clock {
+        step: period,
+        steps_per_sample: 1,
+        steps: steps_of(motion.duration, period),
+        interval: period,
+    };
+    let limits = OmniLimits {
+        speed: motion.speed,
+        acceleration: motion.acceleration,
+        turn_rate: motion.spin_rate,
+    };
+    let seen = scene.discs.iter().zip(&scene.seen);
+    let mut parts = SkirtParts {
+        outlines: seen
+            .filter(|(_, seen)| **seen)
+            .map(|(disc, _)| *disc)
+            .collect(),
+        scene,
+        sonar: Sonar::new(&skirt.array, noise, skirt.options.most_range),
+        law: &skirt.decider,
+        action: Action::Keep,
+        drive: LimitedOmni::new(limits, course, period),
+        robot: Moved {
+            frame: Frame::at([0.0, 0.0], 0.0),
+            velocity: Vector2::zeros(),
+            speed: 0.0,
+            turn_rate: 0.0,
+        },
+        chassis_radius: skirt.ring.chassis_radius(),
+        clearance: 0.0,
+        found: Course {
+            min_clearance: f64::INFINITY,
+            nearest: 0,
+            contact_time: None,
+        },
+        ended: false,
+        watch,
+    };
+    parts.account();
+    Episode::starting(parts, clock)
 }
 
 /// Whole steps that fill a duration.
@@ -228,70 +241,126 @@ pub fn steps_of(duration: f64, period: f64) -> usize {
     steps.max(1)
 }
 
-struct Robot {
-    pose: Frame,
-    heading: f64,
-    velocity: Vector2<f64>,
-    yaw_rate: f64,
-    /// Direction of motion in the frame of the body, in rad.
-    direction: f64,
-    target: Vector2<f64>,
+/// What a run within a ring of sensors consists of.
+struct SkirtParts<'a, W> {
+    scene: &'a DiscScene,
+    /// Discs that the sensors can see.
+    outlines: Vec<PlacedShape>,
+    sonar: Sonar,
+    law: &'a Decider,
+    /// What was decided last.
+    action: Action,
+    drive: LimitedOmni,
+    robot: Moved,
+    chassis_radius: f64,
+    /// Clearance now, in m.
+    clearance: f64,
+    found: Course,
+    ended: bool,
+    watch: W,
 }
 
-impl Robot {
-    /// At rest at the origin.
-    fn starting(course: f64) -> Self {
-        let (sin, cos) = course.sin_cos();
-        Self {
-            pose: Frame::at([0.0, 0.0], 0.0),
-            heading: 0.0,
-            velocity: Vector2::zeros(),
-            yaw_rate: 0.0,
-            direction: course,
-            target: Vector2::new(cos, sin),
-        }
-    }
-
-    /// One period with the acceleration limited; the robot turns only where it spins.
-    fn advance(&mut self, action: Action, motion: &Travel, period: f64) {
-        let spins = action == Action::Spin;
-        self.yaw_rate = if spins { motion.spin_rate } else { 0.0 };
-        if spins {
-            self.heading += self.yaw_rate * period;
-            self.pose = Frame::at(self.pose.position.into(), self.heading);
-        }
-        if let Action::Move(direction) = action {
-            self.direction = direction.angle();
-        }
-        if action != Action::Keep {
-            let (sin, cos) = (self.heading + self.direction).sin_cos();
-            self.target = Vector2::new(cos, sin);
-        }
-        let speed = if spins { 0.0 } else { motion.speed };
-        let change = self.target * speed - self.velocity;
-        let size = change.dot(&change).sqrt();
-        let most = motion.acceleration * period;
-        let share = if size > most { most / size } else { 1.0 };
-        self.velocity += change * share;
-        self.pose.position += self.velocity * period;
-    }
-
-    /// Clearance of the nearest disc.
-    fn nearest(&self, scene: &DiscScene, chassis_radius: f64) -> Course {
-        let mut found = Course {
-            min_clearance: f64::INFINITY,
-            nearest: 0,
-            contact_time: None,
-        };
-        for (index, disc) in scene.discs.iter().enumerate() {
-            let to = disc.center - self.pose.position;
-            let clearance = to.dot(&to).sqrt() - disc.shape.inner_radius() - chassis_radius;
+impl<W> SkirtParts<'_, W> {
+    /// Accounts for where the robot is.
+    #[inline]
+    fn account(&mut self) {
+        let (mut clearance, mut nearest) = (f64::INFINITY, 0);
+        for (index, disc) in self.scene.discs.iter().enumerate() {
+            let to = disc.center - self.robot.frame.position;
+            let gap = to.dot(&to).sqrt() - disc.shape.inner_radius() - self.chassis_radius;
             // A state that is no number must not pass for a distance.
-            if clearance < found.min_clearance || clearance.is_nan() {
-                found.min_clearance = clearance;
-                found.nearest = index;
+            if gap < clearance || gap.is_nan() {
+                (clearance, nearest) = (gap, index);
             }
         }
-        found
+        self.clearance = clearance;
+        if clearance < self.found.min_clearance {
+            self.found.min_clearance = clearance;
+            self.found.nearest = nearest;
+        }
+    }
+}
+
+/// What the drive is told.
+fn order_of(action: Action) -> Order {
+    match action {
+        Action::Keep => Order::Keep,
+        Action::Spin => Order::Turn,
+        Action::Move(direction) => Order::Toward(direction.angle()),
+    }
+}
+
+impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
+    type Request = ();
+    const ATTENTION: usize = 1024;
+
+    #[inline]
+    fn ended(&self) -> bool {
+        self.ended
+    }
+
+    #[inline]
+    fn decide(&mut self, _time: f64, (): (), _: Interrupted<'_>) -> Result<bool> {
+        self.action = self.law.answer(&Percept {
+            pose: self.robot.frame,
+            velocity: self.robot.velocity,
+            wanted: self.robot.velocity,
+            readings: self.sonar.readings(),
+            heard: None,
+            bodies: &[],
+        });
+        self.drive.hold(&order_of(self.action));
+        Ok(true)
+    }
+
+    #[inline]
+    fn travel(&mut self, clock: &Clock, step: usize) {
+        self.robot = self.drive.step();
+        let time = clock.time(step + 1);
+        (self.watch)(&Moment {
+            time,
+            pose: self.robot.frame,
+            velocity: self.robot.velocity,
+            yaw_rate: self.robot.turn_rate,
+            readings: self.sonar.readings(),
+            action: self.action,
+        });
+        self.account();
+        if self.clearance <= 0.0 {
+            self.found.contact_time = Some(time);
+            self.ended = true;
+        }
+    }
+
+    /// The discs stand, and no sensor looks between samples.
+    fn look_around(&mut self, _clock: &Clock, _step: usize) {}
+
+    #[inline]
+    fn check(&self, time: f64) -> Result<()> {
+        if self.clearance.is_finite() {
+            return Ok(());
+        }
+        Err(Failure::NonFinite { run: 0, time })
+    }
+
+    fn time_over(&mut self, _time: f64) {
+        self.ended = true;
+    }
+
+    #[inline]
+    fn sense(&mut self, clock: &Clock, step: usize) {
+        let robot = &self.robot;
+        let truth = Truth {
+            time: clock.time(step),
+            robot: RobotState {
+                position: robot.frame.position,
+                velocity: robot.velocity,
+            },
+            heading: Heading::Direction(robot.frame.direction),
+            bodies: &[],
+            outlines: &self.outlines,
+            source: None,
+        };
+        self.sonar.observe(&truth, &robot.frame, &mut []);
     }
 }

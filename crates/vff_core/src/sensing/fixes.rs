@@ -1,9 +1,13 @@
-//! Range and bearing of the source once per burst.
+//! An ear: range and bearing of a source of sound once per burst.
 
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
+use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::ranging::Normals;
+use crate::world::frame::Frame;
+use crate::world::geometry::Body;
+use numeric::random::Stream;
 
 /// Scatter of range and bearing on a grid of range and bearing.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,5 +165,64 @@ impl Fixes {
         let range = range + range_deviation * normals.draw();
         let (sin, cos) = (bearing + bearing_deviation * normals.draw()).sin_cos();
         (range, Vector2::new(cos, sin))
+    }
+}
+
+/// A source as it was heard, from the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heard {
+    /// Range in m.
+    pub range: f64,
+    /// Unit vector toward it, forward and left.
+    pub direction: Vector2<f64>,
+}
+
+/// Microphones on a robot, which locate the source at every burst.
+#[derive(Clone, Debug)]
+pub(crate) struct Ear {
+    fixes: Fixes,
+    normals: Normals,
+    /// Samples from one burst to the next, and those left.
+    between: usize,
+    left: usize,
+    heard: Option<Heard>,
+}
+
+impl Ear {
+    /// With scatter from a stream, sampled with a period in s; the first sample is a burst.
+    pub fn new(fixes: &Fixes, period: f64, scatter: Stream) -> Self {
+        let between = (fixes.interval / period).round().max(1.0);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+        let between = between as usize;
+        Self {
+            fixes: fixes.clone(),
+            normals: Normals::new(scatter),
+            between,
+            left: 0,
+            heard: None,
+        }
+    }
+
+    /// The source, if a burst was heard at the last sample.
+    #[inline]
+    pub fn heard(&self) -> Option<Heard> {
+        self.heard
+    }
+}
+
+impl Sensor for Ear {
+    #[inline]
+    fn observe(&mut self, truth: &Truth<'_>, known: &Frame, _bodies: &mut [Body]) {
+        self.heard = None;
+        if self.left > 0 {
+            self.left -= 1;
+            return;
+        }
+        self.left = self.between - 1;
+        if let Some(source) = truth.source {
+            let offset = known.inward(source - known.position);
+            let (range, direction) = self.fixes.fix(offset, &mut self.normals);
+            self.heard = Some(Heard { range, direction });
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Readings at which a sensor counts as triggered.
 
 use crate::error::{Failure, Given, Result, positive};
-use crate::run::skirt::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
+use crate::sensing::sonar::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
 
 /// Which triggering distances are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -147,7 +147,7 @@ pub fn trigger_distances(ring: &Ring, safe_distance: f64, rule: Rule) -> Result<
 #[cfg(test)]
 mod tests {
     use super::{Rule, trigger_distances};
-    use crate::run::skirt::ring::{PUBLISHED_WHEEL_GAP, Ring};
+    use crate::sensing::sonar::ring::{PUBLISHED_WHEEL_GAP, Ring};
 
     fn ring(count: usize) -> Ring {
         let bearings = Ring::beside_wheels(count, PUBLISHED_WHEEL_GAP).unwrap();

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
-use crate::run::skirt::ring::PUBLISHED_SENSORS;
+use crate::laws::reflex::{Percept, Reflex};
+use crate::sensing::sonar::ring::PUBLISHED_SENSORS;
 
 /// Motion directions of Figure 4 and Table 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,6 +146,15 @@ pub struct Decider {
     policy: Policy,
 }
 
+impl Reflex for &Decider {
+    type Answer = Action;
+
+    #[inline]
+    fn answer(&mut self, percept: &Percept<'_>) -> Action {
+        self.action(percept.readings)
+    }
+}
+
 impl Decider {
     /// For sensors at bearings in rad with their triggering distances in m; `published` says that
     /// they are those of Tables 1 and 3.
@@ -252,7 +262,7 @@ pub fn opposite(bearing: f64) -> Direction {
 #[cfg(test)]
 mod tests {
     use super::{Action, Decider, Direction, Policy, TABLE_1, opposite, table_1};
-    use crate::run::skirt::ring::{PUBLISHED_WHEEL_GAP, Ring};
+    use crate::sensing::sonar::ring::{PUBLISHED_WHEEL_GAP, Ring};
 
     fn decider(policy: Policy) -> Decider {
         let bearings = Ring::beside_wheels(9, PUBLISHED_WHEEL_GAP).unwrap();

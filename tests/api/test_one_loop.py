@@ -1,0 +1,70 @@
+"""Time is stepped in one place, and the lane kernel is its fast path."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+CORE = Path(__file__).resolve().parents[2] / "crates" / "vff_core" / "src"
+LOOP = "run/episode.rs"
+KERNEL = "run/rollout.rs"
+# No episode: a reference that is given over time is tracked, or a wheel turns on a bench; nothing is sensed, no law
+# decides and nothing ends them.
+WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}
+# Periods of the wheels' own controllers within a motion step.
+WITHIN_A_STEP = {"robots/drives/driven.rs"}
+# A loop over steps or instants: counted, or as long as something runs.
+TIME_LOOP = re.compile(
+    r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\.|\bfor \w+ in [^{]*\.\.[^{]*\b(?:steps|periods)\b"
+    r"|\bstep \+= 1\b|\bwhile !?[\w.]*(?:time|step|finished|ended)\b"
+)
+PARTS = re.compile(r"\bimpl\b[^{;]*\bParts for (\w+)")
+
+
+def code(path: Path) -> str:
+    """Return the source without comments and tests."""
+    text = re.sub(r"(?s)\n#\[cfg\(test\)\]\nmod \w+ \{.*", "", path.read_text(encoding="utf-8"))
+    return re.sub(r"//[^\n]*", "", text)
+
+
+SOURCES = {
+    path.relative_to(CORE).as_posix(): code(path) for path in sorted(CORE.rglob("*.rs")) if path.name != "tests.rs"
+}
+
+
+def test_the_search_finds_a_time_loop() -> None:
+    loops = ("for step in 0..steps {", "for index in 0..=self.steps {", "self.step += 1;", "while !self.finished() {")
+    for text in (*loops, "while time < duration {"):
+        assert TIME_LOOP.search(text)
+    for text in (
+        "for gap in gaps {",
+        "for (step, frame) in frames.iter_mut().enumerate() {",
+        "while index < time.len() {",
+    ):
+        assert not TIME_LOOP.search(text)
+
+
+def test_time_is_stepped_in_one_place() -> None:
+    found = {name for name, text in SOURCES.items() if name.startswith(("run/", "robots/")) and TIME_LOOP.search(text)}
+    assert found == {LOOP, KERNEL} | WITHOUT_EPISODE | WITHIN_A_STEP
+
+
+def test_only_the_loop_moves_and_senses() -> None:
+    for method in ("travel", "look_around", "time_over"):
+        callers = {name for name, text in SOURCES.items() if re.search(rf"\.{method}\(", text)}
+        assert callers == {LOOP}, method
+
+
+def test_every_robot_is_stepped_by_the_loop() -> None:
+    kinds = {kind for text in SOURCES.values() for kind in PARTS.findall(text)}
+    assert {"Navigation", "FollowerParts", "SkirtParts"} <= kinds
+
+
+@pytest.mark.parametrize("name", sorted(name for name, text in SOURCES.items() if re.search(r"\.step\(\)", text)))
+def test_drives_step_within_a_motion_step_only(name: str) -> None:
+    text = SOURCES[name]
+    if name.startswith("run/"):
+        assert PARTS.search(text)
+        assert len(re.findall(r"\.step\(\)", text)) == 1
