@@ -58,7 +58,6 @@ __all__ = [
     "StaticMap",
     "Tracking",
     "TriOmniKinematics",
-    "Ultrasonic",
     "UltrasonicSkirt",
     "VirtualImpedance",
     "VirtualTorque",
@@ -387,10 +386,6 @@ class Law:
 
     def guarded(self, **given: object) -> Law:
         """Return the law with parts around it."""
-
-    @staticmethod
-    def virtual_impedance(**given: object) -> Law:
-        """Return virtual impedance with ideal sensing."""
 
 @final
 class Yielding:
@@ -1526,26 +1521,6 @@ class Vision:
         """Frames of a body on a known path, and what is known at the times of the path."""
 
 @final
-class Ultrasonic:
-    """Ultrasonic array on a robot."""
-
-    def __new__(
-        cls,
-        *,
-        mounts: Sequence[Sequence[float]],
-        beam_width: float,
-        rays: int,
-        least_range: float,
-        most_range: float,
-        range_noise: float,
-        firing: str,
-        max_speed: float,
-        assumed_speed: float,
-    ) -> Self: ...
-    def regions(self, scenario: Scenario) -> _Triple:
-        """Critical and active radius of an echo, and what all sensors reach, in m."""
-
-@final
 class Sensor:
     """Sensor of a robot, of any kind."""
 
@@ -1558,8 +1533,11 @@ class Sensor:
         """Sees the obstacles that move."""
 
     @staticmethod
-    def ultrasonic(array: Ultrasonic) -> Sensor:
-        """Rides on the robot."""
+    def named(name: str, **given: object) -> Sensor:
+        """Return a sensor on a robot of the core's list."""
+
+    def sight(self, scenario: Scenario) -> _Triple:
+        """Critical and active radius of what it reads, and how far it reads, in m."""
 
     @staticmethod
     def lidar(lidar: Lidar) -> Sensor:

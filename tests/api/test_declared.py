@@ -169,3 +169,16 @@ def test_no_module_lists_the_outcomes_again() -> None:
                 words = {each.value for each in ast.walk(node) if isinstance(each, ast.Constant)}
                 found |= {path.name} if set(OUTCOMES) <= words else set()
     assert found == {"outcomes.py"}
+
+
+# ---- sensors on a robot -------------------------------------------------------------------------------
+
+
+def test_a_sensor_is_made_by_its_name_alone() -> None:
+    with pytest.raises(InvalidParameterError, match="sensor must be one of ultrasonic"):
+        _hrsafety.Sensor.named("nose")
+    with pytest.raises(InvalidParameterError, match="beam_width"):
+        nav.sensing.Ultrasonic(beam_width=4.0)
+    with pytest.raises(InvalidParameterError, match=r"sensors\[0\]"):
+        nav.robots.AsBuilt(sensors=[nav.sensing.Vision()])  # type: ignore[list-item]  # what is tested
+    assert nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()]).sensors[0].NAME == "ultrasonic"

@@ -1,10 +1,12 @@
 //! Keyword arguments of Python, taken by name where a struct of the core is built: the names stand in the core's
 //! struct and in Python's class only, their types in the core's only.
 
+use numeric::error::{Failure, Given, Result};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::arguments::Arguments;
 
 /// The keyword arguments of a call.
 #[derive(Default)]
@@ -47,6 +49,37 @@ impl<'py> Keywords<'py> {
             _ => Ok(()),
         }
     }
+}
+
+impl Arguments for Keywords<'_> {
+    fn number(&self, name: &str) -> Result<f64> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a number", &error))
+    }
+
+    fn flag(&self, name: &str) -> Result<bool> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a truth value", &error))
+    }
+
+    fn count(&self, name: &str) -> Result<usize> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a count", &error))
+    }
+
+    fn word(&self, name: &str) -> Result<String> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a word", &error))
+    }
+
+    fn places(&self, name: &str) -> Result<Vec<[f64; 3]>> {
+        self.take(name)
+            .map_err(|error| refused(name, "be a sequence of (x, y, axis)", &error))
+    }
+}
+
+fn refused(name: &str, rule: &'static str, error: &PyErr) -> Failure {
+    Failure::invalid(name, rule, Given::Found(error.to_string().into()))
 }
 
 /// A struct of the core whose fields are called as the arguments are; the others come from another one.

@@ -2,18 +2,14 @@
 
 use std::sync::Arc;
 
-use numeric::error::{Failure, Given, Result};
+use numeric::error::Result;
 use pyo3::prelude::*;
 use vff_core::laws;
 use vff_core::laws::field::gains::Gains;
 use vff_core::laws::field::side::SideRules;
 use vff_core::laws::field::stabilizing::Stabilizing;
-use vff_core::laws::registry::{Arguments, law_named};
+use vff_core::laws::registry::law_named;
 use vff_core::run::AnyLaw;
-
-use vff_core::laws::impedance::ImpedanceFamily;
-use vff_core::laws::impedance::attraction::Attraction;
-use vff_core::laws::impedance::law::{Form, Impedance};
 
 use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;
@@ -136,63 +132,4 @@ impl Law {
             python: self.python,
         })
     }
-
-    #[staticmethod]
-    #[pyo3(signature = (**given))]
-    fn virtual_impedance(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let (stiffness, damping): (f64, f64) = (given.take("stiffness")?, given.take("damping")?);
-        let impedance = Impedance {
-            form: if given.take("active")? {
-                Form::Active
-            } else {
-                Form::Conventional
-            },
-            stiffness,
-            damping,
-            safe_distance: given.take("safe_distance")?,
-            speed_limit: given.take("speed_limit")?,
-            reference_stiffness: std::f64::consts::E * stiffness,
-            reference_damping: damping / std::f64::consts::E,
-            clamp: true,
-        };
-        let attraction = Attraction {
-            stiffness: given.take("attraction_stiffness")?,
-            damping: given.take("attraction_damping")?,
-            standoff: 0.0,
-        };
-        let family = ImpedanceFamily {
-            impedance,
-            attraction,
-            reach: given.take("reach")?,
-            view: given.take("view")?,
-        };
-        Self::made(&given, AnyLaw::one_by_one(family))
-    }
-}
-
-impl Arguments for Keywords<'_> {
-    fn number(&self, name: &str) -> Result<f64> {
-        self.take(name)
-            .map_err(|error| refused(name, "be a number", &error))
-    }
-
-    fn flag(&self, name: &str) -> Result<bool> {
-        self.take(name)
-            .map_err(|error| refused(name, "be a truth value", &error))
-    }
-
-    fn count(&self, name: &str) -> Result<usize> {
-        self.take(name)
-            .map_err(|error| refused(name, "be a count", &error))
-    }
-
-    fn word(&self, name: &str) -> Result<String> {
-        self.take(name)
-            .map_err(|error| refused(name, "be a word", &error))
-    }
-}
-
-fn refused(name: &str, rule: &'static str, error: &PyErr) -> Failure {
-    Failure::invalid(name, rule, Given::Found(error.to_string().into()))
 }

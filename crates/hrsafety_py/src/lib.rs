@@ -138,9 +138,7 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::safe::{Shield, Yielding, shield_speed_bound};
     #[pymodule_export]
-    use crate::sensing::{
-        Camera, ErrorSource, Estimator, Sensor, Ultrasonic, Vision, steady_gains,
-    };
+    use crate::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
     #[pymodule_export]
     use crate::separation::{
         StoppingCurve, guard_distance, separation_distances, separation_speeds,

@@ -5,12 +5,10 @@ use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyA
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::sensing::measurement::Distribution;
-use vff_core::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
 use vff_core::sensing::{
     self, CameraPose, Estimate, Lens, LinearizedCamera, PARAMETERS, PositionError, SensorOptions,
     Track, VisionSensor,
 };
-use vff_core::world::frame::Frame;
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
@@ -280,55 +278,6 @@ fn observed(
     Ok((estimates, exposed, measured))
 }
 
-/// Ultrasonic array on a robot.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Ultrasonic(pub sensing::Ultrasonic);
-
-#[pymethods]
-impl Ultrasonic {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let ranging = Ranging {
-            least: given.take("least_range")?,
-            most: given.take("most_range")?,
-            noise: given.take("range_noise")?,
-            ..Ranging::default()
-        };
-        let mounts: Vec<[f64; 3]> = given.take("mounts")?;
-        let mounts = mounts
-            .into_iter()
-            .map(|[x, y, axis]| Frame::at([x, y], axis));
-        let beam = Beam::new(given.take("beam_width")?, given.take("rays")?);
-        let firing = firing_of(&given.take::<String>("firing")?)?;
-        let (max_speed, assumed_speed) = (given.take("max_speed")?, given.take("assumed_speed")?);
-        given.done()?;
-        let made = beam
-            .and_then(|beam| SonarArray::new(mounts.collect(), beam, ranging, firing))
-            .and_then(|array| {
-                let ultrasonic = sensing::Ultrasonic {
-                    array,
-                    max_speed,
-                    assumed_speed,
-                };
-                ultrasonic.checked()
-            });
-        Ok(Self(made.map_err(CoreError::from)?))
-    }
-
-    /// Critical and active radius of an echo in a scenario, and the distance from the center of the
-    /// robot that all sensors reach, in m.
-    fn regions(&self, scenario: &Scenario) -> CoreResult<(f64, f64, f64)> {
-        let regions = self.0.regions(&scenario.0)?;
-        Ok((
-            regions.critical_radius,
-            regions.active_radius,
-            self.0.reach(),
-        ))
-    }
-}
-
 /// Sensor of a robot, of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Sensor(pub SensorOptions);
@@ -347,29 +296,30 @@ impl Sensor {
         Self(SensorOptions::ObstacleCamera(vision.0))
     }
 
-    /// Rides on the robot.
+    /// A sensor on a robot of the core's list.
     #[staticmethod]
-    fn ultrasonic(array: &Ultrasonic) -> Self {
-        Self(SensorOptions::Ultrasonic(array.0.clone()))
+    #[pyo3(signature = (name, **given))]
+    fn named(name: &str, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let sensor = sensing::sensor_named(name, &given).map_err(CoreError::from)?;
+        given.done()?;
+        Ok(Self(sensor))
     }
-
     /// Rides on the robot.
     #[staticmethod]
     fn lidar(lidar: &Lidar) -> Self {
         Self(SensorOptions::Lidar(lidar.0.clone()))
     }
-}
 
-/// Order of firing by its word.
-pub fn firing_of(firing: &str) -> CoreResult<Firing> {
-    match firing {
-        "together" => Ok(Firing::Together),
-        "cross_talk" => Ok(Firing::TogetherWithCrossTalk),
-        "in_turn" => Ok(Firing::InTurn),
-        other => {
-            let rule = "be one of \"together\", \"cross_talk\", \"in_turn\"";
-            Err(Failure::invalid("firing", rule, Given::Word(other.into())).into())
-        }
+    /// Critical and active radius of what it reads in a scenario, and the distance from the center of
+    /// the robot up to which it reads, in m.
+    fn sight(&self, scenario: &Scenario) -> CoreResult<(f64, f64, f64)> {
+        let Some((regions, reach)) = self.0.sight(&scenario.0)? else {
+            let rule = "be a sensor on a robot, whose readings have regions";
+            let given = Given::Found("a camera".into());
+            return Err(Failure::invalid("sensor", rule, given).into());
+        };
+        Ok((regions.critical_radius, regions.active_radius, reach))
     }
 }
 

@@ -8,6 +8,7 @@
 
 pub use numeric::{error, lanes};
 
+pub mod arguments;
 pub mod laws;
 pub mod robots;
 pub mod run;

@@ -70,7 +70,10 @@ def benchmark(
     0.0
     """
     kind = SUITES[word("suite", suite, tuple(SUITES))]
-    entries = [entry(each) for each in (kind.laws if laws is None else sequence("laws", "be a list of words such as field+shield", laws))]
+    entries = [
+        entry(each)
+        for each in (kind.laws if laws is None else sequence("laws", "be a list of words such as field+shield", laws))
+    ]
     if not entries:
         raise InvalidParameterError("laws", "name at least one law", laws)
     runs = count("cases", kind.cases if cases is None else cases, most=kind.most)

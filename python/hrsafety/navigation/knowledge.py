@@ -8,8 +8,7 @@ from typing import NamedTuple
 from hrsafety._arguments import instance
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
@@ -81,8 +80,7 @@ def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
     told = {
         "measurement": measured in ("both", "obstacles"),
         "camera": instance("built", built, AsBuilt).obstacle_vision is not None,
-        "ultrasonic": any(isinstance(sensor, Ultrasonic) for sensor in built.sensors),
-        "lidar": any(isinstance(sensor, Lidar) for sensor in built.sensors),
+        **{sensor.NAME: True for sensor in built.sensors},
     }
     robot = "measurement" if measured in ("both", "robot") else "exact"
     return Sensing(
@@ -91,7 +89,7 @@ def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
     )
 
 
-def echo_regions(scenario: Scenario, sonar: Ultrasonic) -> EchoRegions:
+def echo_regions(scenario: Scenario, sonar: RobotSensor) -> EchoRegions:
     """Return the regions around an echo for the robot of a scenario.
 
     Parameters
@@ -119,36 +117,18 @@ def echo_regions(scenario: Scenario, sonar: Ultrasonic) -> EchoRegions:
     True
     """
     native = instance("scenario", scenario, Scenario)._native
-    return EchoRegions(*instance("sonar", sonar, Ultrasonic)._native.regions(native))
+    return EchoRegions(*instance("sonar", sonar, RobotSensor)._native.sight(native))
 
 
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
     """Warn of sensors that do not reach as far as the regions that they must see."""
     for index, sensor in enumerate(built.sensors):
-        if isinstance(sensor, Lidar):
-            yield from _lidar_warnings(scenario, sensor, index)
-        else:
-            yield from _sonar_warnings(scenario, sensor, index)
-
-
-def _lidar_warnings(scenario: Scenario, lidar: Lidar, index: int) -> Iterator[ResultWarning]:
-    _, active = lidar._native.regions(scenario._native)
-    if active > lidar.range_max:
-        yield ResultWarning(
-            REGION_BEYOND_RANGE,
-            f"sensors[{index}].range_max",
-            f"sensors[{index}] sees {lidar.range_max:.3g} m far, less than the active radius {active:.3g} m of a "
-            "boundary point: what is seen is seen too late; give a larger range_max or a smaller max_speed",
-        )
-
-
-def _sonar_warnings(scenario: Scenario, sonar: Ultrasonic, index: int) -> Iterator[ResultWarning]:
-    regions = echo_regions(scenario, sonar)
-    if regions.active_radius > regions.reach:
-        yield ResultWarning(
-            REGION_BEYOND_RANGE,
-            f"sensors[{index}].most_range",
-            f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
-            f"radius {regions.active_radius:.3g} m of an echo: what moves at {sonar.max_speed:g} m/s is seen too "
-            "late; give a larger most_range or a smaller max_speed",
-        )
+        regions = echo_regions(scenario, sensor)
+        if regions.active_radius > regions.reach:
+            yield ResultWarning(
+                REGION_BEYOND_RANGE,
+                f"sensors[{index}].{sensor.RANGE}",
+                f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
+                f"radius {regions.active_radius:.3g} m of what it reads: what moves at {sensor.max_speed:g} m/s is "
+                f"seen too late; give a larger {sensor.RANGE} or a smaller max_speed",
+            )

@@ -1,8 +1,10 @@
 //! The one list of laws: the name of each, the arguments it is made of, and the widths that its
 //! kernels are compiled for. The engine knows no law by name.
 
+use crate::arguments::Arguments;
 use crate::error::{Failure, Given, Result};
 use crate::laws::field_d_star::FieldDStar;
+use crate::laws::impedance::{Attraction, Form, Impedance, ImpedanceFamily};
 use crate::laws::pairwise::Pairwise;
 use crate::laws::planning::family::Planned;
 use crate::laws::reciprocal::ReciprocalAvoidance;
@@ -36,39 +38,15 @@ macro_rules! any_law {
 }
 any_law!(OneAndEight: Pairwise<Masoud>, Pairwise<GeCui>, Pairwise<Khatib>, Pairwise<BorensteinKoren>);
 any_law!(One: Planned<VelocityObstacle>, Planned<ReciprocalAvoidance>);
-any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>);
+any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>, ImpedanceFamily);
 any_law!(One: SafeNavigation);
-
-/// What a law is made of, by name: from a caller, a file, or the command line.
-pub trait Arguments {
-    /// A number.
-    ///
-    /// # Errors
-    /// There is none of this name; likewise for the others.
-    fn number(&self, name: &str) -> Result<f64>;
-    /// A truth value.
-    ///
-    /// # Errors
-    /// As for numbers.
-    fn flag(&self, name: &str) -> Result<bool>;
-    /// A count.
-    ///
-    /// # Errors
-    /// As for numbers.
-    fn count(&self, name: &str) -> Result<usize>;
-    /// A word.
-    ///
-    /// # Errors
-    /// As for numbers.
-    fn word(&self, name: &str) -> Result<String>;
-}
 
 /// Makes a law of its arguments.
 type Make = fn(&dyn Arguments) -> Result<AnyLaw>;
 
 /// The laws by name. The virtual force field, whose terms callers look at one by one, is made by
 /// [`VirtualForceField::new`].
-const LAWS: [(&str, Make); 8] = [
+const LAWS: [(&str, Make); 9] = [
     ("masoud", |given| {
         let law = Masoud {
             attractive: given.number("attractive_gain")?,
@@ -107,6 +85,35 @@ const LAWS: [(&str, Make); 8] = [
             attracted_inside: given.flag("attracted_inside")?,
         };
         Ok(Pairwise(law).into())
+    }),
+    ("virtual_impedance", |given| {
+        let (stiffness, damping) = (given.number("stiffness")?, given.number("damping")?);
+        let impedance = Impedance {
+            form: if given.flag("active")? {
+                Form::Active
+            } else {
+                Form::Conventional
+            },
+            stiffness,
+            damping,
+            safe_distance: given.number("safe_distance")?,
+            speed_limit: given.number("speed_limit")?,
+            reference_stiffness: std::f64::consts::E * stiffness,
+            reference_damping: damping / std::f64::consts::E,
+            clamp: true,
+        };
+        let attraction = Attraction {
+            stiffness: given.number("attraction_stiffness")?,
+            damping: given.number("attraction_damping")?,
+            standoff: 0.0,
+        };
+        let law = ImpedanceFamily {
+            impedance,
+            attraction,
+            reach: given.number("reach")?,
+            view: given.number("view")?,
+        };
+        Ok(law.into())
     }),
     ("velocity_obstacle", |given| {
         let law = VelocityObstacle {

@@ -24,7 +24,7 @@ pub use estimator::{Estimate, Estimator, Track};
 pub use fixes::{FixNoise, Fixes, Heard};
 pub use lidar::Lidar;
 pub use linearized::{LinearizedCamera, PARAMETERS};
-pub use options::SensorOptions;
+pub use options::{SensorOptions, sensor_named};
 pub use sensor::{Located, Sensor, Truth};
 pub use ultrasonic::Ultrasonic;
 pub use vision::{PositionError, Vision, VisionSensor};

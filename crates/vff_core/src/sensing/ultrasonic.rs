@@ -3,9 +3,10 @@
 use nalgebra::Vector2;
 use numeric::random::Stream;
 
+use crate::arguments::Arguments;
 use crate::error::{Result, not_negative};
 use crate::sensing::sensor::{Sensor, Truth};
-use crate::sensing::sonar::{Sonar, SonarArray};
+use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::motion::{BodyState, Motion};
@@ -31,6 +32,26 @@ pub struct Ultrasonic {
 }
 
 impl Ultrasonic {
+    /// An array of its arguments.
+    pub(crate) fn of(given: &dyn Arguments) -> Result<Self> {
+        let ranging = Ranging {
+            least: given.number("least_range")?,
+            most: given.number("most_range")?,
+            noise: given.number("range_noise")?,
+            ..Ranging::default()
+        };
+        let places = given.places("mounts")?.into_iter();
+        let mounts = places.map(|[x, y, axis]| Frame::at([x, y], axis)).collect();
+        let beam = Beam::new(given.number("beam_width")?, given.count("rays")?)?;
+        let firing = Firing::named(&given.word("firing")?)?;
+        Self {
+            array: SonarArray::new(mounts, beam, ranging, firing)?,
+            max_speed: given.number("max_speed")?,
+            assumed_speed: given.number("assumed_speed")?,
+        }
+        .checked()
+    }
+
     /// Returns the array if its speeds are in range.
     ///
     /// # Errors
@@ -160,7 +181,6 @@ fn state_of(point: Option<Vector2<f64>>, robot: Vector2<f64>, speed: f64) -> Bod
 mod tests {
     use super::*;
     use crate::robots::HolonomicRobot;
-    use crate::sensing::sonar::{Beam, Firing, Ranging};
     use crate::world::geometry::RobotState;
     use crate::world::scenario::Rules;
 

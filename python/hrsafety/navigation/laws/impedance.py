@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from hrsafety import _hrsafety
 from hrsafety._arguments import number, positive, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.declared import Law, gain, law
@@ -76,8 +75,4 @@ class VirtualImpedanceLaw(Law):
         self._set(view=number("view", self.view))
         if not 0.0 < self.view <= math.pi:
             raise InvalidParameterError("view", "be an angle above 0 and at most pi", self.view)
-        numbers = self._as_numbers(*self.GAIN_NAMES)
-        native = _hrsafety.Law.virtual_impedance(
-            **numbers, reach=self.reach, view=self.view, active=self.form == "active"
-        )
-        self._set(_native=native)
+        self._make(reach=self.reach, view=self.view, active=self.form == "active")

@@ -17,8 +17,7 @@ from hrsafety.navigation.robots.tracking_laws import (
     VirtualTorque,
 )
 from hrsafety.navigation.robots.wheels import WheelDrive
-from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
 
 __all__ = ["AsBuilt", "PoseFusion"]
@@ -87,7 +86,7 @@ class AsBuilt(Parameters):
         Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
         shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.
     sensors : sequence of Ultrasonic or Lidar
-        Ultrasonic arrays and lidars on the robot. With one, obstacles are known by what it tells, and by the
+        Sensors on the robot. With one, obstacles are known by what it reads, and by the
         camera or the measurement of obstacles where there is one too; nothing else is known of them.
     pose_fusion : PoseFusion
         How a two-wheel robot knows its pose.
@@ -111,7 +110,7 @@ class AsBuilt(Parameters):
     tracking: Tracking | VirtualTorque = field(default_factory=FullSpeedTracking)
     robot_vision: Vision | None = None
     obstacle_vision: Vision | None = None
-    sensors: Sequence[Ultrasonic | Lidar] = ()
+    sensors: Sequence[RobotSensor] = ()
     pose_fusion: PoseFusion = field(default_factory=PoseFusion)
     _native: _hrsafety.AsBuilt = field(init=False, repr=False, compare=False)
 
@@ -126,8 +125,8 @@ class AsBuilt(Parameters):
         for name in ("robot_vision", "obstacle_vision"):
             if getattr(self, name) is not None:
                 instance(name, getattr(self, name), Vision)
-        arrays = sequence("sensors", "be a sequence of Ultrasonic or Lidar", self.sensors)
-        self._set(sensors=tuple(instance(f"sensors[{i}]", array, Ultrasonic, Lidar) for i, array in enumerate(arrays)))
+        sensors = sequence("sensors", "be a sequence of sensors, such as Ultrasonic", self.sensors)
+        self._set(sensors=tuple(instance(f"sensors[{i}]", one, RobotSensor) for i, one in enumerate(sensors)))
         instance("tracking", self.tracking, FullSpeedTracking, NonlinearTracking, ExponentialTracking, VirtualTorque)
         self._set(_native=self._build())
 
@@ -153,10 +152,7 @@ class AsBuilt(Parameters):
             found.append(kind.robot_camera(self.robot_vision._native))
         if self.obstacle_vision is not None:
             found.append(kind.obstacle_camera(self.obstacle_vision._native))
-        for sensor in self.sensors:
-            rides = kind.lidar(sensor._native) if isinstance(sensor, Lidar) else kind.ultrasonic(sensor._native)
-            found.append(rides)
-        return found
+        return found + [sensor._native for sensor in self.sensors]
 
     def _build(self) -> _hrsafety.AsBuilt:
         fusion = self.pose_fusion

@@ -11,6 +11,7 @@ from hrsafety.navigation.sensing.camera import Camera, nearest_rotation
 from hrsafety.navigation.sensing.estimators import AlphaBeta, Differences, Kalman, TrackedPositions, track_positions
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.ultrasonic import Ultrasonic
 from hrsafety.navigation.sensing.vision import ColorPatch, Observation, PositionNoise, Vision, observe
 
@@ -26,6 +27,7 @@ __all__ = [
     "Measurement",
     "Observation",
     "PositionNoise",
+    "RobotSensor",
     "TrackedPositions",
     "Ultrasonic",
     "Vision",

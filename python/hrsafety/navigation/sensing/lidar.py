@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, checked_seed, count, flag, instance, number, numbers, pair
+from hrsafety._arguments import Array, checked_seed, count, flag, instance, number, numbers, pair
 from hrsafety._bounds import MOST_RAYS
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
 __all__ = ["Lidar"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Lidar(Parameters):
+class Lidar(RobotSensor):
     """A lidar on a robot, which tells a law of walls and people by its scans.
 
     A beam reads the exact distance to the nearest thing along it, with Gaussian noise if wanted; ``range_max``
@@ -64,6 +66,9 @@ class Lidar(Parameters):
     array([2.5, 1. , 1.5, 1. ])
     """
 
+    NAME: ClassVar[str] = "lidar"
+    RANGE: ClassVar[str] = "range_max"
+
     map: StaticMap | None = None
     beams: int = 360
     field_of_view: float = 2.0 * math.pi
@@ -75,7 +80,7 @@ class Lidar(Parameters):
     influence: float = 0.3
     reach: float | None = None
     max_speed: float = 0.0
-    _native: _hrsafety.Lidar = field(init=False, repr=False, compare=False)
+    _lidar: _hrsafety.Lidar = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -84,20 +89,19 @@ class Lidar(Parameters):
         if self.reach is not None:
             self._as_numbers("reach")
         names = ("field_of_view", "range_min", "range_max", "range_noise", "kappa", "influence", "max_speed")
-        self._set(
-            _native=_hrsafety.Lidar(
-                map=None if self.map is None else self.map._native,
-                beams=count("beams", self.beams, most=MOST_RAYS),
-                sees_obstacles=flag("sees_obstacles", self.sees_obstacles),
-                reach=self.reach,
-                **self._as_numbers(*names),
-            )
+        lidar = _hrsafety.Lidar(
+            map=None if self.map is None else self.map._native,
+            beams=count("beams", self.beams, most=MOST_RAYS),
+            sees_obstacles=flag("sees_obstacles", self.sees_obstacles),
+            reach=self.reach,
+            **self._as_numbers(*names),
         )
+        self._set(_lidar=lidar, _native=_hrsafety.Sensor.lidar(lidar))
 
     @property
     def bearings(self) -> Array:
         """Angles of the beams from straight ahead in rad, (beams,)."""
-        return np.asarray(self._native.bearings())
+        return np.asarray(self._lidar.bearings())
 
     def scan(
         self, position: npt.ArrayLike, heading: float = 0.0, *, people: npt.ArrayLike = (), seed: int = 0
@@ -133,7 +137,7 @@ class Lidar(Parameters):
             raise InvalidParameterError(
                 f"people[{row}]", "be finite with a positive radius", tuple(discs[row].tolist())
             )
-        return np.asarray(self._native.scan(_pose(position, heading), discs, checked_seed("seed", seed)))
+        return np.asarray(self._lidar.scan(_pose(position, heading), discs, checked_seed("seed", seed)))
 
     def points(self, position: npt.ArrayLike, heading: float, ranges: npt.ArrayLike) -> Array:
         """Return the points that a scan hit.
@@ -163,7 +167,7 @@ class Lidar(Parameters):
             raise ShapeError("ranges", f"({self.beams},)", scan.shape)
         if not (scan >= 0.0).all():
             raise InvalidParameterError("ranges", "be numbers, not negative", float(scan[~(scan >= 0.0)][0]))
-        return self._native.points(_pose(position, heading), scan.tolist())
+        return self._lidar.points(_pose(position, heading), scan.tolist())
 
 
 def _pose(position: object, heading: object) -> tuple[float, float, float]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
-from hrsafety import _hrsafety
-from hrsafety._arguments import Parameters, count, number, numbers
+from hrsafety._arguments import count, number, numbers
 from hrsafety._bounds import MOST_RAYS
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
 __all__ = ["Ultrasonic"]
 
@@ -24,7 +24,7 @@ def _ring(sensors: int, radius: float) -> tuple[tuple[float, float, float], ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Ultrasonic(Parameters):
+class Ultrasonic(RobotSensor):
     """Ultrasonic sensors on a robot, which tell a law of obstacles by their echoes.
 
     Every echo becomes a point of an obstacle's boundary: a body of radius 0 at the reading along the
@@ -70,6 +70,9 @@ class Ultrasonic(Parameters):
     Sensing(robot='exact', obstacles=('ultrasonic',))
     """
 
+    NAME: ClassVar[str] = "ultrasonic"
+    RANGE: ClassVar[str] = "most_range"
+
     mounts: Sequence[Sequence[float]] = field(default_factory=lambda: _ring(12, 0.15))
     beam_width: float = math.pi / 6.0
     rays: int = 13
@@ -79,7 +82,6 @@ class Ultrasonic(Parameters):
     firing: Literal["together", "cross_talk", "in_turn"] = "together"
     max_speed: float = 1.0
     assumed_speed: float = 0.0
-    _native: _hrsafety.Ultrasonic = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -89,13 +91,11 @@ class Ultrasonic(Parameters):
             raise InvalidParameterError("mounts", f"{rule} of 1 to {MOST_SENSORS} sensors", mounts.shape)
         self._set(mounts=tuple((float(x), float(y), float(axis)) for x, y, axis in mounts))
         names = ("beam_width", "least_range", "most_range", "range_noise", "max_speed", "assumed_speed")
-        self._set(
-            _native=_hrsafety.Ultrasonic(
-                mounts=self.mounts,
-                rays=count("rays", self.rays, most=MOST_RAYS),
-                firing=str(self.firing),
-                **self._as_numbers(*names),
-            )
+        self._make(
+            mounts=self.mounts,
+            rays=count("rays", self.rays, most=MOST_RAYS),
+            firing=str(self.firing),
+            **self._as_numbers(*names),
         )
 
     @classmethod

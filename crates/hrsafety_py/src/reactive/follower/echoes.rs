@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::follower::Sensors;
 use vff_core::sensing::sonar::ranging::Normals;
-use vff_core::sensing::sonar::{self, Ranging};
+use vff_core::sensing::sonar::{self, Firing, Ranging};
 use vff_core::world::frame::Frame;
 use vff_core::world::shape::PlacedShape;
 
@@ -14,7 +14,6 @@ use super::{Column, Rows, pairs};
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::Keywords;
-use crate::sensing::firing_of;
 
 /// Stream of a seed for readings outside a run.
 const READINGS: u64 = 3;
@@ -75,7 +74,7 @@ impl Sonar {
             beam_width: given.take("beam_width")?,
             rays: given.take("rays")?,
             ranging,
-            firing: firing_of(&given.take::<String>("firing")?)?,
+            firing: Firing::named(&given.take::<String>("firing")?).map_err(CoreError::from)?,
             rear: given.take("rear")?,
         };
         given.done()?;

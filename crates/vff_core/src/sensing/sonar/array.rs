@@ -23,6 +23,22 @@ pub enum Firing {
 }
 
 impl Firing {
+    /// The order of a word.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn named(word: &str) -> Result<Self> {
+        match word {
+            "together" => Ok(Self::Together),
+            "cross_talk" => Ok(Self::TogetherWithCrossTalk),
+            "in_turn" => Ok(Self::InTurn),
+            other => {
+                let rule = "be one of \"together\", \"cross_talk\", \"in_turn\"";
+                Err(Failure::invalid("firing", rule, Given::Word(other.into())))
+            }
+        }
+    }
+
     /// Indices of the sensors that fire in a step.
     #[inline]
     #[must_use]

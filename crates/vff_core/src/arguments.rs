@@ -1,0 +1,32 @@
+//! What laws and sensors are made of by name: from a caller, a file, or the command line.
+
+use crate::error::Result;
+
+/// Arguments by name.
+pub trait Arguments {
+    /// A number.
+    ///
+    /// # Errors
+    /// There is none of this name; likewise for the others.
+    fn number(&self, name: &str) -> Result<f64>;
+    /// A truth value.
+    ///
+    /// # Errors
+    /// As for numbers.
+    fn flag(&self, name: &str) -> Result<bool>;
+    /// A count.
+    ///
+    /// # Errors
+    /// As for numbers.
+    fn count(&self, name: &str) -> Result<usize>;
+    /// A word.
+    ///
+    /// # Errors
+    /// As for numbers.
+    fn word(&self, name: &str) -> Result<String>;
+    /// Places on a robot, x forward and y left in m, with an angle in rad each.
+    ///
+    /// # Errors
+    /// As for numbers.
+    fn places(&self, name: &str) -> Result<Vec<[f64; 3]>>;
+}
