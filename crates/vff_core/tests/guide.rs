@@ -1,5 +1,7 @@
 //! The guide: check values, completeness of the plan, arrival by local goals, what is refused.
 
+use std::path::{Path, PathBuf};
+
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::error::Failure;
@@ -96,9 +98,10 @@ fn local_goals_lie_within_the_look_ahead_and_laws_get_them_far_enough() {
 }
 
 fn barn() -> serde_json::Value {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared");
-    let shared = std::env::var("HRSAFETY_SHARED").unwrap_or_else(|_| beside.to_owned());
-    let text = std::fs::read_to_string(shared + "/data/barn/barn_even.json").unwrap();
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(3);
+    let beside = repository.unwrap().join("shared");
+    let shared = std::env::var("HRSAFETY_SHARED").map_or(beside, PathBuf::from);
+    let text = std::fs::read_to_string(shared.join("data/barn/barn_even.json")).unwrap();
     serde_json::from_str(&text).unwrap()
 }
 

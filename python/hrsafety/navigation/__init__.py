@@ -8,6 +8,7 @@ from hrsafety.navigation import gains, knowledge, laws, maps, metrics, robots, s
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
+from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
 from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
 from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
@@ -17,7 +18,6 @@ from hrsafety.navigation.laws.planners import (
     RapidlyExploringRandomTree,
     VelocityObstacle,
 )
-from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.many import simulate_many
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
@@ -37,6 +37,7 @@ __all__ = [
     "Disc",
     "FieldDStar",
     "ForceTerms",
+    "GainSearch",
     "GeCui",
     "HolonomicRobot",
     "Human",
@@ -55,7 +56,6 @@ __all__ = [
     "Run",
     "RunTable",
     "Scenario",
-    "Situation",
     "StaticMap",
     "Trajectory",
     "VelocityObstacle",

@@ -104,7 +104,10 @@ class Plan:
             If the position is no point.
         """
         found = self._native.local_goal(_place("position", position))
-        return None if found is None else LocalGoal(*found)
+        if found is None:
+            return None
+        (x, y), cost_to_go, is_goal = found
+        return LocalGoal((x, y), cost_to_go, is_goal)
 
     def path(self, start: npt.ArrayLike) -> Array:
         """Return the whole path to the goal.
