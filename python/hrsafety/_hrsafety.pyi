@@ -1380,6 +1380,10 @@ class Run:
     def outcome(self) -> Literal["arrived", "collided", "timed_out", "stopped"] | None:
         """How it ended, if it has."""
 
+    @property
+    def trace(self) -> tuple[_Pair, _Pair, bool, str] | None:
+        """What parts around the law did in the last control period, if there are any."""
+
     def situation(self) -> dict[str, Any]:
         """Return the fields of what the controller sees."""
 

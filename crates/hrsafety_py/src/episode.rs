@@ -81,6 +81,22 @@ impl Run {
         Ok(self.idle()?.time())
     }
 
+    /// Wanted and commanded velocity of the last control period, whether the law was taken over from,
+    /// and the status, if the law has parts around it.
+    #[getter]
+    fn trace(&self) -> PyResult<Option<([f64; 2], [f64; 2], bool, &'static str)>> {
+        let trace = self.idle()?.trace();
+        Ok(trace.map(|trace| {
+            let word = trace.status.word();
+            (
+                trace.wanted.into(),
+                trace.command.into(),
+                trace.taken_over,
+                word,
+            )
+        }))
+    }
+
     /// The word for how it ended, if it has.
     #[getter]
     fn outcome(&self) -> PyResult<Option<&'static str>> {

@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms."""
+"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms, benchmark."""
 
 from __future__ import annotations
 
@@ -150,6 +150,12 @@ def _arm(options: argparse.Namespace) -> None:
         show_arm(options)
 
 
+def _benchmark(options: argparse.Namespace) -> None:
+    from hrsafety.cli.benchmark import run_suite
+
+    run_suite(options)
+
+
 _COMMANDS = {
     "reproduce": _reproduce,
     "simulate": _simulate,
@@ -157,4 +163,5 @@ _COMMANDS = {
     "optimize": _optimize,
     "sweep": _sweep,
     "arm": _arm,
+    "benchmark": _benchmark,
 }

@@ -94,5 +94,5 @@ def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
             yield Picture(
                 name=f"{name}-{case}".replace("+", "_"),
                 caption=f"{name}, episode {case}: {run.outcome}",
-                png=_png(plotting.plot_path(run)),
+                png=output.picture(plotting.time_sequence(run)),
             )

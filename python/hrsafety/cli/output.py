@@ -36,6 +36,7 @@ __all__ = [
     "law_words",
     "leave_if_strict",
     "located",
+    "picture",
     "planned_animation",
     "planned_folder",
     "report_warnings",
@@ -74,14 +75,22 @@ def with_options(law: nav.Law, options: argparse.Namespace) -> nav.Law:
         if options.stabilizing != "capped":
             changes |= {"stabilizing_force_cap": None, "stabilizing_momentum_cap": None}
     try:
-        return law.replaced(**changes)
+        changed = law.replaced(**changes)
     except InvalidParameterError as error:
         option = "--stabilizing" if error.argument == "stabilizing" else f"--gains: {error.argument}"
         raise error.renamed(option) from None
+    return safe(changed) if options.safe else changed
+
+
+def safe(law: nav.Law) -> nav.Law:
+    """Return the law with a shield and yielding around it, as ``--safe`` asks for."""
+    return nav.laws.SafeNavigation(law, shield=nav.laws.Shield(), yielding=nav.laws.Yielding())
 
 
 def law_words(law: nav.Law) -> str:
     """Return the law in one line."""
+    if isinstance(law, nav.laws.SafeNavigation):
+        return f"{law_words(law.law)}; with {law.parts_words}"
     if not isinstance(law, nav.VirtualForceField):
         numbers = (f"{name} {value:g}" for name, value in zip(law.GAIN_NAMES, law.gains, strict=True))
         return f"{name_of(law).replace('_', ' ')}, {', '.join(numbers)}"
@@ -246,11 +255,16 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]
     return write_text(path, buffer.getvalue())
 
 
-def write_picture(path: Path, figure: Figure) -> Path:
-    """Write a picture as PNG."""
+def picture(figure: Figure) -> bytes:
+    """Return a picture as PNG."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
-    return write_file(path, buffer.getvalue())
+    return buffer.getvalue()
+
+
+def write_picture(path: Path, figure: Figure) -> Path:
+    """Write a picture as PNG."""
+    return write_file(path, picture(figure))
 
 
 def planned_animation(path: str) -> None:

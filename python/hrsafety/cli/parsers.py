@@ -66,6 +66,16 @@ is computed: impacts, or runs in given scenarios. Chunks are written as they fin
 command resumes after a stop, whatever stopped it. The folder receives summary.html with the
 pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
 """
+_BENCHMARK_EXAMPLE = """examples:
+  hrsafety benchmark s5 --laws field field+shield+yielding orca+shield --person-speed 1.0
+  hrsafety benchmark crowd --cases 1000 --out crowd
+  hrsafety benchmark recordings --data recordings --out recordings
+
+Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
+95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
+"""
+SUITE_NAMES = ("s4", "s5", "crowd", "recordings", "adversary")
+"""Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 
 _ARM_EXAMPLE = """examples:
   hrsafety arm robot.urdf --link tool0 --joint elbow=1.2 --joint wrist=-0.4
@@ -154,6 +164,7 @@ def parser() -> argparse.ArgumentParser:
     _add_optimize(commands)
     _add_sweep(commands)
     _add_arm(commands)
+    _add_benchmark(commands)
     return whole
 
 
@@ -222,6 +233,9 @@ def _add_simulate(commands: Any) -> None:
         "attraction, repulsion, detour, and damping of each as a share of its gain",
     )
     law.add_argument("--stabilizing", choices=["off", "capped", "full"], help="stabilizing force")
+    law.add_argument(
+        "--safe", action="store_true", help="put a shield (people up to 1.6 m/s) and yielding around the law"
+    )
     stepping = parser.add_argument_group("stepping")
     stepping.add_argument(
         "--integrator", choices=["semi_implicit_euler", "rk4"], default="semi_implicit_euler", help="[%(default)s]"
@@ -320,3 +334,31 @@ def _add_arm(commands: Any) -> None:
         "--armature", metavar="NAME=VALUE", action="append", help="reflected motor inertia in kg m^2; can be repeated"
     )
     arm.add_argument("--lock", metavar="NAME", action="append", help="joint that keeps its value; can be repeated")
+
+
+def _add_benchmark(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "benchmark",
+        summary="run laws through a fixed protocol and show the shares of success, contact and fault",
+        example=_BENCHMARK_EXAMPLE,
+    )
+    parser.add_argument("suite", choices=SUITE_NAMES, metavar="SUITE", help=", ".join(SUITE_NAMES))
+    parser.add_argument(
+        "--laws",
+        nargs="+",
+        metavar="LAW",
+        help="laws with their parts, as field or orca+shield+yielding [of the suite]",
+    )
+    parser.add_argument("--cases", type=_count, metavar="N", help="number of episodes of each law [of the protocol]")
+    parser.add_argument(
+        "--person-speed",
+        type=_number,
+        default=1.6,
+        metavar="V",
+        help="speed of people that shields assume, in m/s [%(default)s]",
+    )
+    parser.add_argument("--seed", type=_count, metavar="N", help="seed of the draw [of the protocol]")
+    parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), for recordings")
+    parser.add_argument("--out", metavar="DIR", help="folder for rows, tables (CSV) and a page; resumed from there")
+    parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")

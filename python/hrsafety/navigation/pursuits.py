@@ -118,7 +118,7 @@ class Falsification:
 def falsify(
     scenario: Scenario,
     law: AnyLaw,
-    property: Property | Callable[[Pursuit], float] = "at_fault",  # noqa: A002  # the field's word
+    property: Property | Callable[[Pursuit], float] = "at_fault",  # the word of the field
     *,
     method: Literal["random", "cma_es"] = "random",
     episodes: int = 1000,
@@ -244,7 +244,7 @@ def _own(hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: 
         margins.append(margin)
         if worst is None or margin < least:
             worst, least = pursuit, margin
-    assert worst is not None  # noqa: S101  # there is at least one episode
+    assert worst is not None  # there is at least one episode
     return Falsification(property="own", margin=np.array(margins), episodes=episodes, worst=worst)
 
 

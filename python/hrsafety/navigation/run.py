@@ -12,6 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, checked_seed, flag, instance, number, pair
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
+from hrsafety.navigation.laws.safe_navigation import SafetyTrace
 from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
 from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -131,6 +132,12 @@ class Run:
         fields = self._native.recorded(motors=self._built)
         law = _COMMANDS if self._law is None else self._law
         return Trajectory(scenario=self._scenario, law=law, built=self._how if self._built else None, **fields)
+
+    @property
+    def trace(self) -> SafetyTrace | None:
+        """What the parts around the law did in the last control period; ``None`` without parts."""
+        found = self._native.trace
+        return None if found is None else SafetyTrace(*found)
 
     def observe(self) -> Situation:
         """Return what the controller sees now, measured once a control period.

@@ -16,7 +16,7 @@ from hrsafety.datasets import load_track
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
-from hrsafety.scenarios.laws import law_of
+from hrsafety.scenarios.laws import law_of, safe_of
 
 __all__ = ["ScenarioFile", "load"]
 
@@ -50,6 +50,7 @@ _TOP: Keys = MappingProxyType(
         "obstacles": kind.tables,
         "measurement": kind.table,
         "law": kind.table,
+        "safe": kind.table,
     }
 )
 _ROBOT: dict[str, kind.Kind] = {
@@ -119,6 +120,9 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
       arrays, or ``path``, a CSV file with the columns t_s, x_m, y_m, relative to the scenario
       file;
     - ``[measurement]`` with the fields of `Measurement`;
+    - ``[safe]``, which puts parts around the law: ``preferred_speed``, ``takeover`` and
+      ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` with
+      the fields of `Shield` and `Yielding`;
     - ``[law]`` with ``type`` and the fields of its class: ``"virtual_force_field"``,
       ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"virtual_impedance"``,
       ``"velocity_obstacle"``, ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
@@ -154,6 +158,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     place = Path(path)
     fields = checked("", parsed(place), _TOP, required=("start", "goal"))
     law = law_of(fields.pop("law", {"type": "virtual_force_field"}))
+    if "safe" in fields:
+        law = safe_of(law, fields.pop("safe"))
     if "robot" in fields:
         fields["robot"] = _robot(fields["robot"])
     if "measurement" in fields:

@@ -14,7 +14,7 @@ from hrsafety.navigation.laws.declared import LAWS
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, Kind, checked, located
 
-__all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of"]
+__all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of", "safe_of"]
 
 SHORT_NAMES: Mapping[str, str] = MappingProxyType(
     {short: name for name, law in LAWS.items() for short in law.OTHER_NAMES}
@@ -65,3 +65,29 @@ def law_of(table: dict[str, Any]) -> nav.Law:
     del given["type"]
     with located("law"):
         return law(**given)
+
+
+_PARTS: Mapping[str, type[nav.laws.Shield] | type[nav.laws.Yielding]] = MappingProxyType(
+    {"shield": nav.laws.Shield, "yielding": nav.laws.Yielding}
+)
+_SAFE: Keys = MappingProxyType(
+    {
+        **dict.fromkeys(_PARTS, kind.table),
+        "preferred_speed": kind.number,
+        "takeover": kind.boolean,
+        "critical_distance": kind.number,
+    }
+)
+
+
+def safe_of(law: nav.Law, table: dict[str, Any]) -> nav.laws.SafeNavigation:
+    """Return the law with the parts that a table ``[safe]`` describes."""
+    given = checked("safe", table, _SAFE)
+    for name, part in _PARTS.items():
+        if name in given:
+            numbers = MappingProxyType({each.name: kind.number for each in fields(part) if each.init})
+            values = checked(f"safe.{name}", given[name], numbers)
+            with located(f"safe.{name}"):
+                given[name] = part(**values)
+    with located("safe"):
+        return nav.laws.SafeNavigation(law, **given)

@@ -28,6 +28,7 @@ pub use masoud::Masoud;
 
 use crate::error::Result;
 use crate::lanes::{Real, Vector2};
+use crate::laws::safe::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
@@ -119,6 +120,11 @@ pub trait Law<R: Real> {
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
+
+    /// What parts around the law did in the last control period, if there are any.
+    fn trace(&self) -> Option<Trace> {
+        None
+    }
 }
 
 /// A law up to its gains: what a search over gains needs to know of it.

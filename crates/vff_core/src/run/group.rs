@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
+use crate::laws::safe::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
 use crate::run::Interrupted;
 use crate::run::options::Options;
@@ -73,6 +74,8 @@ pub(crate) trait Steering: Send {
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
     /// Heads for another goal from now on, in m.
     fn aim(&mut self, goal: [f64; 2]);
+    /// What parts around the law did in the last control period, if there are any.
+    fn trace(&self) -> Option<Trace>;
 }
 
 impl<L: Law<f64> + Send> Steering for L {
@@ -82,6 +85,10 @@ impl<L: Law<f64> + Send> Steering for L {
 
     fn aim(&mut self, goal: [f64; 2]) {
         Law::aim(self, goal);
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        Law::trace(self)
     }
 }
 

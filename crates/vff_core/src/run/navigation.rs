@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
+use crate::laws::safe::Trace;
 use crate::laws::{Command, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
@@ -143,6 +144,12 @@ impl<L: Listener> Episode<Navigation<L>> {
         } else {
             self.stepped()
         }
+    }
+
+    /// What parts around the law did in the last control period, if there are any.
+    #[must_use]
+    pub fn trace(&self) -> Option<Trace> {
+        self.parts.law.as_ref()?.trace()
     }
 
     /// What the controller sees now; after the end of the run, at the end of its last motion step.

@@ -18,7 +18,7 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.laws.python_law import ForceLaw, PythonLaw, VelocityLaw
-from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
 from hrsafety.navigation.laws.shield import Shield, ShieldDecision, speed_bound
 from hrsafety.navigation.laws.situation import PointMass, Situation
 from hrsafety.navigation.laws.yielding import Yielding
@@ -39,6 +39,7 @@ __all__ = [
     "PythonLaw",
     "RapidlyExploringRandomTree",
     "SafeNavigation",
+    "SafetyTrace",
     "Shield",
     "ShieldDecision",
     "Situation",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import instance, number
+from hrsafety._arguments import Pair, instance, number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import as_law
@@ -15,10 +16,30 @@ from hrsafety.navigation.laws.yielding import Yielding
 from hrsafety.navigation.maps.guide import Guide
 from hrsafety.navigation.maps.static_map import StaticMap
 
-__all__ = ["SafeNavigation"]
+__all__ = ["SafeNavigation", "SafetyTrace"]
 
 CRITICAL_DISTANCE = 0.02
 """Where force laws brake beside a shield that gives way, in m between the surfaces."""
+
+
+class SafetyTrace(NamedTuple):
+    """What the parts around a law did in a control period.
+
+    Attributes
+    ----------
+    wanted, command : (float, float)
+        Velocity that the law wanted, within its limit, or the takeover in its place, and the one that is
+        commanded, in m/s.
+    taken_over : bool
+        Whether the law was taken over from.
+    status : str
+        ``"kept"``, ``"changed"`` or ``"braking"``.
+    """
+
+    wanted: Pair
+    command: Pair
+    taken_over: bool
+    status: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +140,31 @@ class SafeNavigation(Law):
         distance = number("critical_distance", given)
         self._set(critical_distance=distance)
         return distance
+
+    @property
+    def NAME(self) -> str:  # type: ignore[override]  # noqa: N802  # that of the law within
+        """Name of the law, with what is around it."""
+        return f"safe {self.law.NAME}" if hasattr(self.law, "NAME") else "safe navigation"
+
+    @property
+    def PLANS(self) -> bool:  # type: ignore[override]  # noqa: N802
+        """Whether the law chooses a velocity or a path instead of a force."""
+        return getattr(self.law, "PLANS", False)
+
+    @property
+    def parts_words(self) -> str:
+        """What is around the law, in words."""
+        parts = [
+            words
+            for words, part in (
+                ("map", self.map),
+                ("guide", self.guide),
+                ("shield", self.shield),
+                ("yielding", self.yielding),
+            )
+            if part is not None
+        ]
+        return ", ".join(parts) or "nothing around it"
 
     @property
     def GAIN_NAMES(self) -> tuple[str, ...]:  # type: ignore[override]  # noqa: N802  # those of the law within

@@ -180,6 +180,10 @@ impl<R: Real> Law<R> for SafeLanes {
             lyapunov,
         }
     }
+
+    fn trace(&self) -> Option<Trace> {
+        self.0.first().map(|law| *law.trace())
+    }
 }
 
 impl LawFamily for SafeNavigation {

@@ -101,3 +101,101 @@ fn plans_of_the_specification() {
         assert!(guard.gap(&view, decision.velocity) > 0.0);
     }
 }
+
+/// A robot among two people, drawn at random.
+fn drawn(stream: &mut numeric::random::Stream) -> (Guard, RobotState<f64>, Vec<Person>) {
+    let limits = Limits {
+        radius: stream.uniform(0.15, 0.35),
+        max_speed: stream.uniform(0.5, 1.5),
+        max_acceleration: stream.uniform(2.0, 10.0),
+        period: stream.uniform(0.05, 0.1),
+    };
+    let guard = Guard::new(Shield::default(), limits).unwrap();
+    let mut polar = |most: f64| {
+        let (sin, cos) = stream.uniform(0.0, std::f64::consts::TAU).sin_cos();
+        Vector2::new(cos, sin) * (most * stream.unit().sqrt())
+    };
+    let robot = RobotState {
+        position: Vector2::zeros(),
+        velocity: polar(limits.max_speed),
+    };
+    let people = (0..2).map(|_| {
+        let away = polar(1.5) + polar(0.5);
+        let away = away * (1.0 + 0.9 / away.norm());
+        Person {
+            max_speed: 1.0,
+            ..Person::disc(away.into(), 0.3)
+        }
+    });
+    (guard, robot, people.collect())
+}
+
+#[test]
+fn the_search_is_nearly_as_near_as_a_fine_grid() {
+    let mut stream = numeric::random::Stream::new(7, 0);
+    let (mut changed, mut missed) = (0, 0);
+    for _ in 0..120 {
+        let (guard, robot, people) = drawn(&mut stream);
+        let view = View {
+            robot,
+            people: &people,
+            walls: Walls::NONE,
+        };
+        let limits = guard.limits;
+        let angle = stream.uniform(0.0, std::f64::consts::TAU);
+        let wanted = Vector2::new(angle.cos(), angle.sin()) * limits.max_speed;
+        let reached = guard.clipped(&robot, wanted);
+        let decision = guard.decide(&view, wanted);
+        if decision.status == Status::Kept {
+            continue;
+        }
+        let mut least = f64::INFINITY;
+        for row in -60..=60 {
+            for column in -60..=60 {
+                let step =
+                    Vector2::new(f64::from(column), f64::from(row)) * (limits.change() / 60.0);
+                let velocity = robot.velocity + step;
+                if (velocity - reached).norm() < least && guard.verified(&view, velocity) {
+                    least = (velocity - reached).norm();
+                }
+            }
+        }
+        changed += 1;
+        match decision.status {
+            Status::Braking => missed += u32::from(least.is_finite()),
+            Status::Kept | Status::Changed => {
+                let found = (decision.velocity - reached).norm();
+                assert!(found <= least + 0.007 * limits.max_speed, "{found} {least}");
+            }
+        }
+    }
+    assert!(changed > 30 && missed <= 1, "{changed} {missed}");
+}
+
+#[test]
+fn braking_continues_a_verified_plan() {
+    let mut stream = numeric::random::Stream::new(8, 0);
+    for _ in 0..200 {
+        let (guard, robot, _) = drawn(&mut stream);
+        let limits = guard.limits;
+        let periods = braking_periods(robot.velocity.norm(), &limits);
+        let slower = braking(robot.velocity, &limits);
+        assert!((braking_periods(slower.norm(), &limits) - (periods - 1.0).max(0.0)).abs() < 0.5);
+        // The same way: what is left of the old plan is the new one.
+        let still = RobotState {
+            position: Vector2::zeros(),
+            velocity: robot.velocity,
+        };
+        let old = Plan::new(&still, robot.velocity, &limits);
+        let turned = RobotState {
+            position: old.position(limits.period),
+            velocity: robot.velocity,
+        };
+        let new = Plan::new(&turned, slower, &limits);
+        for part in 0..=10 {
+            let time = 0.1 * f64::from(part) * new.end();
+            let [one, other] = [old.position(limits.period + time), new.position(time)];
+            assert!((one - other).norm() < 1e-12, "{one} {other}");
+        }
+    }
+}

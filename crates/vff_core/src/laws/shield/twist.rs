@@ -357,3 +357,104 @@ impl TwistGuard {
         found.into_iter().map(priced).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn guard() -> TwistGuard {
+        let limits = Limits {
+            radius: 0.2,
+            max_speed: 0.7,
+            max_acceleration: 10.0,
+            period: 0.06,
+        };
+        TwistGuard::new(Shield::default(), DifferentialLimits::default(), &limits).unwrap()
+    }
+
+    fn state(speed: f64) -> TwistState {
+        TwistState {
+            position: Vector2::zeros(),
+            heading: 0.0,
+            twist: Twist {
+                speed,
+                turn_rate: 0.0,
+            },
+        }
+    }
+
+    fn view(state: TwistState, people: &[Person]) -> TwistView<'_> {
+        TwistView {
+            robot: state,
+            people,
+            walls: Walls::NONE,
+        }
+    }
+
+    #[test]
+    fn turning_in_place_is_rest() {
+        let people = [Person::disc([0.65, 0.0], 0.4)];
+        let turning = Twist {
+            speed: 0.0,
+            turn_rate: 3.0,
+        };
+        let (guard, view) = (guard(), view(state(0.0), &people));
+        assert!(guard.verified(&view, turning));
+        let driving = Twist {
+            speed: 0.3,
+            turn_rate: 0.0,
+        };
+        assert!(!guard.verified(&view, driving));
+        assert_ne!(guard.decide(&view, driving).1, Status::Kept);
+    }
+
+    #[test]
+    fn it_may_back_away_from_somebody_ahead() {
+        let people = [Person::disc([0.65, 0.0], 0.4)];
+        let (guard, view) = (guard(), view(state(0.0), &people));
+        let away = guard.toward(&view.robot, Vector2::new(-0.4, 0.0), true);
+        assert!((away.speed + 0.4).abs() < 1e-12 && away.turn_rate == 0.0);
+        assert!(guard.verified(&view, away));
+        let turned = guard.toward(&view.robot, Vector2::new(-0.4, 0.01), false);
+        assert!(turned.speed == 0.0 && turned.turn_rate > 0.0);
+    }
+
+    #[test]
+    fn a_straight_plan_is_that_of_the_holonomic_robot() {
+        let twists = guard();
+        let limits = Limits {
+            radius: 0.2,
+            max_speed: 0.7,
+            max_acceleration: 10.0,
+            period: 0.06,
+        };
+        let plain = crate::laws::shield::Guard::new(Shield::default(), limits).unwrap();
+        for away in [0.9, 1.0, 1.1, 1.2, 1.4, 1.6] {
+            for speed in [0.1, 0.3, 0.5, 0.7] {
+                let people = [Person::disc([away, 0.1], 0.4)];
+                let command = Vector2::new(speed, 0.0);
+                let robot = crate::world::geometry::RobotState {
+                    position: Vector2::zeros(),
+                    velocity: Vector2::new(0.2, 0.0),
+                };
+                let view = view(state(0.2), &people);
+                let twist = Twist {
+                    speed,
+                    turn_rate: 0.0,
+                };
+                let other = crate::laws::shield::View {
+                    robot,
+                    people: &people,
+                    walls: Walls::NONE,
+                };
+                // Bounds between nodes may refuse more, never less.
+                if twists.verified(&view, twist) {
+                    assert!(plain.gap(&other, command) > -1e-3);
+                }
+                if plain.gap(&other, command) > 0.02 {
+                    assert!(twists.verified(&view, twist));
+                }
+            }
+        }
+    }
+}

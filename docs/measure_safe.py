@@ -1,0 +1,104 @@
+"""Print what shield and yielding bring, or write it into the page on validation.
+
+``python docs/measure_safe.py`` prints, ``--write`` replaces what stands between the marks of docs/validation.md;
+``--only shares`` are the shares of the suites, ``--only adversary`` the search for a fault. The recordings are those of
+``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety.benchmarks import Result, benchmark, entry
+from hrsafety.benchmarks.suites import ERROR, LATENCY, PURSUED
+from page_tables import DOCS, head, line, percent, print_or_write
+
+GUARDED = "field+shield+yielding"
+SUITES = (
+    ("S5", "s5", 1.0, None, ["field", GUARDED, "orca", "orca+shield+yielding"]),
+    ("S5", "s5", 1.6, None, [GUARDED, "orca+shield+yielding"]),
+    ("S4", "s4", 1.0, None, ["field", GUARDED]),
+    ("crowd of 12", "crowd", 1.0, 0, ["field", GUARDED, "orca", "orca+shield", "orca+shield+yielding"]),
+    ("crowd of 12", "crowd", 1.6, 0, [GUARDED]),
+)
+RANDOM, SEARCHES, EVALUATIONS = 10_000, 10, 300
+PURSUED_LAWS = ("field+shield", "orca+shield", "velocity_obstacle+shield")
+BARE = ("field", "orca", "velocity_obstacle")
+BARE_RANDOM = 1000
+
+
+def say(*words: object) -> None:
+    """Tell what is under way."""
+    print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
+
+
+def rows_of(result: Result, where: str, speed: float) -> Iterator[str]:
+    """Return the lines of a suite."""
+    for name, rows in result.rows.items():
+        counts = [
+            sum(row.outcome == "arrived" for row in rows),
+            sum(row.contacts > 0 for row in rows),
+            sum(row.at_fault > 0 for row in rows),
+        ]
+        shown = "-" if "shield" not in name else f"{speed:.1f}"
+        cells = [percent(count, len(rows)) for count in counts]
+        yield line(where, name, shown, len(rows), *cells, f"{result.mean_arrival(name):.1f}")
+
+
+def shares() -> str:
+    """Return the table of the suites."""
+    lines = head("suite", "law", "v of shield, m/s", "episodes", "success %", "contact %", "at fault %", "arrival, s")
+    for where, suite, speed, seed, laws in SUITES:
+        say(where, speed, laws)
+        lines += rows_of(benchmark(suite, laws, person_speed=speed, seed=seed), where, speed)
+    folder = os.environ.get("HRSAFETY_RECORDINGS")
+    for name in ("zara01", "zara03") if folder else ():
+        say(name)
+        result = benchmark("recordings", ["field", GUARDED], data=Path(str(folder)) / f"{name}.csv")
+        lines += rows_of(result, name, 1.6)
+    return "\n".join(lines) + "\n"
+
+
+def pursued(name: str, robot: nav.HolonomicRobot | nav.DifferentialDriveRobot) -> tuple[nav.Scenario, nav.Law]:
+    """Return where a law is pursued, and the law."""
+    measurement = nav.Measurement(scale=ERROR, of="obstacles", latency=LATENCY)
+    scene = nav.Scenario(
+        start=(0.0, 0.0), goal=(8.0, 0.0), robot=robot, time_limit=PURSUED, rest_time=PURSUED, measurement=measurement
+    )
+    error = float(np.hypot(ERROR, ERROR))
+    return scene, entry(name).built(person_speed=1.6, latency=LATENCY, position_error=error)
+
+
+def adversary() -> str:
+    """Return the table of the search for a fault."""
+    lines = head("robot", "law", "random persons", "at fault", "runs of CMA-ES", "episodes", "runs with a fault")
+    robots = {"holonomic": nav.HolonomicRobot(), "two wheels": nav.DifferentialDriveRobot()}
+    for robot, built in robots.items():
+        for name in (*BARE, *PURSUED_LAWS):
+            say(robot, name)
+            scene, law = pursued(name, built)
+            episodes = RANDOM if "shield" in name else BARE_RANDOM
+            random = nav.metrics.falsify(scene, law, episodes=episodes, seed=1)
+            worst = [
+                nav.metrics.falsify(scene, law, method="cma_es", episodes=EVALUATIONS, seed=seed)
+                for seed in range(SEARCHES)
+            ]
+            faults = sum(each.broken for each in worst)
+            broken = int((random.margin < 0.0).sum())
+            cells = (percent(broken, episodes, 2), SEARCHES, SEARCHES * EVALUATIONS, faults)
+            lines.append(line(robot, name, episodes, *cells))
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print_or_write(
+        DOCS / "validation.md",
+        {"shares": ("shares of measure_safe.py", shares), "adversary": ("persons of measure_safe.py", adversary)},
+    )

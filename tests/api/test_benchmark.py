@@ -1,0 +1,78 @@
+"""Benchmarks: protocols, resumption, the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hrsafety.benchmarks import benchmark, entry
+from hrsafety.benchmarks.results import read_rows
+from hrsafety.benchmarks.suites import SUITES, Case
+from hrsafety.cli import main
+from hrsafety.cli.parsers import SUITE_NAMES
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws import SafeNavigation
+
+
+def test_names_of_the_command_line_are_those_of_the_suites() -> None:
+    assert tuple(SUITES) == SUITE_NAMES
+
+
+def test_entries() -> None:
+    guarded = entry("orca+yielding+shield")
+    assert guarded.parts == ("shield", "yielding")
+    law = guarded.built(person_speed=1.0, preferred_speed=1.0)
+    assert isinstance(law, SafeNavigation)
+    assert entry("field").built(person_speed=1.0) == entry("field").law
+    with pytest.raises(InvalidParameterError, match="did you mean shield"):
+        entry("field+sheild")
+    with pytest.raises(InvalidParameterError, match="laws"):
+        entry("fild")
+
+
+def test_the_draw_of_s5_is_that_of_the_protocol() -> None:
+    case = Case(cases=[7], entry=entry("field"), person_speed=1.0, data=None, seed=1, threads=1)
+    scene = SUITES["s5"].scene
+    assert scene is not None
+    place, _ = scene(case, 7)
+    generator = np.random.default_rng(1)
+    x, y = generator.uniform(2, 9, (2000, 12)), generator.uniform(-3, 3, (2000, 12))
+    assert [each.center for each in place.obstacles] == [(x[7, k], y[7, k]) for k in range(12)]
+    assert place.robot.max_speed == 1.0
+
+
+def test_rows_are_kept_and_resumed(tmp_path: Path) -> None:
+    first = benchmark("s4", ["orca"], cases=3, out=tmp_path)
+    (file,) = tmp_path.glob("*.csv")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text[:-20], encoding="utf-8")  # cut off within the last row
+    assert len(read_rows(file)) == 2
+    again = benchmark("s4", ["orca"], cases=5, out=tmp_path)
+    assert [row.case for row in again.rows["orca"]] == [0, 1, 2, 3, 4]
+    assert list(again.rows["orca"][:3]) == list(first.rows["orca"])
+
+
+def test_shares_have_intervals() -> None:
+    result = benchmark("s4", ["orca+shield+yielding"], cases=6)
+    share = result.success("orca+shield+yielding")
+    assert share.low < share.value <= share.high
+    assert result.at_fault("orca+shield+yielding").value == 0.0
+
+
+def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "found"
+    assert main(["benchmark", "s4", "--laws", "field", "--cases", "3", "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert "at fault %" in printed
+    assert len(list(out.glob("*.html"))) == 1
+    assert main(["benchmark", "recordings"]) == 2
+    assert "--data" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("changes", [{"suite": "s6"}, {"laws": []}, {"cases": 0}, {"person_speed": -1.0}])
+def test_bad_calls(changes: dict[str, object]) -> None:
+    given: dict[str, object] = {"suite": "s4", "laws": ["field"], "cases": 1} | changes
+    with pytest.raises(InvalidParameterError):
+        benchmark(**given)

@@ -1,0 +1,75 @@
+"""The search for a person against whom a law breaks a property."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws import SafeNavigation, Shield
+from hrsafety.navigation.metrics import Pursuit, falsify
+
+SCENE = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), time_limit=10.0)
+ORCA = nav.OptimalReciprocalCollisionAvoidance(horizon=2.0, margin=0.0)
+
+
+def test_orca_is_at_fault_and_not_behind_a_shield() -> None:
+    assert falsify(SCENE, ORCA, episodes=150, seed=2).broken
+    guarded = falsify(SCENE, SafeNavigation(ORCA, shield=Shield()), episodes=150, seed=2)
+    assert not guarded.broken
+    assert guarded.share.value == 0.0
+
+
+def test_a_shield_that_assumes_slow_people_breaks() -> None:
+    law = SafeNavigation(ORCA, shield=Shield(person_speed=0.3))
+    assert falsify(SCENE, law, episodes=200, seed=2).broken
+
+
+def test_the_worst_episode_is_that_of_the_least_margin() -> None:
+    found = falsify(SCENE, ORCA, episodes=60, seed=5)
+    assert found.worst.least_toward == pytest.approx(found.margin.min(), abs=1e-12)
+    speeds = np.linalg.norm(np.diff(found.worst.person_position, axis=0), axis=1) / np.diff(found.worst.time)
+    assert speeds.max() <= 1.6 * (1 + 1e-9)
+
+
+def test_threads_change_no_bit() -> None:
+    one = falsify(SCENE, ORCA, episodes=24, seed=9, threads=1)
+    two = falsify(SCENE, ORCA, episodes=24, seed=9, threads=2)
+    assert np.array_equal(one.margin, two.margin)
+
+
+def test_other_properties() -> None:
+    assert falsify(SCENE, ORCA, "clearance", least=0.5, episodes=40).broken
+    assert not falsify(SCENE, ORCA, "speed", episodes=10).broken
+    assert falsify(SCENE, ORCA, "speed", most=0.3, episodes=10).broken
+    assert not falsify(SCENE, SafeNavigation(ORCA, shield=Shield()), "arrival", episodes=5, person_speed=0.05).broken
+
+
+def test_a_property_of_your_own() -> None:
+    def never_backwards(pursuit: Pursuit) -> float:
+        return float(pursuit.velocity[:, 0].min()) + 1e-9
+
+    found = falsify(SCENE, ORCA, never_backwards, episodes=10)
+    assert found.property == "own"
+    assert len(found.margin) == 10
+
+
+def test_cma_es_finds_a_fault() -> None:
+    assert falsify(SCENE, ORCA, method="cma_es", episodes=80, seed=1).broken
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"property": "safety"}, "property"),
+        ({"method": "grid"}, "method"),
+        ({"episodes": 0}, "episodes"),
+        ({"person_speed": 0.0}, "person_speed"),
+        ({"person_radius": -0.1}, "person_radius"),
+        ({"property": lambda _: 1.0, "method": "cma_es"}, "method"),
+    ],
+)
+def test_bad_calls(changes: dict[str, object], name: str) -> None:
+    with pytest.raises(InvalidParameterError, match=name):
+        falsify(SCENE, ORCA, **changes)
