@@ -1,7 +1,7 @@
 """Print the comparison of all laws, or write it into the page on validation.
 
 ``python docs/measure_laws.py`` prints, ``--write`` replaces what stands between the marks of
-docs/validation.md. ``--only arena`` is the comparison with exact sensing, an hour on two cores, most of
+docs/validation.md. ``--only comparison`` is the comparison with exact sensing, an hour on two cores, most of
 it for the tuned random tree; ``--only shares``, which takes the tuned parameters from the page, is what
 noise and delay make of the shares of contacts (measure_shares.py). Only the cost of a control step
 depends on the machine. What is under way is told on the standard error.
@@ -280,4 +280,4 @@ def page() -> str:
 
 if __name__ == "__main__":
     shares = functools.partial(measure_shares.tables, LAWS, ABLATIONS, say)
-    print_or_write(DOCS / "validation.md", {"arena": (MARKS, page), "shares": (measure_shares.MARKS, shares)})
+    print_or_write(DOCS / "validation.md", {"comparison": (MARKS, page), "shares": (measure_shares.MARKS, shares)})

@@ -184,9 +184,11 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "valley": lambda: plotting.potential_valley(*field_of("c3"), term="repulsive"),
     "clearances": lambda: plotting.clearances({"off": [0.1, -0.1, 0.4], "on": [0.0, 0.05, 0.3]}),
     "outcomes": lambda: plotting.outcomes({"off": ["arrived", "stopped", "collided"]}),
-    "arena paths": lambda: plotting.plot_arena_paths(several_laws(scenarios.configuration("unpredictable_human"))),
-    "arena distances": lambda: plotting.plot_arena_distances(several_laws(scenarios.configuration("c2"))),
-    "arena sequence": lambda: plotting.plot_arena_sequence(several_laws(scenarios.configuration("c4")), [1.0, 2.0]),
+    "comparison paths": lambda: plotting.comparison_paths(several_laws(scenarios.configuration("unpredictable_human"))),
+    "comparison distances": lambda: plotting.comparison_distances(several_laws(scenarios.configuration("c2"))),
+    "comparison sequence": lambda: plotting.comparison_sequence(
+        several_laws(scenarios.configuration("c4")), [1.0, 2.0]
+    ),
     "repeated paths": lambda: plotting.repeated_paths(noisy()),
     "repeated distances": lambda: plotting.repeated_distances(noisy()),
     "boundaries of manipulator 1": lambda: boundaries(impact.MANIPULATOR_1),
@@ -251,8 +253,8 @@ def test_picture_of_the_example_can_be_read(name: str, monkeypatch: pytest.Monke
         assert_readable(figure)
 
 
-@pytest.mark.parametrize("draw", [plotting.plot_arena_paths, lambda runs: plotting.plot_arena_sequence(runs, [1.0])])
-def test_arena_shows_the_whole_scene(draw: Callable[[dict[str, nav.Trajectory]], Any]) -> None:
+@pytest.mark.parametrize("draw", [plotting.comparison_paths, lambda runs: plotting.comparison_sequence(runs, [1.0])])
+def test_comparison_shows_the_whole_scene(draw: Callable[[dict[str, nav.Trajectory]], Any]) -> None:
     assert_readable(draw(several_laws(walled())), WALLS)
 
 
@@ -262,7 +264,7 @@ def test_runs_show_the_whole_scene(draw: Callable[[nav.Trajectory], Any]) -> Non
 
 
 def test_view_of_paths_leaves_far_walls_out() -> None:
-    figure = plotting.plot_arena_paths(several_laws(walled()), view="paths")
+    figure = plotting.comparison_paths(several_laws(walled()), view="paths")
     assert figure.axes[0].get_ylim()[1] < 6.0
     assert figure.axes[0].get_ylim()[1] > 0.5
 

@@ -50,7 +50,7 @@ def drawn(found: dict[str, Any]) -> dict[str, Any]:
         "sweep_lines": plotting.sweep_lines(found["sweep"], "energy"),
         "sweep_scatter": plotting.sweep_scatter(found["sweep"], "energy"),
         "sweep_parallel": plotting.sweep_parallel(found["sweep"], "energy"),
-        "standings": plotting.plot_arena_standings(compared),
+        "standings": plotting.comparison_standings(compared),
         "clearances": plotting.clearances({"both": compared.runs}),
         "outcomes": plotting.outcomes({"both": compared.runs}),
         "repeated_paths": plotting.repeated_paths(repeated),

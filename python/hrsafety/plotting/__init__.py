@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_below
 from hrsafety.plotting import arms, comparisons, gains, impacts, reactive, robots, runs, sweeps
 from hrsafety.plotting.arms.ellipses import mass_ellipse
-from hrsafety.plotting.comparisons.arena import plot_arena_distances, plot_arena_paths, plot_arena_sequence
+from hrsafety.plotting.comparisons.law_runs import comparison_distances, comparison_paths, comparison_sequence
 from hrsafety.plotting.comparisons.repeated import repeated_distances, repeated_paths
-from hrsafety.plotting.comparisons.standings import plot_arena_standings
+from hrsafety.plotting.comparisons.standings import comparison_standings
 from hrsafety.plotting.comparisons.studies import clearances, outcomes
 from hrsafety.plotting.gains.searches import pareto_front, search_history
 from hrsafety.plotting.gains.sensitivity import flatness, gain_sensitivity
@@ -36,6 +36,10 @@ __all__ = [
     "animate",
     "arms",
     "clearances",
+    "comparison_distances",
+    "comparison_paths",
+    "comparison_sequence",
+    "comparison_standings",
     "comparisons",
     "distances",
     "energy",
@@ -55,10 +59,6 @@ __all__ = [
     "outcomes",
     "pareto_front",
     "paths",
-    "plot_arena_distances",
-    "plot_arena_paths",
-    "plot_arena_sequence",
-    "plot_arena_standings",
     "potential_valley",
     "reactive",
     "repeated_distances",

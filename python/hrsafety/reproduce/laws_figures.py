@@ -36,8 +36,8 @@ def make(study: LawsStudy) -> list[Picture]:
     laws = {entry.label: study.printed[name] for name, entry in COMPARED.items()}
     beside = "a person who walks parallel to the way of the robot (section 6.4.5); New VFF and Masoud"
     return [
-        captioned("figure-5.11-paths", plotting.plot_arena_paths(laws), walk=walk),
-        captioned("figure-5.11-instants", plotting.plot_arena_sequence(laws, INSTANTS), walk=walk),
+        captioned("figure-5.11-paths", plotting.comparison_paths(laws), walk=walk),
+        captioned("figure-5.11-instants", plotting.comparison_sequence(laws, INSTANTS), walk=walk),
         captioned("figure-5.12-distances", _distances(study), walk=walk),
         captioned("unpredictable-contacts", _contacts(study), walks=len(study.varied["new_vff"].contact)),
         captioned("figure-6.19-paths", plotting.paths(parallel, labels=labels), beside=beside),

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
     from hrsafety.navigation.metrics import Share
 
-__all__ = ["plot_arena_standings"]
+__all__ = ["comparison_standings"]
 
 ROW_HEIGHT = 0.42
 
 
 @style.styled
-def plot_arena_standings(result: Comparison, *, title: str | None = None) -> Figure:
+def comparison_standings(result: Comparison, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
     Beside the share of the episodes with a contact, a hollow mark is the share of those in which
@@ -55,7 +55,7 @@ def plot_arena_standings(result: Comparison, *, title: str | None = None) -> Fig
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
     >>> episodes = [scenarios.random_traffic(3, seed=seed) for seed in range(10)]
-    >>> figure = plotting.plot_arena_standings(nav.compare(episodes, laws))
+    >>> figure = plotting.comparison_standings(nav.compare(episodes, laws))
     >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     ['field', 'Masoud']
     """

@@ -68,21 +68,21 @@ def runs() -> dict[str, nav.Trajectory]:
 
 
 def test_units_are_on_the_axes_and_scenes_have_equal_scales(runs):
-    for figure in (plotting.plot_arena_paths(runs), plotting.plot_arena_sequence(runs, [1.0])):
+    for figure in (plotting.comparison_paths(runs), plotting.comparison_sequence(runs, [1.0])):
         assert (figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()) == ("x (m)", "y (m)")
         assert figure.axes[0].get_aspect() == 1.0
-    axes = plotting.plot_arena_distances(runs).axes[0]
+    axes = plotting.comparison_distances(runs).axes[0]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "distance of the surfaces (m)")
 
 
 def test_every_picture_is_drawn_without_a_warning_and_at_readme_width(runs, tmp_path):
     result = three_episodes([["arrived"] * 3, ["collided"] * 3], [[0] * 3, [1] * 3])
     figures = {
-        "paths": plotting.plot_arena_paths(runs, regions=True, title="paths"),
-        "distances": plotting.plot_arena_distances(runs),
-        "sequence": plotting.plot_arena_sequence(runs, [0.0, 1.0, 2.0, 8.0]),
-        "standings": plotting.plot_arena_standings(result),
-        "crowd": plotting.plot_arena_paths({"field": made_up_run(*crowd(12))}),
+        "paths": plotting.comparison_paths(runs, regions=True, title="paths"),
+        "distances": plotting.comparison_distances(runs),
+        "sequence": plotting.comparison_sequence(runs, [0.0, 1.0, 2.0, 8.0]),
+        "standings": plotting.comparison_standings(result),
+        "crowd": plotting.comparison_paths({"field": made_up_run(*crowd(12))}),
     }
     for name, figure in figures.items():
         figure.savefig(tmp_path / f"{name}.png")
@@ -92,7 +92,7 @@ def test_every_picture_is_drawn_without_a_warning_and_at_readme_width(runs, tmp_
 
 
 def test_every_law_has_its_path_and_its_name(runs):
-    figure = plotting.plot_arena_paths(runs)
+    figure = plotting.comparison_paths(runs)
     paths = [line.get_xydata() for line in lines_of_runs(figure.axes[0], runs)]
     for path, run in zip(paths, runs.values(), strict=True):
         assert np.array_equal(path, run.position)
@@ -121,7 +121,7 @@ def test_two_laws_of_one_kind_differ_in_their_line():
 
 
 def test_a_moving_obstacle_is_drawn_where_it_was(runs):
-    axes = plotting.plot_arena_paths(runs).axes[0]
+    axes = plotting.comparison_paths(runs).axes[0]
     run = law_looks.longest(runs)
     drawn = [patch for patch in axes.patches if isinstance(patch, Circle) and patch.radius == PERSON.radius]
     times = [float(text.get_text().removesuffix(" s")) for text in axes.texts]
@@ -134,15 +134,15 @@ def test_a_moving_obstacle_is_drawn_where_it_was(runs):
 def test_contacts_and_ends_without_arrival_are_marked():
     run = made_up_run(PERSON, DISC)
     ended = dataclasses.replace(made_up_run(PERSON, DISC, arrived=False), law=nav.Masoud())
-    assert "first contact" not in legend_words(plotting.plot_arena_paths({"field": run}))
-    figure = plotting.plot_arena_paths({"field": touched(run, 0, 2.0), "Masoud": ended})
+    assert "first contact" not in legend_words(plotting.comparison_paths({"field": run}))
+    figure = plotting.comparison_paths({"field": touched(run, 0, 2.0), "Masoud": ended})
     assert {"first contact", "end, not arrived"} <= set(legend_words(figure))
     crosses = [line for line in figure.axes[0].get_lines() if line.get_marker() == "X"]
     assert [line.get_xydata()[0].tolist() for line in crosses] == [run.position[200].tolist()]
 
 
 def test_distance_is_that_of_the_nearest_surfaces(runs):
-    axes = plotting.plot_arena_distances(runs).axes[0]
+    axes = plotting.comparison_distances(runs).axes[0]
     shown = [line.get_ydata() for line in lines_of_runs(axes, runs)]
     for line, run in zip(shown, runs.values(), strict=True):
         radii = np.array([PERSON.radius + 0.2, DISC.radius + 0.2, 0.2])
@@ -150,7 +150,7 @@ def test_distance_is_that_of_the_nearest_surfaces(runs):
 
 
 def test_distance_to_a_chosen_obstacle(runs):
-    axes = plotting.plot_arena_distances(runs, obstacle=1).axes[0]
+    axes = plotting.comparison_distances(runs, obstacle=1).axes[0]
     for line, run in zip(lines_of_runs(axes, runs), runs.values(), strict=True):
         assert np.array_equal(line.get_ydata(), run.distance[:, 1] - (DISC.radius + 0.2))
 
@@ -158,19 +158,19 @@ def test_distance_to_a_chosen_obstacle(runs):
 def test_an_arrival_is_named_where_it_is_in_view():
     beside_the_goal = dataclasses.replace(DISC, center=(0.8, 1.2))
     near, far = made_up_run(beside_the_goal), made_up_run(DISC)
-    assert "arrival" in legend_words(plotting.plot_arena_distances({"field": near}))
-    assert "arrival" not in legend_words(plotting.plot_arena_distances({"field": far}))
+    assert "arrival" in legend_words(plotting.comparison_distances({"field": near}))
+    assert "arrival" not in legend_words(plotting.comparison_distances({"field": far}))
 
 
 def test_a_run_that_lasts_much_longer_leaves_the_panel():
     quick, slow = made_up_run(DISC, duration=5.0), made_up_run(DISC, duration=60.0, arrived=False)
     several = {"a": quick, "b": of_law(quick, nav.Masoud()), "c": of_law(slow, nav.GeCui())}
-    assert 5.0 < plotting.plot_arena_distances(several).axes[0].get_xlim()[1] <= 10.0
+    assert 5.0 < plotting.comparison_distances(several).axes[0].get_xlim()[1] <= 10.0
 
 
 def test_sequence_shows_every_robot_at_the_instant_or_at_its_end(runs):
     radius = law_looks.longest(runs).scenario.robot.radius
-    for axes, instant in zip(plotting.plot_arena_sequence(runs, [1.5, 7.0]).axes, (1.5, 7.0), strict=True):
+    for axes, instant in zip(plotting.comparison_sequence(runs, [1.5, 7.0]).axes, (1.5, 7.0), strict=True):
         robots = [patch.center for patch in axes.patches if isinstance(patch, Circle) and patch.radius == radius]
         rows = [min(round(instant / 0.01), len(run.time) - 1) for run in runs.values()]
         assert np.allclose(robots, [run.position[row] for run, row in zip(runs.values(), rows, strict=True)])
@@ -178,7 +178,7 @@ def test_sequence_shows_every_robot_at_the_instant_or_at_its_end(runs):
 
 def test_standings_are_the_shares_and_their_intervals():
     result = three_episodes([["arrived", "arrived", "collided"], ["collided"] * 3], [[0, 0, 0], [1, 0, 1]])
-    left, right = plotting.plot_arena_standings(result).axes
+    left, right = plotting.comparison_standings(result).axes
     success, contact, moving = [
         [line.get_xdata().tolist() for line in axes.get_lines() if line.get_marker() == "o"]
         for axes in (left, right, right)
@@ -191,7 +191,7 @@ def test_standings_are_the_shares_and_their_intervals():
     assert [label.get_text() for label in left.get_yticklabels()] == ["first", "second"]
 
 
-@pytest.mark.parametrize("draw", [plotting.plot_arena_paths, plotting.plot_arena_distances])
+@pytest.mark.parametrize("draw", [plotting.comparison_paths, plotting.comparison_distances])
 @pytest.mark.parametrize("bad", [{}, [made_up_run(DISC)], None, {"field": "a run"}])
 def test_what_is_not_a_mapping_of_runs_is_refused(draw, bad):
     with pytest.raises(InvalidParameterError, match="runs"):
@@ -200,36 +200,36 @@ def test_what_is_not_a_mapping_of_runs_is_refused(draw, bad):
 
 def test_runs_of_different_scenes_are_refused_by_name():
     with pytest.raises(InvalidParameterError, match=r"runs\['other'\].*obstacles"):
-        plotting.plot_arena_paths({"field": made_up_run(DISC), "other": made_up_run(PERSON)})
+        plotting.comparison_paths({"field": made_up_run(DISC), "other": made_up_run(PERSON)})
 
 
 @pytest.mark.parametrize("obstacle", [-1, 3, 1.0, True, "disc"])
 def test_an_obstacle_that_is_not_there_is_refused(runs, obstacle):
     with pytest.raises(InvalidParameterError, match="obstacle"):
-        plotting.plot_arena_distances(runs, obstacle=obstacle)
+        plotting.comparison_distances(runs, obstacle=obstacle)
 
 
 def test_distances_need_an_obstacle():
     with pytest.raises(InvalidParameterError, match="among obstacles"):
-        plotting.plot_arena_distances({"field": made_up_run()})
+        plotting.comparison_distances({"field": made_up_run()})
 
 
 @pytest.mark.parametrize("times", [[], [-0.1], [100.0], [np.nan], list(range(25))])
 def test_instants_outside_the_runs_are_refused(runs, times):
     with pytest.raises(InvalidParameterError, match="times"):
-        plotting.plot_arena_sequence(runs, times)
+        plotting.comparison_sequence(runs, times)
 
 
 def test_instants_must_be_a_sequence_of_numbers(runs):
     with pytest.raises(ShapeError, match="times"):
-        plotting.plot_arena_sequence(runs, 2.0)
+        plotting.comparison_sequence(runs, 2.0)
     with pytest.raises(InvalidParameterError, match="times"):
-        plotting.plot_arena_sequence(runs, "soon")
+        plotting.comparison_sequence(runs, "soon")
 
 
 def test_only_a_comparison_has_standings():
     with pytest.raises(InvalidParameterError, match="Comparison"):
-        plotting.plot_arena_standings({"field": 1.0})
+        plotting.comparison_standings({"field": 1.0})
 
 
 def test_pictures_of_laws_leave_contact_and_obstacle_colors_alone():

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Annotation
 
-__all__ = ["plot_arena_distances", "plot_arena_paths", "plot_arena_sequence"]
+__all__ = ["comparison_distances", "comparison_paths", "comparison_sequence"]
 
 Rows = npt.NDArray[np.int64]
 
@@ -33,7 +33,7 @@ BEYOND_REGION = 1.25  # the axis of distances ends here, in reaches of the large
 
 
 @style.styled
-def plot_arena_paths(
+def comparison_paths(
     runs: Mapping[str, Trajectory], *, regions: bool = False, view: str = "scene", title: str | None = None
 ) -> Figure:
     """Draw the paths of several laws through one scenario.
@@ -72,7 +72,7 @@ def plot_arena_paths(
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> scene = scenarios.configuration("c3")
     >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
-    >>> figure = plotting.plot_arena_paths({name: nav.simulate(scene, law) for name, law in laws.items()})
+    >>> figure = plotting.comparison_paths({name: nav.simulate(scene, law) for name, law in laws.items()})
     >>> figure.axes[0].get_xlabel()
     'x (m)'
     """
@@ -97,7 +97,7 @@ def plot_arena_paths(
 
 
 @style.styled
-def plot_arena_distances(
+def comparison_distances(
     runs: Mapping[str, Trajectory], *, obstacle: int | None = None, title: str | None = None
 ) -> Figure:
     """Draw the distance of the surfaces of robot and obstacles over time, one line for each law.
@@ -132,7 +132,7 @@ def plot_arena_distances(
     >>> scene = scenarios.configuration("c2")
     >>> laws = {"field": nav.VirtualForceField(), "Masoud": nav.Masoud()}
     >>> runs = {name: nav.simulate(scene, law) for name, law in laws.items()}
-    >>> plotting.plot_arena_distances(runs).axes[0].get_ylabel()
+    >>> plotting.comparison_distances(runs).axes[0].get_ylabel()
     'distance of the surfaces (m)'
     """
     given = law_looks.checked_runs(runs)
@@ -167,7 +167,7 @@ def plot_arena_distances(
 
 
 @style.styled
-def plot_arena_sequence(
+def comparison_sequence(
     runs: Mapping[str, Trajectory], times: Sequence[float], *, view: str = "scene", title: str | None = None
 ) -> Figure:
     """Draw the robots of several laws at chosen instants, one panel for each instant.
@@ -208,7 +208,7 @@ def plot_arena_sequence(
     >>> scene = scenarios.configuration("unpredictable_human")
     >>> laws = {"field": nav.VirtualForceField(), "velocity obstacles": nav.VelocityObstacle()}
     >>> runs = {name: nav.simulate(scene, law) for name, law in laws.items()}
-    >>> [axes.get_title() for axes in plotting.plot_arena_sequence(runs, [1.0, 2.5]).axes]
+    >>> [axes.get_title() for axes in plotting.comparison_sequence(runs, [1.0, 2.5]).axes]
     ['t = 1.00 s', 't = 2.50 s']
     """
     given = law_looks.checked_runs(runs)
