@@ -20,7 +20,7 @@ ESCAPE = re.compile(r"\x1b\[[0-9;]*m")
 HEADERS = (("foam", "stiffness"), ("", "kN/m"))
 ROWS = [("Foam [1]", "24.30"), ("Foam 2", "13.80")]
 PLAIN = "foam      stiffness\n               kN/m\n--------  ---------\nFoam [1]      24.30\nFoam 2        13.80"
-FOAMS = Path(__file__).resolve().parents[2] / "examples" / "foam_design.toml"
+FOAMS = Path(__file__).resolve().parents[3] / "examples" / "foam_design.toml"
 
 
 class Terminal(io.StringIO):

@@ -12,7 +12,7 @@ from hrsafety import datasets, scenarios
 from hrsafety.cli import foam_file, main, optimize_file, sweep_file
 from hrsafety.errors import HrsafetyError
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "examples"
 SPOILED = 500
 PEOPLE = "frame,t_s,ped_id,x_m,y_m\n" + "".join(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 PYTHON = REPOSITORY / "python"
 CRATES = sorted(path for path in (REPOSITORY / "crates").iterdir() if (path / "src" / "lib.rs").is_file())
 SOURCES = sorted((PYTHON / "hrsafety").rglob("*.py"))

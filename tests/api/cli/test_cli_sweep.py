@@ -18,7 +18,7 @@ from hrsafety import impact, sweep
 from hrsafety.cli import main
 from hrsafety.cli.sweep_file import load
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 IMPACTS, GAINS = ROOT / "examples" / "impact_sweep.toml", ROOT / "examples" / "gain_sweep.toml"
 PATIENCE = 60.0
 FAST = """

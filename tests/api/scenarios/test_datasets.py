@@ -10,7 +10,7 @@ from hrsafety import datasets
 from hrsafety.datasets import Recording
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 PEDESTRIANS = SHARED / "data" / "pedestrians"
 ROUNDING = 1e-12
 """Room for the rounding of a few additions of numbers near 1."""

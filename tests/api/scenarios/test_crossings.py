@@ -15,7 +15,7 @@ from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios.recorded_people import Selection
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 PEDESTRIANS = SHARED / "data" / "pedestrians"
 ROUNDING = 1e-9
 """Room for the rounding of times of some minutes."""

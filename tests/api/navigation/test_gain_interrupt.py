@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from api.interrupting import LIMIT, answer_to_ctrl_c, needs_signals
-from api.test_gain_search import assert_same
+from api.navigation.test_gain_search import assert_same
 from hrsafety import InvalidParameterError, scenarios
 from hrsafety import navigation as nav
 

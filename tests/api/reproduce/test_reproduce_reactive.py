@@ -15,7 +15,7 @@ from hrsafety import reproduce
 from hrsafety.reproduce import reactive_follower_study
 from hrsafety.reproduce.cells import Cell
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 VOID_TAGS = {"meta", "img", "br", "hr", "link", "input"}
 PAPERS = ("avi2019", "avi2017", "gussu2017")
 

@@ -8,7 +8,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.errors import InvalidParameterError
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 ROOM = "start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n"
 DISC = '[[obstacles]]\ntype = "disc"\ncenter = [2.0, 0.5]\nradius = 0.1\n'

@@ -21,7 +21,7 @@ from hrsafety.navigation import metrics
 from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import Cell
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 NUMBERS = ["5.1", *(f"6.{i}" for i in range(1, 6)), *(f"7.{i}" for i in range(1, 5)), *(f"C.{i}" for i in range(1, 10))]
 SHORT_RUN = "tables-6"
 # Deviations are recomputed by the same two operations: equal but for the last bits.

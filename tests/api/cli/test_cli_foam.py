@@ -19,7 +19,7 @@ from hrsafety.cli.foam_curves import Remembered
 from hrsafety.cli.foam_file import load
 from hrsafety.cli.parsers import _FOAM_EXAMPLE, parser
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 EXAMPLE = ROOT / "examples" / "foam_design.toml"
 FAST = """closing_speed = 3.0
 [manipulator]

@@ -27,7 +27,7 @@ from hrsafety.cli import main, progress
 from hrsafety.cli.optimize_file import load
 from hrsafety.cli.parsers import _OPTIMIZE_EXAMPLE, parser
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 EXAMPLE = ROOT / "examples" / "gain_study.toml"
 SMALL = """scenarios = ["c1", "c3"]
 [law]

@@ -32,7 +32,7 @@ from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.parts import Made
 from hrsafety.reproduce.views import by_table, view
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 # The specification has 203; of five wheels the package ships both directions in place of their mean.
 ROWS = 203 + 5
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")

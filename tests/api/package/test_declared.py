@@ -20,7 +20,7 @@ from hrsafety.navigation.outcomes import OUTCOMES, Outcome
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.scenarios.laws import SHORT_NAMES, law_named
 
-GLOSSARY = (Path(__file__).resolve().parents[2] / "docs" / "theory" / "symbols.md").read_text(encoding="utf-8")
+GLOSSARY = (Path(__file__).resolve().parents[3] / "docs" / "theory" / "symbols.md").read_text(encoding="utf-8")
 NAMES = tuple(CRITERIA)
 
 

@@ -24,7 +24,7 @@ from api.namespaces import BELOW, places, public
 from hrsafety import arms, impact, reactive, standards
 from hrsafety import navigation as nav
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 PACKAGE = REPOSITORY / "python" / "hrsafety"
 CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}

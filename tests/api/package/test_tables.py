@@ -134,7 +134,7 @@ def test_polars_reads_the_file_back(tmp_path: Path) -> None:
 
 def test_trajectory_has_the_columns_of_the_command_line(tmp_path: Path) -> None:
     file = tmp_path / "scene.toml"
-    file.write_text((Path(__file__).parents[2] / "examples" / "my_first_crossing.toml").read_text(encoding="utf-8"))
+    file.write_text((Path(__file__).parents[3] / "examples" / "my_first_crossing.toml").read_text(encoding="utf-8"))
     assert main(["simulate", str(file), "--out", str(tmp_path / "out")]) == 0
     described = scenarios.load(file)
     run = nav.simulate(described.scenario, described.law)

@@ -15,7 +15,7 @@ from hrsafety import navigation as nav
 from hrsafety import plotting, reproduce, scenarios
 from hrsafety.cli import main
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", ROOT.parent / "shared"))
 PEDESTRIANS = SHARED / "data" / "pedestrians"
 FIRST_CROSSING = ROOT / "examples" / "my_first_crossing.toml"

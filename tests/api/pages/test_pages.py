@@ -16,7 +16,7 @@ from hrsafety import pages
 from hrsafety.cli import main
 from hrsafety.errors import MissingExtraError
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 CROSSING = EXAMPLES / "my_first_crossing.toml"
 VOID_TAGS = {"meta", "img", "br"}
 COMMANDS = {

@@ -27,7 +27,7 @@ from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.names import TABLE_TITLES
 from hrsafety.reproduce.sheets import Sheet
 
-SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[2].parent / "shared"))
+SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 NUMBERS = ("3.1", "3.2", "3.3", "4.1", "4.2", "A.1")
 SECTIONS = ("3.6", "3.7", "3.8", "4.3", "4.4", "4.5", "A.1", "A.2", "A.3")
 VOID_TAGS = {"meta", "img", "br", "hr", "link", "input"}
