@@ -35,16 +35,23 @@ def add_warnings(figure: Figure, *results: object) -> None:
     height = float(figure.get_figheight()) + room
     figure.set_figheight(height)
     share = room / height
-    rect = (0.0, share, 1.0, 1.0 - share)
+    for legend in figure.legends:
+        legend.set_bbox_to_anchor((0.0, share, 1.0, 1.0 - share), transform=figure.transFigure)
     engine = figure.get_layout_engine()
     if engine is not None:
-        engine.set(rect=rect)  # type: ignore[call-arg]  # constrained layout has a rectangle
-    for legend in figure.legends:
-        legend.set_bbox_to_anchor(rect, transform=figure.transFigure)
+        # A legend that is anchored has no room of its own any longer.
+        share += _legend_height(figure) / height
+        engine.set(rect=(0.0, share, 1.0, 1.0 - share))  # type: ignore[call-arg]  # constrained layout has a rectangle
     look: style.Properties = {"fontsize": style.SMALL_FONT_SIZE, "color": style.CONTACT_COLOR, "va": "bottom"}
     left = 0.1 / float(figure.get_figwidth())
     note = figure.text(left, 0.5 * _EDGE / height, "\n".join(words), linespacing=1.15, **look)
     note.set_in_layout(False)
+
+
+def _legend_height(figure: Figure) -> float:
+    """Return the height of the legends below all axes, with the space around them, in inches."""
+    tall = [float(legend.get_tightbbox().height) / float(figure.dpi) for legend in figure.legends]
+    return max(tall) + 2.0 * _EDGE if tall else 0.0
 
 
 def warning_lines(results: Iterable[object], width: float) -> list[str]:

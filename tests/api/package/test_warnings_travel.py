@@ -59,6 +59,18 @@ def drawn(found: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def assert_nothing_covered(figure: Any, name: str) -> None:
+    """Neither the note nor a legend of the figure lies on an axes with its labels, nor on each other."""
+    figure.draw_without_rendering()
+    boxes = [axes.get_tightbbox() for axes in figure.axes]
+    legends = [legend.get_window_extent() for legend in figure.legends]
+    note = figure.texts[-1].get_window_extent()
+    for legend in legends:
+        assert not note.overlaps(legend), name
+        assert not any(legend.overlaps(box) for box in boxes), name
+    assert not any(note.overlaps(box) for box in boxes), name
+
+
 def test_what_is_made_of_many_runs_carries_the_warnings_of_its_scenes() -> None:
     assert [each.code for each in nav.simulate(NOISY, LAW).warnings] == ["region_below_safe"]
     found = results()
@@ -70,6 +82,7 @@ def test_what_is_made_of_many_runs_carries_the_warnings_of_its_scenes() -> None:
     for name, figure in drawn(found).items():
         words = " ".join(text.get_text() for text in figure.texts)
         assert "critical_radius of obstacles[0]" in " ".join(words.split()), name
+        assert_nothing_covered(figure, name)
 
 
 def test_laws_without_critical_regions_do_not_depend_on_their_size() -> None:
