@@ -11,18 +11,18 @@ const POSES: usize = 10_000;
 /// Six axes with tilted inertias.
 fn urdf() -> String {
     let axes = ["0 0 1", "0 1 0", "0 1 0", "0 1 0", "0 0 1", "0 1 0"];
-    let mut text = String::from("<robot name=\"six\"><link name=\"l0\"/>");
-    for (index, axis) in axes.iter().enumerate() {
-        let (mass, next) = (8.0 / (1.0 + f64::from(index as u8)), index + 1);
-        text += &format!(
+    let part = |(index, axis): (usize, &&str)| {
+        let (mass, next) = (8.0 / (1.0 + index as f64), index + 1);
+        format!(
             "<link name=\"l{next}\"><inertial><origin xyz=\"0.02 -0.03 0.1\" rpy=\"0.1 0.2 0.3\"/><mass \
              value=\"{mass}\"/><inertia ixx=\"0.04\" ixy=\"0.001\" ixz=\"0\" iyy=\"0.03\" iyz=\"0\" \
              izz=\"0.02\"/></inertial></link><joint name=\"j{next}\" type=\"continuous\"><parent \
              link=\"l{index}\"/><child link=\"l{next}\"/><origin xyz=\"0.05 0.1 0.2\" rpy=\"0 0.1 0\"/><axis \
              xyz=\"{axis}\"/></joint>"
-        );
-    }
-    text + "</robot>"
+        )
+    };
+    let parts: String = axes.iter().enumerate().map(part).collect();
+    format!("<robot name=\"six\"><link name=\"l0\"/>{parts}</robot>")
 }
 
 fn masses(criterion: &mut Criterion) {

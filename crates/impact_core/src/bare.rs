@@ -1,7 +1,7 @@
 //! Contact of a robot without a covering and a body region that is a linear spring: the two-body
 //! model of ISO/TS 15066.
 //!
-//! $\mu = 1/(1/m_R + 1/m_H)$ and $F = v \sqrt{\mu k}$; a clamped region has an infinite body mass.
+//! `mu = 1/(1/m_R + 1/m_H)` and `F = v sqrt(mu k)`; a clamped region has an infinite body mass.
 
 /// Reduced mass of robot and body (kg); either of them may be infinite.
 #[must_use]
@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn published_speed_of_a_hand_gives_its_force() {
-        // 8.9 kg against a clamped hand of 75 N/mm: 140 N at 0.682 m/s would be a free hand's mu.
+        // 8.9 kg against a free hand of 0.6 kg and 75 N/mm: 140 N at 0.682 m/s.
         let mu = reduced_mass(8.9, 0.6);
         assert!((peak_force(0.68185, mu, 75e3) - 140.0).abs() < 0.01);
         assert_eq!(reduced_mass(8.9, f64::INFINITY), 8.9);

@@ -1,12 +1,12 @@
 //! Protective separation distance between a person and a robot, and its inverse.
 //!
-//! With constant deceleration $a$ from the speed $v$ to a target speed $v_t$ (0 for a stop)
+//! With constant deceleration `a` from the speed `v` to a target speed `v_t` (0 for a stop)
 //!
-//! $$S = v_h (T_r + (v - v_t)/a) + v T_r + (v^2 - v_t^2)/2a + C + Z$$
+//! `S = v_h (T_r + (v - v_t)/a) + v T_r + (v^2 - v_t^2)/2a + C + Z`
 //!
-//! with the speed $v_h$ of the person, the reaction time $T_r$, the intrusion distance $C$ and the
-//! uncertainty $Z = Z_d + Z_r$ of both positions (the form of ISO/TS 15066:2016, 5.5.4, with constant
-//! speeds). Measured stopping times and distances take the place of $a$.
+//! with the speed `v_h` of the person, the reaction time `T_r`, the intrusion distance `C` and the
+//! uncertainty `Z = Z_d + Z_r` of both positions (the form of ISO/TS 15066:2016 with constant
+//! speeds). Measured stopping times and distances take the place of `a`.
 
 use numeric::error::{Failure, Given, Result, not_negative, positive};
 

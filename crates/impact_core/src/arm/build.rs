@@ -105,12 +105,9 @@ impl<'a> Builder<'a> {
         let all = &description.joints;
         let moving = all.iter().filter(|joint| joint.kind != Kind::Fixed).count();
         numeric::error::at_most("number of joints that move", moving, MOST_MOVING)?;
-        known("locked", options.locked.iter(), description)?;
-        known(
-            "armature",
-            options.armature.iter().map(|(name, _)| name),
-            description,
-        )?;
+        known("locked", &options.locked.iter(), description)?;
+        let motors = options.armature.iter().map(|(name, _)| name);
+        known("armature", &motors, description)?;
         let mut value = vec![None; all.len()];
         let mut joints = Vec::new();
         let mut free = 0;
@@ -268,7 +265,7 @@ fn upright(axis: &Vector3<f64>) -> Rotation3<f64> {
 /// Refuses names that no joint has, and names that stand there twice.
 fn known<'n>(
     option: &str,
-    names: impl Iterator<Item = &'n String> + Clone,
+    names: &(impl Iterator<Item = &'n String> + Clone),
     description: &Description,
 ) -> Result<()> {
     for (index, name) in names.clone().enumerate() {

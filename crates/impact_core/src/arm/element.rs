@@ -129,13 +129,11 @@ impl<'a, 'input> Element<'a, 'input> {
             .split_ascii_whitespace()
             .map(|part| self.parsed(attribute, part))
             .collect::<Result<_>>()?;
-        match numbers[..] {
-            [x, y, z] => Ok(Vector3::new(x, y, z)),
-            _ => {
-                let given = Given::Word(text.to_owned());
-                Err(self.refused(attribute, "be three numbers", given))
-            }
+        if let [x, y, z] = numbers[..] {
+            return Ok(Vector3::new(x, y, z));
         }
+        let given = Given::Word(text.to_owned());
+        Err(self.refused(attribute, "be three numbers", given))
     }
 
     fn parsed(&self, attribute: &str, text: &str) -> Result<f64> {

@@ -1,10 +1,10 @@
 //! Arms as trees of joints: what mass a point of an arm has for whom it hits.
 //!
 //! At a point that is fixed to a link, with world axes, the mobility is
-//! $L = J_v M^{-1} J_v^T$ (1/kg), and the effective mass along a unit vector $u$ is
-//! $m_u = 1/(u^T L u)$. $M$ is the joint-space mass matrix, by the composite-rigid-body algorithm
-//! (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, section 6.2), $J_v$ the Jacobian of
-//! the velocity of the point. Joints that mimic others fold both: $M' = G^T M G$, $J' = J G$.
+//! `L = J M^-1 J^T` (1/kg), and the effective mass along a unit vector `u` is
+//! `1/(u^T L u)`. `M` is the joint-space mass matrix, by the composite-rigid-body algorithm
+//! (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, section 6.2), `J` the Jacobian of
+//! the velocity of the point. Joints that mimic others fold both: `M' = G^T M G`, `J' = J G`.
 //!
 //! `element` reads XML elements, `description` what a URDF says, `tree` checks how its links hang
 //! together, `body` holds inertias, `build` makes

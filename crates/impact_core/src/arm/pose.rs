@@ -1,8 +1,8 @@
 //! The kernel: one pose of an arm, its mass matrix, and the mobility of points on it.
 //!
 //! The matrix is eliminated here and not by the linear algebra library: `L D L^T` in loops of a length that
-//! is known when the program is compiled takes a third of the time of its Cholesky decomposition,
-//! and shows at which joint the matrix is singular.
+//! is known when the program is compiled is faster for such small matrices, and shows at which joint
+//! the matrix is singular.
 
 use nalgebra::{Matrix3, Point3, SMatrix, SVector, Vector3};
 use numeric::error::{Failure, Given, Result};
@@ -169,6 +169,7 @@ impl<'a, const N: usize> Pose<'a, N> {
     }
 
     /// Eliminates the mass matrix in place: `M = L D L^T`.
+    #[allow(clippy::needless_range_loop)] // as the indices of the matrices are written
     fn eliminate(&mut self) -> std::result::Result<(), Singular> {
         for column in 0..N {
             let whole = self.masses[(column, column)];
@@ -237,6 +238,7 @@ impl<'a, const N: usize> Pose<'a, N> {
 
     /// Mobility of a point of a link: `L = J M^-1 J^T`.
     #[must_use]
+    #[allow(clippy::needless_range_loop)] // as the indices of the matrices are written
     pub fn mobility(&self, link: usize, point: &Vector3<f64>) -> Mobility {
         let position = self.position(link, point);
         let mut columns = [Vector3::zeros(); N];

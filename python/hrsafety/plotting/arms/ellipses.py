@@ -98,7 +98,7 @@ def _draw_view(axes: Axes, lines: Array, masses: PointMasses, plane: tuple[int, 
     label = f"{mass.min():.3g} kg to {largest}"
     axes.plot(outline[:, 0], outline[:, 1], color=style.RUN_COLORS[0], label=label)
     circle = center + along * scale * np.sqrt(masses.iso_mass)
-    look = {"color": style.CONTACT_COLOR, "ls": (0, (5, 2)), "lw": 1.3}
+    look: style.Properties = {"color": style.CONTACT_COLOR, "ls": (0, (5, 2)), "lw": 1.3}
     axes.plot(circle[:, 0], circle[:, 1], label=f"ISO mass {masses.iso_mass:.3g} kg", **look)
     axes.plot(*center, color=style.RUN_COLORS[0], marker="o", ms=6)
     axes.set_aspect("equal", adjustable="datalim")
