@@ -68,7 +68,7 @@ def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = N
     instance("masses", masses, PointMasses)
     if masses.mobility.shape != (3, 3):
         raise ShapeError("masses.mobility", "(3, 3)", masses.mobility.shape)
-    figure = style.new_figure(4.6, title=title)
+    figure = style.new_figure(5.2, title=title)
     panels = figure.subplots(1, len(VIEWS))
     places = np.concatenate([lines.reshape(-1, 3), masses.position[np.newaxis]])
     width = max(float(np.ptp(places, axis=0).max()), 1e-3)
@@ -82,8 +82,9 @@ def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = N
 
 def _draw_view(axes: Axes, lines: Array, masses: PointMasses, plane: tuple[int, int], scale: float) -> None:
     chosen = list(plane)
-    for line in lines[:, :, chosen]:
-        axes.plot(line[:, 0], line[:, 1], color=style.NEUTRAL, lw=3.0, solid_capstyle="round", marker="o", ms=4)
+    gaps = np.full((len(lines), 1, 2), np.nan)
+    drawn = np.concatenate([lines[:, :, chosen], gaps], axis=1).reshape(-1, 2)
+    axes.plot(drawn[:, 0], drawn[:, 1], color=style.NEUTRAL, lw=3.0, marker="o", ms=4, label="arm")
     center = masses.position[chosen]
     along = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
     mobility = np.einsum("ni,ij,nj->n", along, masses.mobility[np.ix_(chosen, chosen)], along)
@@ -100,7 +101,7 @@ def _draw_view(axes: Axes, lines: Array, masses: PointMasses, plane: tuple[int, 
     circle = center + along * scale * np.sqrt(masses.iso_mass)
     look: style.Properties = {"color": style.CONTACT_COLOR, "ls": (0, (5, 2)), "lw": 1.3}
     axes.plot(circle[:, 0], circle[:, 1], label=f"ISO mass {masses.iso_mass:.3g} kg", **look)
-    axes.plot(*center, color=style.RUN_COLORS[0], marker="o", ms=6)
+    axes.plot(*center, color=style.RUN_COLORS[0], ls="", marker="o", ms=6, label="point")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(f"{AXES[plane[0]]} (m)")
     axes.set_ylabel(f"{AXES[plane[1]]} (m)")
