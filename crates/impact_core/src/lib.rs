@@ -10,6 +10,7 @@ pub use numeric::error;
 
 pub mod arm;
 pub mod bare;
+pub mod allowed;
 pub mod batch;
 pub mod collision;
 pub mod columns;

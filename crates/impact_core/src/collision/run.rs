@@ -10,9 +10,11 @@ use super::{Collision, Region};
 use crate::covering::Shape;
 
 /// Most steps of a collision.
-const MOST_STEPS: usize = 2_000_000;
+const MOST_STEPS: usize = 200_000;
 /// Compression, over the largest, at which a motion starts that would rest at none.
 const FIRST: f64 = 1e-7;
+/// Compression, over the largest, that no tolerance sees.
+const UNSEEN: f64 = 1e-12;
 /// Windows of the head injury criterion, in s.
 pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
 
@@ -47,6 +49,24 @@ fn rests_at_touch(collision: &Collision<'_>) -> bool {
     };
     let slope = pad.force(0.0)[1];
     slope.is_infinite() || (slope == 0.0 && collision.region.force(0.0)[1] == 0.0)
+}
+
+/// `eps` and `d` shortly after the touch of a covering that starts infinitely stiff, whose damper is at rest.
+///
+/// It relaxes ever faster towards the touch; before `d` is a share of the largest one that no tolerance sees,
+/// any error of it is none.
+fn relaxed(collision: &Collision<'_>, largest: f64, most: f64) -> Option<[f64; 2]> {
+    let pad = collision.pad?;
+    if pad.force(0.0)[1].is_finite() {
+        return None;
+    }
+    let part = UNSEEN * largest;
+    let total = part + collision.region.deflection(pad.force(part)[0]);
+    Some(if total <= most {
+        [total, part]
+    } else {
+        [most, 0.0]
+    })
 }
 
 /// A value with its time.
@@ -115,6 +135,12 @@ impl<'a, const N: usize> Run<'a, N> {
             state[TOTAL] = FIRST * length;
             time = state[TOTAL] / speed;
             state[PART] = mechanics.share(state[TOTAL], speed, &past);
+        }
+        if mechanics.carried == Carried::Damped
+            && let Some(touched) = relaxed(collision, rest.compression, FIRST * length)
+        {
+            [state[TOTAL], state[PART]] = touched;
+            time = state[TOTAL] / speed;
         }
         let local = mechanics.local(time, &state, &past);
         let rates = mechanics.rates(&state, &local);

@@ -1,0 +1,288 @@
+//! Speeds at which a contact stays within limits of force, pressure and strain.
+//!
+//! Without supports, damping and rate everything is stored at the largest compression:
+//!
+//! ```text
+//! mu v^2/2 = W_c(F) + W_b(F)
+//! ```
+//!
+//! so that each limit gives its speed in closed form, for every law and shape. Otherwise collisions are
+//! simulated until the loads reach a limit.
+
+mod base;
+mod numeric;
+mod probability;
+mod rows;
+#[cfg(test)]
+mod tests;
+mod thickness;
+
+pub use base::{Drive, differential_mass, holonomic_mass};
+pub use numeric::{SCANNED, numeric_speed};
+pub use probability::{
+    Distribution, Interval, Probability, clopper_pearson, exceedance, normal_probability,
+};
+pub use rows::{
+    Columns, Given, Kind, Law, NAMES, Outline, RegionKind, Row, Setup, collide_rows, speed_rows,
+    thickness_rows,
+};
+pub use thickness::{Thickness, ThicknessStatus, least_thickness};
+
+use crate::collision::{Region, reduced_mass};
+use crate::covering::{Pad, Shape};
+use crate::error::{Failure, Given as Shown, Result, positive};
+
+/// Two speeds as near as this, relatively, are a tie.
+const TIE: f64 = 1e-9;
+
+/// Limits of one region and class of contact; what is `None` is not checked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// Force, in N.
+    pub force: Option<f64>,
+    /// Pressure, in Pa.
+    pub pressure: Option<f64>,
+    /// Strain of the covering.
+    pub max_strain: Option<f64>,
+}
+
+/// A limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Governs {
+    /// Of the force.
+    Force,
+    /// Of the pressure.
+    Pressure,
+    /// Of the strain.
+    Strain,
+    /// None of them is there.
+    Nothing,
+}
+
+impl Governs {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Force, Self::Pressure, Self::Strain, Self::Nothing];
+
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Pressure => "pressure",
+            Self::Strain => "strain",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+/// How a speed was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpeedStatus {
+    /// From the stored energy.
+    ClosedForm,
+    /// By simulation, where loads cannot fall with the speed, or fell nowhere.
+    Monotone,
+    /// By simulation: the loads cross their limits more than once; the lowest crossing.
+    SeveralCrossings,
+    /// No load reaches its limit.
+    Unlimited,
+    /// The mass against a clamped body is unbounded: no speed is allowed.
+    UnboundedMass,
+    /// No limit was given.
+    NotChecked,
+    /// A simulation did not come to its end, so that nothing is known.
+    Unfinished,
+}
+
+impl SpeedStatus {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::ClosedForm,
+        Self::Monotone,
+        Self::SeveralCrossings,
+        Self::Unlimited,
+        Self::UnboundedMass,
+        Self::NotChecked,
+        Self::Unfinished,
+    ];
+
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::ClosedForm => "closed_form",
+            Self::Monotone => "monotone",
+            Self::SeveralCrossings => "several_crossings",
+            Self::Unlimited => "unlimited_up_to_20",
+            Self::UnboundedMass => "unbounded_mass",
+            Self::NotChecked => "not_checked",
+            Self::Unfinished => "unfinished",
+        }
+    }
+}
+
+/// An allowed closing speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Allowed {
+    /// Closing speed, in m/s; NaN where nothing limits it.
+    pub speed: f64,
+    /// The limit that governs.
+    pub governs: Governs,
+    /// Speeds at which force, pressure and strain reach their limits; NaN where they do not.
+    pub speeds: [f64; 3],
+    /// How it was found.
+    pub status: SpeedStatus,
+    /// Further crossings, in m/s.
+    pub further: Vec<f64>,
+}
+
+/// A contact at rest: what stores energy, and what is limited.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<'a> {
+    /// Mass of the robot, in kg, which may be infinite.
+    pub robot_mass: f64,
+    /// Mass of the body, in kg; infinite: clamped.
+    pub body_mass: f64,
+    /// Region of the body.
+    pub region: Region,
+    /// Covering; `None`: bare.
+    pub pad: Option<&'a Pad>,
+    /// Contact area of a bare contact, in m^2.
+    pub area: Option<f64>,
+    /// Limits.
+    pub limits: Limits,
+}
+
+impl Limits {
+    /// Checks the limits, with the largest strain of a covering.
+    ///
+    /// # Errors
+    /// A limit is not positive, or a strain is beyond what the covering can bear.
+    pub fn check(&self, pad: Option<&Pad>) -> Result<()> {
+        if let Some(force) = self.force {
+            positive("limits.force", force)?;
+        }
+        if let Some(pressure) = self.pressure {
+            positive("limits.pressure", pressure)?;
+        }
+        let Some(pad) = pad else { return Ok(()) };
+        let covering = &pad.covering;
+        match self.max_strain {
+            None if covering.bottoming.stiffness == 0.0 => {
+                let given = Shown::Found("none without a backing".into());
+                Err(Failure::invalid(
+                    "max_strain",
+                    "be given where there is no backing",
+                    given,
+                ))
+            }
+            None => Ok(()),
+            Some(strain) => {
+                positive("max_strain", strain)?;
+                let bound = covering.material.bound();
+                let fine = if covering.material.is_measured() {
+                    strain <= bound
+                } else {
+                    strain < bound
+                };
+                if fine {
+                    return Ok(());
+                }
+                let rule = format!("be within what the law describes, up to {bound}");
+                Err(Failure::invalid("max_strain", rule, Shown::Number(strain)))
+            }
+        }
+    }
+
+    /// The largest strain that is allowed on a pad: its onset of bottoming if none is given.
+    #[must_use]
+    pub fn strain(&self, pad: &Pad) -> f64 {
+        let law = &pad.covering;
+        let default = if law.bottoming.stiffness > 0.0 {
+            law.bottoming.strain.min(law.material.bound())
+        } else {
+            f64::NAN
+        };
+        self.max_strain.unwrap_or(default)
+    }
+}
+
+impl Contact<'_> {
+    /// Force and compression at each limit; `None` where it is not there or beyond the data.
+    #[must_use]
+    pub fn at_limits(&self) -> [Option<(f64, f64)>; 3] {
+        let Limits {
+            force, pressure, ..
+        } = self.limits;
+        let Some(pad) = self.pad else {
+            let by_pressure = pressure.and_then(|pressure| Some((pressure * self.area?, 0.0)));
+            return [force.map(|force| (force, 0.0)), by_pressure, None];
+        };
+        let thickness = pad.covering.thickness;
+        let at = |force: f64| {
+            pad.compression_at(force)
+                .map(|compression| (force, compression))
+        };
+        let there = |compression: f64| (pad.force(compression)[0], compression);
+        let by_pressure = pressure.and_then(|pressure| match pad.covering.shape {
+            Shape::Flat { area } => at(pressure * area),
+            Shape::Curved { .. } | Shape::Cylinder { .. } => {
+                let found = pad.covering.material.strain_at(pressure);
+                let free = found.map(|strain| strain * thickness);
+                // Past bottoming the pressure at the apex is not known.
+                match free {
+                    Some(compression) => Some(there(compression.min(pad.bottom()))),
+                    None if pad.bottom().is_finite() => Some(there(pad.bottom())),
+                    None => None,
+                }
+            }
+        });
+        let strain = self.limits.strain(pad);
+        let by_strain = strain.is_finite().then(|| there(strain * thickness));
+        [force.and_then(at), by_pressure, by_strain]
+    }
+
+    /// Energy that covering and region store.
+    #[must_use]
+    pub fn energy(&self, force: f64, compression: f64) -> f64 {
+        self.pad.map_or(0.0, |pad| pad.work(compression)) + self.region.work(force)
+    }
+
+    /// Allowed closing speed from the stored energy.
+    #[must_use]
+    pub fn closed_form(&self) -> Allowed {
+        let mass = reduced_mass(self.robot_mass, self.body_mass);
+        let limits = self.at_limits();
+        let speeds = limits.map(|limit| match limit {
+            Some((force, compression)) => (2.0 * self.energy(force, compression) / mass).sqrt(),
+            None => f64::NAN,
+        });
+        let status = if mass.is_infinite() {
+            SpeedStatus::UnboundedMass
+        } else {
+            SpeedStatus::ClosedForm
+        };
+        governed(speeds, status)
+    }
+}
+
+/// The lowest of some speeds; of those that tie the first one governs.
+#[must_use]
+pub fn governed(speeds: [f64; 3], status: SpeedStatus) -> Allowed {
+    let lowest = speeds.into_iter().fold(f64::NAN, f64::min);
+    let first = speeds
+        .iter()
+        .position(|speed| *speed <= lowest * (1.0 + TIE));
+    let governs = first.map_or(Governs::Nothing, |index| Governs::ALL[index]);
+    Allowed {
+        speed: lowest,
+        governs,
+        speeds,
+        status: if first.is_none() {
+            SpeedStatus::NotChecked
+        } else {
+            status
+        },
+        further: Vec::new(),
+    }
+}
