@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from hrsafety import (
         arms,
         cli,
+        contact,
         datasets,
         impact,
         navigation,
@@ -47,6 +48,7 @@ __all__ = [
     "__version__",
     "arms",
     "cli",
+    "contact",
     "datasets",
     "impact",
     "navigation",

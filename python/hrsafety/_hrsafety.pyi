@@ -74,6 +74,16 @@ __all__ = [
     "check_takeover",
     "collision_feet",
     "collision_points",
+    "contact_column",
+    "contact_differential_mass",
+    "contact_exceedance",
+    "contact_holonomic_mass",
+    "contact_names",
+    "contact_rows",
+    "contact_simulate",
+    "contact_speed",
+    "contact_thickness",
+    "contact_words",
     "contiguous_level",
     "dashpots_in_series",
     "differential_wheels",
@@ -1853,3 +1863,45 @@ def guard_distance(
     stopping_time: float, capability: float | None, height: float | None
 ) -> tuple[float, float, float, float]:
     """Return the least distance of a guard, the first result, the speed of approach and the intrusion distance."""
+
+# ---- contact ---------------------------------------------------------------------------------
+
+def contact_names() -> list[str]: ...
+def contact_words() -> tuple[list[str], list[str], list[str]]: ...
+def contact_rows(
+    kind: str,
+    shared: dict[str, Any],
+    numbers: Sequence[float | npt.NDArray[np.float64]],
+    rows: int,
+    *,
+    gravity: float | None,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> dict[str, Any]: ...
+def contact_simulate(shared: dict[str, Any], numbers: Sequence[float], *, gravity: float | None) -> dict[str, Any]: ...
+def contact_speed(shared: dict[str, Any], numbers: Sequence[float]) -> dict[str, Any]: ...
+def contact_thickness(shared: dict[str, Any], numbers: Sequence[float]) -> tuple[float, str]: ...
+def contact_column(
+    shared: dict[str, Any], numbers: Sequence[float], compression: float
+) -> tuple[float, float, float, tuple[float, float] | None]: ...
+def contact_exceedance(
+    shared: dict[str, Any],
+    numbers: Sequence[float],
+    inputs: Sequence[tuple[str, str, Sequence[float]]],
+    *,
+    speed: float,
+    draws: int,
+    seed: int,
+    threads: int | None,
+) -> dict[str, Any]: ...
+def contact_holonomic_mass(
+    *, mass: float, inertia: float, point: tuple[float, float], direction: tuple[float, float]
+) -> float: ...
+def contact_differential_mass(
+    *,
+    mass: float,
+    inertia: float,
+    drive: tuple[float, float, float, float],
+    point: tuple[float, float],
+    direction: tuple[float, float],
+) -> float: ...

@@ -8,6 +8,7 @@ mod arm;
 mod arrays;
 mod batch;
 mod built;
+mod contact;
 mod differential;
 mod episode;
 mod errors;
@@ -52,6 +53,12 @@ mod _hrsafety {
     use crate::batch::simulate_batch;
     #[pymodule_export]
     use crate::built::{AsBuilt, built_evaluate, built_many, built_simulate};
+    #[pymodule_export]
+    use crate::contact::{
+        contact_column, contact_differential_mass, contact_exceedance, contact_holonomic_mass,
+        contact_names, contact_rows, contact_simulate, contact_speed, contact_thickness,
+        contact_words,
+    };
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]

@@ -29,7 +29,7 @@ PACKAGE = REPOSITORY / "python" / "hrsafety"
 CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
-NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "standards")
+NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards")
 COMPUTING = {
     *("simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"),
     *("optimize_gains", "pareto_front", "gain_sensitivity", "gain_gradient"),

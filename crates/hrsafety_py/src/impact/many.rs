@@ -23,7 +23,7 @@ pub enum Numbers<'py> {
 }
 
 impl Numbers<'_> {
-    fn column(&self) -> PyResult<Column<'_>> {
+    pub fn column(&self) -> PyResult<Column<'_>> {
         Ok(match self {
             Self::Same(value) => Column::Value(*value),
             Self::Each(values) => Column::Array(values.as_slice()?),

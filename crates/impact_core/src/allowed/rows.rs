@@ -5,7 +5,8 @@ use std::sync::Arc;
 use numeric::threads::{Interrupted, map, on_threads};
 
 use super::{
-    Allowed, Contact, Governs, Limits, SpeedStatus, ThicknessStatus, least_thickness, numeric_speed,
+    Allowed, Contact, Governs, Limits, SpeedStatus, Thickness, ThicknessStatus, least_thickness,
+    numeric_speed,
 };
 use crate::collision::{Body, Collision, Outcome, Region, Status, Stop, Wanted, simulate};
 use crate::columns::Column;
@@ -387,6 +388,29 @@ impl Setup {
         Ok((found, bare))
     }
 
+    /// Least thickness for the closing speed of a row.
+    ///
+    /// # Errors
+    /// A number is out of its range, there is no covering, or it has a damper or a rate.
+    pub fn thickness(&self, row: &Row, fixed: Option<&Material>) -> Result<Thickness> {
+        let missing = || {
+            let given = Shown::Found("none".into());
+            Failure::invalid("covering", "be given", given)
+        };
+        let pad = self.pad(row, fixed)?.ok_or_else(missing)?;
+        if pad.covering.damping > 0.0 || !pad.covering.rate.is_none() {
+            let rule = "have neither damping nor rate: a least thickness is from stored energy";
+            return Err(Failure::invalid(
+                "covering",
+                rule,
+                Shown::Number(pad.covering.damping),
+            ));
+        }
+        let speed = positive("closing_speed", row.0[CLOSING_SPEED])?;
+        let contact = self.contact(row, Some(&pad))?;
+        Ok(least_thickness(&contact, &pad, speed))
+    }
+
     /// Loads of a row.
     ///
     /// # Errors
@@ -613,22 +637,7 @@ pub fn thickness_rows(
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Columns> {
     let of = |row: &Row, fixed: Option<&Material>| {
-        let missing = || {
-            let given = Shown::Found("none".into());
-            Failure::invalid("covering", "be given", given)
-        };
-        let pad = setup.pad(row, fixed)?.ok_or_else(missing)?;
-        if pad.covering.damping > 0.0 || !pad.covering.rate.is_none() {
-            let rule = "have neither damping nor rate: a least thickness is from stored energy";
-            return Err(Failure::invalid(
-                "covering",
-                rule,
-                Shown::Number(pad.covering.damping),
-            ));
-        }
-        let speed = positive("closing_speed", row.0[CLOSING_SPEED])?;
-        let contact = setup.contact(row, Some(&pad))?;
-        let found = least_thickness(&contact, &pad, speed);
+        let found = setup.thickness(row, fixed)?;
         Ok((
             [found.thickness],
             [code(&ThicknessStatus::ALL, &found.status), 0],

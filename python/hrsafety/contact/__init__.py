@@ -1,0 +1,65 @@
+"""Contact with people within limits: coverings, collisions, allowed speeds, thicknesses, chances, mobile bases.
+
+Every number here is a model: a measurement on the finished machine must confirm it.
+"""
+
+from hrsafety.contact.base import (
+    ContactMargins,
+    DifferentialBase,
+    HolonomicBase,
+    RegionSpeed,
+    contact_margins,
+    contact_speed_limit,
+)
+from hrsafety.contact.chance import Exceedance, probability
+from hrsafety.contact.covering import Column, Covering, Region
+from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
+from hrsafety.contact.simulation import ContactBatch, ContactImpact, batch, simulate
+from hrsafety.contact.speed import (
+    AllowedSpeed,
+    AllowedSpeeds,
+    LeastThickness,
+    allowed_speed,
+    allowed_speeds,
+    free_from_fixed_force,
+    sensitivity,
+    thickness,
+)
+
+__all__ = [
+    "AllowedSpeed",
+    "AllowedSpeeds",
+    "Avalle",
+    "Column",
+    "ContactBatch",
+    "ContactImpact",
+    "ContactMargins",
+    "Covering",
+    "DifferentialBase",
+    "Exceedance",
+    "GibsonAshby",
+    "HolonomicBase",
+    "LeastThickness",
+    "Linear",
+    "Material",
+    "Region",
+    "RegionSpeed",
+    "Rusch",
+    "StressTable",
+    "allowed_speed",
+    "allowed_speeds",
+    "batch",
+    "contact_margins",
+    "contact_speed_limit",
+    "free_from_fixed_force",
+    "material",
+    "probability",
+    "sensitivity",
+    "simulate",
+    "thickness",
+]
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

@@ -1,0 +1,394 @@
+"""Contact of a mobile base: effective mass at a point, allowed speeds at regions, margins along a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Pair, not_negative, number, pair, positive
+from hrsafety.contact.covering import Covering
+from hrsafety.contact.speed import AllowedSpeed, allowed_speed
+from hrsafety.errors import InvalidParameterError
+from hrsafety.tables import Columns, Table
+
+__all__ = [
+    "ContactMargins",
+    "DifferentialBase",
+    "HolonomicBase",
+    "RegionSpeed",
+    "contact_margins",
+    "contact_speed_limit",
+]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HolonomicBase:
+    """A base that is free to move any way.
+
+    Parameters
+    ----------
+    mass : float
+        In kg.
+    inertia : float
+        About the center of mass, in kg m^2.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> base = contact.HolonomicBase(mass=4.4, inertia=0.1)
+    >>> base.effective_mass((0.2, 0.0), (1.0, 0.0))
+    4.4
+    """
+
+    mass: float
+    inertia: float
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name in ("mass", "inertia"):
+            object.__setattr__(self, name, positive(f"base.{name}", getattr(self, name)))
+
+    def effective_mass(self, point: Pair, direction: Pair) -> float:
+        """Return 1/(1/M + (x u_y - y u_x)^2/I).
+
+        Parameters
+        ----------
+        point : tuple of two floats
+            About the center of mass, x forward, in m.
+        direction : tuple of two floats
+            Horizontal, of any length.
+
+        Returns
+        -------
+        float
+            In kg.
+        """
+        return _hrsafety.contact_holonomic_mass(
+            mass=self.mass, inertia=self.inertia, point=pair("point", point), direction=pair("direction", direction)
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DifferentialBase:
+    """A base on two wheels that do not slip.
+
+    Parameters
+    ----------
+    mass : float
+        In kg.
+    inertia : float
+        About the center of mass, in kg m^2.
+    offset : float
+        Center of mass ahead of the axle, in m.
+    wheel_inertia : float
+        Of each wheel with its motor, in kg m^2; 0: massless.
+    wheel_radius, half_track : float or None
+        In m, needed with a wheel inertia.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> base = contact.DifferentialBase(
+    ...     mass=20.0, inertia=0.8, offset=0.05, wheel_inertia=0.001, wheel_radius=0.08, half_track=0.2
+    ... )
+    >>> round(base.effective_mass((0.2, 0.1), (0.8, 0.6)), 5)
+    29.97354
+    """
+
+    mass: float
+    inertia: float
+    offset: float = 0.0
+    wheel_inertia: float = 0.0
+    wheel_radius: float | None = None
+    half_track: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name in ("mass", "inertia"):
+            object.__setattr__(self, name, positive(f"base.{name}", getattr(self, name)))
+        object.__setattr__(self, "wheel_inertia", not_negative("base.wheel_inertia", self.wheel_inertia))
+        for name in ("wheel_radius", "half_track"):
+            given = getattr(self, name)
+            if given is None and self.wheel_inertia > 0.0:
+                raise InvalidParameterError(f"base.{name}", "be given with a wheel inertia", None)
+            if given is not None:
+                object.__setattr__(self, name, positive(f"base.{name}", given))
+
+    def effective_mass(self, point: Pair, direction: Pair) -> float:
+        """Return the mass at a point about the middle of the axle; inf where the base cannot move.
+
+        Parameters
+        ----------
+        point : tuple of two floats
+            About the middle of the axle, x forward, in m.
+        direction : tuple of two floats
+            Horizontal, of any length.
+
+        Returns
+        -------
+        float
+            In kg.
+        """
+        drive = (self.offset, self.wheel_inertia, self.wheel_radius or 1.0, self.half_track or 1.0)
+        return _hrsafety.contact_differential_mass(
+            mass=self.mass,
+            inertia=self.inertia,
+            drive=drive,
+            point=pair("point", point),
+            direction=pair("direction", direction),
+        )
+
+
+Base = HolonomicBase | DifferentialBase
+
+
+class RegionSpeed(NamedTuple):
+    """Allowed closing speed at a region in one class of contact.
+
+    Attributes
+    ----------
+    region, contact : str
+        Region and class, ``"transient"`` or ``"quasi_static"``.
+    status : str
+        ``"not_permitted"``, or the status of the speed.
+    robot_mass : float
+        Effective mass of the base in kg, inf where it cannot yield.
+    speed : float
+        Closing speed in m/s: 0 where contact is not permitted, NaN where nothing limits it.
+    allowed : AllowedSpeed or None
+        How it was found.
+    """
+
+    region: str
+    contact: str
+    status: str
+    robot_mass: float
+    speed: float
+    allowed: AllowedSpeed | None
+
+
+def contact_speed_limit(
+    base: Base,
+    covering: Covering | Mapping[str, object] | None,
+    point: Pair,
+    normal: Pair,
+    regions: Sequence[Any],
+    *,
+    area: float | None = None,
+) -> tuple[RegionSpeed, ...]:
+    """Return the allowed closing speed of a point of a base along a normal, for each region and class.
+
+    The limits are those of adults; no limit set has values of children.
+
+    Parameters
+    ----------
+    base : HolonomicBase or DifferentialBase
+        The base.
+    covering : Covering, mapping or None
+        ``None``: bare.
+    point, normal : tuple of two floats
+        Point of the base in its frame, in m, and outward direction of the contact.
+    regions : sequence
+        Limits with ``region``, ``contact``, ``permitted``, ``force``, ``pressure``, ``spring_constant`` and
+        ``body_mass``, such as those of `hrsafety.standards`. Give both classes: transient and clamped.
+    area : float or None
+        Contact area of a bare contact in m^2.
+
+    Returns
+    -------
+    tuple of RegionSpeed
+        In the order of the regions.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or a region has no spring constant or mass.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> from hrsafety import contact
+    >>> leg = SimpleNamespace(
+    ...     region="lower_leg", contact="transient", permitted=True, force=260.0, pressure=None,
+    ...     spring_constant=60e3, body_mass=75.0,
+    ... )
+    >>> base = contact.HolonomicBase(mass=4.4, inertia=0.1)
+    >>> round(contact.contact_speed_limit(base, None, (0.2, 0.0), (1.0, 0.0), [leg])[0].speed, 4)
+    0.5207
+    """
+    mass = base.effective_mass(point, normal)
+    return tuple(_region_speed(mass, covering, each, area) for each in regions)
+
+
+def _region_speed(
+    mass: float, covering: Covering | Mapping[str, object] | None, limit: Any, area: float | None
+) -> RegionSpeed:
+    if not limit.permitted:
+        return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
+    for name in ("spring_constant", "body_mass"):
+        if getattr(limit, name) is None:
+            raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
+    found = allowed_speed(
+        robot_mass=mass,
+        body_mass=limit.body_mass,
+        region=limit.spring_constant,
+        limits={"force": limit.force, "pressure": limit.pressure},
+        covering=covering,
+        area=area,
+    )
+    speed = math.nan if found.speed is None else found.speed
+    return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ContactMargins(Table):
+    """What a contact at each instant of a run would mean: n instants, m obstacles.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        In s.
+    closing_speed, robot_share : ndarray, shape (n, m)
+        Speed at which robot and person close in along the line between them, and what of it is the
+        robot's, in m/s; NaN while the person is absent.
+    margin : ndarray, shape (n, m)
+        Allowed less closing speed in m/s; NaN where nothing limits it.
+    verdict : ndarray of str, shape (n, m)
+        ``"within_limits"``, ``"exceeds"``, ``"not_permitted"``, ``"not_checked"``, ``"absent"``.
+    touching : ndarray of bool, shape (n, m)
+        Whether there is contact.
+    region, contact : str
+        The region and class with the lowest speed, to which the margins belong.
+    """
+
+    time: Array
+    closing_speed: Array
+    robot_share: Array
+    margin: Array
+    verdict: npt.NDArray[np.str_]
+    touching: npt.NDArray[np.bool_]
+    region: str
+    contact: str
+
+    def columns(self) -> Columns:
+        """Return one row for each instant and obstacle.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Columns by name.
+        """
+        rows, obstacles = self.closing_speed.shape
+        names = ("closing_speed", "robot_share", "margin", "verdict", "touching")
+        index = {"time": np.repeat(self.time, obstacles), "obstacle": np.tile(np.arange(obstacles), rows)}
+        return index | {name: getattr(self, name).ravel() for name in names}
+
+
+def contact_margins(
+    trajectory: Any,
+    *,
+    base: Base,
+    covering: Covering | Mapping[str, object] | None,
+    regions: Sequence[Any],
+    robot_radius: float,
+    person_radius: float,
+    area: float | None = None,
+) -> ContactMargins:
+    """Return the margin of the closing speed at every instant of a run, as if the robot touched then.
+
+    Parameters
+    ----------
+    trajectory : navigation.Trajectory
+        The run: its ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``.
+    base, covering, regions, area
+        As for `contact_speed_limit`. The lowest speed of all regions and classes counts.
+    robot_radius, person_radius : float
+        Radii in m, for the point of contact and for ``touching``.
+
+    Returns
+    -------
+    ContactMargins
+        Closing speeds, margins and verdicts.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or there is no region.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> from hrsafety import contact, navigation as nav, scenarios
+    >>> run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
+    >>> leg = SimpleNamespace(
+    ...     region="lower_leg", contact="transient", permitted=True, force=260.0, pressure=None,
+    ...     spring_constant=60e3, body_mass=75.0,
+    ... )
+    >>> found = contact.contact_margins(
+    ...     run, base=contact.HolonomicBase(mass=4.4, inertia=0.1), covering=None, regions=[leg],
+    ...     robot_radius=0.2, person_radius=0.4,
+    ... )
+    >>> bool(found.touching.any()), found.region
+    (False, 'lower_leg')
+    """
+    if not len(regions):
+        raise InvalidParameterError("regions", "name at least one limit", len(regions))
+    reach = positive("robot_radius", robot_radius)
+    near = reach + positive("person_radius", person_radius)
+    away = trajectory.obstacle_position - trajectory.position[:, None, :]
+    distance = np.linalg.norm(away, axis=2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        normal = away / distance[:, :, None]
+    walking = np.gradient(trajectory.obstacle_position, trajectory.time, axis=0)
+    share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
+    closing = share - np.einsum("nmk,nmk->nm", walking, normal)
+    limit, which = _limits(trajectory, base, covering, regions, normal, reach, area)
+    permitted = all(each.permitted for each in regions)
+    margin = limit - closing
+    verdict = np.where(margin >= 0.0, "within_limits", "exceeds")
+    verdict = np.where(np.isnan(limit), "not_checked", verdict)
+    verdict = np.where(closing <= 0.0, "within_limits", verdict if permitted else "not_permitted")
+    verdict = np.where(np.isnan(closing), "absent", verdict)
+    return ContactMargins(
+        time=np.asarray(trajectory.time),
+        closing_speed=closing,
+        robot_share=share,
+        margin=margin,
+        verdict=verdict,
+        touching=distance <= near,
+        region=which.region,
+        contact=which.contact,
+    )
+
+
+def _limits(
+    trajectory: Any, base: Base, covering: Any, regions: Sequence[Any], normal: Array, reach: float, area: float | None
+) -> tuple[Array, Any]:
+    """Return the lowest allowed speed at each instant and obstacle, and the region that it belongs to."""
+    if isinstance(base, HolonomicBase):
+        # The line to the person leads through the center: no direction differs from another.
+        found = contact_speed_limit(base, covering, (reach, 0.0), (1.0, 0.0), regions, area=area)
+        return np.broadcast_to(_lowest(found).speed, normal.shape[:2]), _lowest(found)
+    turned = np.asarray(trajectory.heading)[:, None]
+    angle = np.arctan2(normal[:, :, 1], normal[:, :, 0]) - turned
+    limit = np.full(normal.shape[:2], np.nan)
+    which: Any = None
+    for place in np.argwhere(np.isfinite(angle)):
+        direction = (math.cos(angle[tuple(place)]), math.sin(angle[tuple(place)]))
+        point = (reach * direction[0], reach * direction[1])
+        lowest = _lowest(contact_speed_limit(base, covering, point, direction, regions, area=area))
+        limit[tuple(place)] = lowest.speed
+        if which is None or lowest.speed < which.speed:
+            which = lowest
+    return limit, regions[0] if which is None else which
+
+
+def _lowest(found: Sequence[RegionSpeed]) -> RegionSpeed:
+    """Return the lowest speed; one that nothing limits counts last."""
+    return min(found, key=lambda each: number("speed", math.inf if math.isnan(each.speed) else each.speed))

@@ -1,0 +1,150 @@
+"""Chance that a speed is not allowed where inputs are uncertain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import checked_seed, count, number, positive, thread_count, word
+from hrsafety.contact.covering import Covering, Region, covering_of
+from hrsafety.contact.rows import NAMES, contact_row, in_order, limits_of
+from hrsafety.errors import InvalidParameterError
+
+__all__ = ["Exceedance", "probability"]
+
+MOST_DRAWS = 10**8
+_COUNTS = {"normal": 2, "lognormal": 2, "uniform": 2, "triangular": 3}
+
+
+class Exceedance(NamedTuple):
+    """Chance that a speed is not allowed.
+
+    Attributes
+    ----------
+    probability : float
+        Share of draws in which the allowed speed is below the speed.
+    interval : tuple of two floats
+        95 % interval after Clopper and Pearson.
+    quantiles : tuple of three floats
+        Allowed speeds that 5, 50 and 95 % of the draws stay below, in m/s.
+    exceeded, draws : int
+        Counts.
+    """
+
+    probability: float
+    interval: tuple[float, float]
+    quantiles: tuple[float, float, float]
+    exceeded: int
+    draws: int
+
+
+def _distribution(name: str, given: Mapping[str, object]) -> tuple[str, list[float]]:
+    """Return the word and the numbers of a distribution."""
+    if not isinstance(given, Mapping) or len(given) != 1:
+        raise InvalidParameterError(name, 'be a number or one distribution such as {"lognormal": [10.0, 0.2]}', given)
+    ((kind, values),) = given.items()
+    word(name, kind, tuple(_COUNTS))
+    if not isinstance(values, (tuple, list)) or len(values) != _COUNTS[kind]:
+        raise InvalidParameterError(f"{name}.{kind}", f"be {_COUNTS[kind]} numbers", values)
+    return kind, [number(f"{name}.{kind}", value) for value in values]
+
+
+def probability(
+    *,
+    speed: float,
+    robot_mass: float | Mapping[str, object],
+    body_mass: float | Mapping[str, object] | None = None,
+    region: Region | Mapping[str, object] | float | None = None,
+    limits: object = None,
+    covering: Covering | Mapping[str, object] | None = None,
+    area: float | None = None,
+    max_strain: float | None = None,
+    draws: int = 100_000,
+    seed: int = 0,
+    threads: int | None = None,
+    **uncertain: float | Mapping[str, object],
+) -> Exceedance:
+    """Return the chance that a closing speed is not allowed.
+
+    Any input may be ``{"normal": [mean, s]}``, ``{"lognormal": [median, s]}``, ``{"uniform": [a, b]}`` or
+    ``{"triangular": [a, c, b]}``. Normal numbers that are not positive are drawn again; a distribution of
+    which more than 1e-6 is not positive is an error.
+
+    Parameters
+    ----------
+    speed : float
+        Closing speed in m/s.
+    robot_mass, body_mass : float or mapping
+        As for `allowed_speed`, or uncertain.
+    region, limits, covering, area, max_strain
+        As for `allowed_speed`; their uncertain numbers are given by name.
+    draws : int
+        Number of draws, up to 1e8.
+    seed : int
+        The same seed gives the same bits for any number of threads.
+    threads : int or None
+        Number of threads; all cores when ``None``.
+    **uncertain : float or mapping
+        Numbers by name, as for `allowed_speeds`: ``stiffness``, ``force_limit``, ``thickness``, ...
+
+    Returns
+    -------
+    Exceedance
+        Share with its interval, and quantiles of the allowed speed.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number or a distribution is out of range, or the covering has a damper or a rate.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> found = contact.probability(
+    ...     speed=0.2621, robot_mass={"lognormal": [3.52, 0.2866]}, stiffness={"lognormal": [58610.0, 0.1044]},
+    ...     force_limit={"lognormal": [148.1, 0.2275]}, draws=20_000,
+    ... )
+    >>> found.interval[0] < 0.21266 < found.interval[1]
+    True
+    """
+    pad = covering_of(covering)
+    if pad is not None and (pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0)):
+        raise InvalidParameterError("covering", "have neither damping nor rate for chances", pad)
+    names = {name: name for name in NAMES if not name.startswith("material_")}
+    if pad is not None:
+        names |= {name: f"material_{place}" for place, name in enumerate(pad.material.keys.values())}
+    given = {"robot_mass": robot_mass, **uncertain}
+    if body_mass is not None:
+        given["body_mass"] = body_mass
+    spring = region
+    if spring is None and "stiffness" in uncertain:
+        spring = 1.0
+    shared, values = contact_row(
+        robot_mass=1.0,
+        body_mass=None,
+        region=spring,
+        covering=pad,
+        tolerance=1e-8,
+        area=area,
+        max_strain=max_strain,
+    )
+    values |= limits_of(limits)
+    inputs = []
+    for name, value in given.items():
+        if name not in names:
+            raise InvalidParameterError("uncertain", f"be among {', '.join(names)}", name)
+        if isinstance(value, Mapping):
+            inputs.append((names[name], *_distribution(name, value)))
+        else:
+            values[names[name]] = positive(name, value)
+    found = _hrsafety.contact_exceedance(
+        shared,
+        in_order(values),
+        inputs,
+        speed=positive("speed", speed),
+        draws=count("draws", draws, most=MOST_DRAWS),
+        seed=checked_seed("seed", seed),
+        threads=thread_count(threads),
+    )
+    return Exceedance(**{**found, "interval": tuple(found["interval"]), "quantiles": tuple(found["quantiles"])})

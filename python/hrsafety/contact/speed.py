@@ -1,0 +1,427 @@
+"""Allowed closing speeds, least thicknesses, and what they hang on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, callback, number, positive
+from hrsafety.contact.covering import Covering, Region, covering_of
+from hrsafety.contact.rows import contact_row, in_order, limits_of
+from hrsafety.contact.simulation import _SPEED_WORDS, known, many
+from hrsafety.errors import InvalidParameterError
+from hrsafety.tables import Columns, Table
+
+__all__ = [
+    "AllowedSpeed",
+    "AllowedSpeeds",
+    "LeastThickness",
+    "allowed_speed",
+    "allowed_speeds",
+    "free_from_fixed_force",
+    "sensitivity",
+    "thickness",
+]
+
+_GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
+_STEP = 1e-5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AllowedSpeed:
+    """A closing speed at which every limit is just kept.
+
+    Attributes
+    ----------
+    speed : float or None
+        In m/s; ``None`` where nothing limits it.
+    governs : {"force", "pressure", "strain", "nothing"}
+        The limit that governs.
+    status : str
+        ``"closed_form"``; ``"monotone"`` or ``"several_crossings"`` by simulation (then the lowest one);
+        ``"unlimited_up_to_20"``; ``"unbounded_mass"`` with speed 0; ``"not_checked"`` without a limit;
+        ``"unfinished"`` if a simulation did not end.
+    speeds : dict of str to float or None
+        Speed at each limit by itself; ``None`` where it is not there or beyond the data.
+    bare_speed_force : float or None
+        Speed at the force limit without covering.
+    further : tuple of float
+        Further crossings in m/s.
+    not_checked : tuple of str
+        Limits that were not checked; they never count as kept.
+    robot_speed : float or None
+        Closing speed less the speed of the person towards the robot, at least 0.
+    human_speed : float
+        That speed, in m/s.
+    """
+
+    speed: float | None
+    governs: str
+    status: str
+    speeds: dict[str, float | None]
+    bare_speed_force: float | None
+    further: tuple[float, ...]
+    not_checked: tuple[str, ...]
+    robot_speed: float | None
+    human_speed: float
+
+
+def allowed_speed(
+    *,
+    robot_mass: float,
+    region: Region | Mapping[str, object] | float | None = None,
+    limits: object,
+    body_mass: float | None = None,
+    covering: Covering | Mapping[str, object] | None = None,
+    area: float | None = None,
+    max_strain: float | None = None,
+    robot_damping: float = 0.0,
+    robot_stiffness: float = 0.0,
+    body_damping: float = 0.0,
+    body_stiffness: float = 0.0,
+    stop: tuple[float, float] | None = None,
+    horizon: float = 0.2,
+    human_speed: float = 0.0,
+    tolerance: float = 1e-10,
+) -> AllowedSpeed:
+    """Return the closing speed at which a contact just keeps its limits.
+
+    From the stored energy, mu v^2/2 = W_c + W_b, where nothing is lost; by simulation with rate, damper,
+    supports or a stop.
+
+    Parameters
+    ----------
+    robot_mass : float
+        In kg; inf where the robot cannot yield.
+    region : Region, mapping, float or None
+        Spring of the region; a number is k in N/m, ``None`` a rigid region.
+    limits : mapping or object
+        ``force`` in N and ``pressure`` in Pa, of the class of contact; ``None`` is not checked.
+    body_mass : float or None
+        In kg; ``None``: clamped.
+    covering : Covering, mapping or None
+        ``None``: bare.
+    area : float or None
+        Contact area in m^2 of a bare contact; without it its pressure is not checked.
+    max_strain : float or None
+        Largest strain of the covering, its e_b when ``None``.
+    robot_damping, robot_stiffness, body_damping, body_stiffness, stop, horizon
+        As for `simulate`.
+    human_speed : float
+        Speed of the person towards the robot in m/s.
+    tolerance : float
+        Relative tolerance of simulations.
+
+    Returns
+    -------
+    AllowedSpeed
+        A closing speed with the limit that governs.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or the contact is not permitted.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> limits = {"force": 280.0, "pressure": 380e4}
+    >>> bare = contact.allowed_speed(robot_mass=16.35, body_mass=0.6, region=75e3, limits=limits, area=1e-4)
+    >>> round(bare.speed, 6), bare.governs
+    (1.343933, 'force')
+    """
+    shared, values = contact_row(
+        robot_mass=robot_mass,
+        body_mass=body_mass,
+        region=region,
+        covering=covering,
+        tolerance=tolerance,
+        area=area,
+        max_strain=max_strain,
+        robot_damping=robot_damping,
+        robot_stiffness=robot_stiffness,
+        body_damping=body_damping,
+        body_stiffness=body_stiffness,
+        stop=stop,
+        horizon=horizon,
+    )
+    values |= limits_of(limits)
+    walking = number("human_speed", human_speed)
+    if not math.isfinite(walking):
+        raise InvalidParameterError("human_speed", "be finite", human_speed)
+    found = _hrsafety.contact_speed(shared, in_order(values))
+    speed = known(found["speed"])
+    missing = [name for name in ("force", "pressure") if math.isnan(values[f"{name}_limit"])]
+    if covering is None and area is None and "pressure" not in missing:
+        missing.append("pressure")
+    return AllowedSpeed(
+        speed=speed,
+        governs=found["governs"],
+        status=found["status"],
+        speeds=dict(zip(("force", "pressure", "strain"), map(known, found["speeds"]), strict=True)),
+        bare_speed_force=known(found["bare_speed_force"]),
+        further=tuple(found["further"]),
+        not_checked=tuple(missing),
+        robot_speed=None if speed is None else max(speed - walking, 0.0),
+        human_speed=walking,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AllowedSpeeds(Table):
+    """Allowed closing speeds as arrays of the broadcast shape, NaN where there is none.
+
+    Attributes
+    ----------
+    speed, speed_force, speed_pressure, speed_strain, bare_speed_force : ndarray
+        In m/s, as in `AllowedSpeed`.
+    governs, status : ndarray of str
+        As in `AllowedSpeed`, and ``"invalid_"`` with a name for rows with a bad number.
+    """
+
+    speed: Array
+    speed_force: Array
+    speed_pressure: Array
+    speed_strain: Array
+    bare_speed_force: Array
+    governs: npt.NDArray[np.str_]
+    status: npt.NDArray[np.str_]
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Every field flattened.
+        """
+        return {each.name: getattr(self, each.name).ravel() for each in fields(self)}
+
+
+def allowed_speeds(
+    *,
+    robot_mass: npt.ArrayLike,
+    region: Region | Mapping[str, object] | float | None = None,
+    limits: object = None,
+    body_mass: npt.ArrayLike | None = None,
+    covering: Covering | Mapping[str, object] | None = None,
+    area: npt.ArrayLike | None = None,
+    max_strain: npt.ArrayLike | None = None,
+    tolerance: float = 1e-8,
+    threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+    **arrays: npt.ArrayLike,
+) -> AllowedSpeeds:
+    """Return many allowed speeds: a map over thickness and modulus, masses along a motion, a catalog.
+
+    Parameters
+    ----------
+    robot_mass, body_mass, area, max_strain : array_like
+        As for `allowed_speed`; a body mass of inf is clamped.
+    region, covering, limits, tolerance
+        As for `allowed_speed`, the same for all rows.
+    threads, progress
+        As for `batch`.
+    **arrays : array_like
+        As for `batch`, and ``force_limit`` (N) and ``pressure_limit`` (Pa).
+
+    Returns
+    -------
+    AllowedSpeeds
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a name is not known or an option out of range.
+    ShapeError
+        If the arrays do not broadcast.
+
+    Examples
+    --------
+    Which foam: a map over thickness and modulus.
+
+    >>> from hrsafety import contact
+    >>> pad = contact.Covering(material=contact.Linear(modulus=1e5), thickness=0.02, area=4e-3)
+    >>> found = contact.allowed_speeds(
+    ...     robot_mass=8.0, body_mass=40.0, region=25e3, limits={"force": 280.0}, covering=pad,
+    ...     thickness=[[0.01], [0.02]], modulus=[5e4, 1e5],
+    ... )
+    >>> found.speed.round(3).tolist(), found.governs[0].tolist()
+    ([[0.457, 0.854], [0.536, 0.96]], ['strain', 'force'])
+    """
+    callback("progress", progress)
+    shared, values = contact_row(robot_mass=1.0, body_mass=None, region=region, covering=covering, tolerance=tolerance)
+    values |= limits_of(limits)
+    given = {"robot_mass": robot_mass, "body_mass": body_mass, "max_strain": max_strain, "area": area}
+    varying = {name: value for name, value in given.items() if value is not None} | arrays
+    found, status, word, shape = many("speed", shared, values, varying, covering, None, threads, progress, _SPEED_WORDS)
+    return AllowedSpeeds(
+        **{name: values.reshape(shape) for name, values in found.items()}, governs=_GOVERNS[word], status=status
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LeastThickness:
+    """Least thickness of a covering for a speed.
+
+    Attributes
+    ----------
+    thickness : float or None
+        In m; 0 if bare is enough, ``None`` if not even 1 m suffices.
+    status : {"found", "bare_is_enough", "none_up_to_1_m"}
+        What was found. The strain counts: a thin pad may be slower than none.
+    """
+
+    thickness: float | None
+    status: str
+
+
+def thickness(
+    *,
+    speed: float,
+    robot_mass: float,
+    region: Region | Mapping[str, object] | float | None = None,
+    limits: object,
+    covering: Covering | Mapping[str, object],
+    body_mass: float | None = None,
+    max_strain: float | None = None,
+) -> LeastThickness:
+    """Return the least thickness of a covering at which a closing speed is allowed.
+
+    Parameters
+    ----------
+    speed : float
+        Wanted closing speed in m/s.
+    robot_mass, region, limits, body_mass, max_strain
+        As for `allowed_speed`.
+    covering : Covering or mapping
+        Law and shape; its own thickness does not matter and may be absent from a mapping.
+
+    Returns
+    -------
+    LeastThickness
+        With its status.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or the covering has a damper or a rate.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> pad = {"material": {"law": "linear", "E": 69690.0}, "shape": "flat", "area": 0.002481}
+    >>> found = contact.thickness(
+    ...     speed=1.064, robot_mass=6.709, body_mass=40.0, region=25e3, covering=pad,
+    ...     limits={"force": 360.0, "pressure": 420e4},
+    ... )
+    >>> round(found.thickness, 6), found.status
+    (0.051863, 'found')
+    """
+    if isinstance(covering, Mapping) and "thickness" not in covering:
+        covering = {**covering, "thickness": 0.01}
+    shared, values = contact_row(
+        robot_mass=robot_mass,
+        body_mass=body_mass,
+        region=region,
+        covering=covering,
+        tolerance=1e-8,
+        max_strain=max_strain,
+        closing_speed=positive("speed", speed),
+    )
+    values |= limits_of(limits)
+    value, status = _hrsafety.contact_thickness(shared, in_order(values))
+    return LeastThickness(thickness=known(value), status=status)
+
+
+def sensitivity(
+    *,
+    robot_mass: float,
+    region: Region | Mapping[str, object] | float,
+    limits: object,
+    body_mass: float | None = None,
+    covering: Covering | Mapping[str, object] | None = None,
+    area: float | None = None,
+    max_strain: float | None = None,
+) -> dict[str, float]:
+    """Return d ln v/d ln x of the allowed speed for every number x that is given, the largest first.
+
+    Parameters
+    ----------
+    robot_mass, region, limits, body_mass, covering, area, max_strain
+        As for `allowed_speed`; without supports and stop.
+
+    Returns
+    -------
+    dict of str to float
+        By name; central differences. At a tie of two limits each side has its own slope, and this is
+        the mean.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> found = contact.sensitivity(robot_mass=10.0, region=75e3, limits={"force": 280.0})
+    >>> {name: round(value, 6) for name, value in found.items()}
+    {'force_limit': 1.0, 'robot_mass': -0.5, 'stiffness': -0.5}
+    """
+    shared, values = contact_row(
+        robot_mass=robot_mass,
+        body_mass=body_mass,
+        region=region,
+        covering=covering,
+        tolerance=1e-10,
+        area=area,
+        max_strain=max_strain,
+    )
+    values |= limits_of(limits)
+    pad = covering_of(covering)
+    laws = [] if pad is None else list(pad.material.keys.values())
+    ends = [("bottoming_strain", "horizon", "backing_stiffness", "second_radius")]
+    found: dict[str, float] = {}
+    for name, value in values.items():
+        if name in ends[0] or not (math.isfinite(value) and value > 0.0):
+            continue
+        speeds = []
+        for factor in (1.0 + _STEP, 1.0 - _STEP):
+            moved = values | {name: factor * value}
+            if name == "radius" and moved["second_radius"] == value:
+                moved["second_radius"] = moved["radius"]
+            speeds.append(_hrsafety.contact_speed(shared, in_order(moved))["speed"])
+        slope = math.log(speeds[0] / speeds[1]) / math.log((1.0 + _STEP) / (1.0 - _STEP)) if min(speeds) > 0.0 else 0.0
+        label = laws[int(name.removeprefix("material_"))] if name.startswith("material_") else name
+        if abs(slope) > 1e-9:
+            found[label] = slope
+    return dict(sorted(found.items(), key=lambda item: -abs(item[1])))
+
+
+def free_from_fixed_force(*, force: float, robot_mass: float, body_mass: float) -> float:
+    """Return the peak force on a free body from that on a fixed measuring device, for linear contacts.
+
+    F_free = F_fixed sqrt(m_H/(m_R + m_H)).
+
+    Parameters
+    ----------
+    force : float
+        On the fixed device, in N.
+    robot_mass, body_mass : float
+        In kg.
+
+    Returns
+    -------
+    float
+        In N.
+
+    Examples
+    --------
+    >>> from hrsafety import contact
+    >>> round(contact.free_from_fixed_force(force=280.0, robot_mass=10.0, body_mass=0.6), 3)
+    66.616
+    """
+    share = positive("body_mass", body_mass) / (positive("robot_mass", robot_mass) + body_mass)
+    return positive("force", force) * math.sqrt(share)

@@ -1,0 +1,243 @@
+"""Contact: what is refused, what the statuses say, margins along a run."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import contact, scenarios
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError, ShapeError
+
+FOAM = {"law": "gibson_ashby", "E": 3e5, "plateau": 15e3, "e_D": 0.9}
+PAD: dict[str, Any] = {"material": FOAM, "thickness": 0.02, "shape": "flat", "area": 4e-3}
+HIT: dict[str, Any] = {
+    "robot_mass": 8.0,
+    "body_mass": 40.0,
+    "region": {"k": 25e3},
+    "closing_speed": 0.5,
+    "covering": PAD,
+}
+SPEED: dict[str, Any] = {
+    "robot_mass": 8.0,
+    "body_mass": 40.0,
+    "region": {"k": 25e3},
+    "covering": PAD,
+    "limits": {"force": 280.0},
+}
+
+
+def changed(changes: dict[str, Any]) -> dict[str, Any]:
+    """Return the collision with some changes; a dotted name changes the covering or its law."""
+    given: dict[str, Any] = {**HIT, "covering": {**PAD, "material": dict(FOAM)}}
+    for name, value in changes.items():
+        *path, last = name.split(".")
+        place = given
+        for part in path:
+            place = place[part]
+        place[last] = value
+    return given
+
+
+BAD = [
+    ({"robot_mass": 0.0}, "robot_mass", "finite and positive"),
+    ({"robot_mass": math.nan}, "robot_mass", "finite and positive"),
+    ({"body_mass": -1.0}, "body_mass", "finite and positive"),
+    ({"robot_damping": -1.0}, "robot_damping", "not negative"),
+    ({"closing_speed": math.inf}, "closing_speed", "finite"),
+    ({"horizon": 0.0}, "horizon", "positive"),
+    ({"horizon": 1e9}, "horizon", "at most 60"),
+    ({"tolerance": 1e-2}, "tolerance", "1e-12 to 1e-3"),
+    ({"stop": (0.0, 0.0)}, "stop.deceleration", "positive"),
+    ({"stop": 1.0}, "stop", "a time and a deceleration"),
+    ({"region": {"k": 0.0}}, "region.k", "positive"),
+    ({"region": {"k": 1e4, "K3": 1.0}}, "region", "no keys but"),
+    ({"region": {"k": 1e4, "n": 20.0}}, "region.n", "at most 10"),
+    ({"covering": None, "region": None}, "covering", "be given, or the region yield"),
+    ({"covering.thickness": 0.0}, "covering.thickness", "positive"),
+    ({"covering.area": -1.0}, "covering.area", "positive"),
+    ({"covering.shape": "round"}, "covering.shape", "one of"),
+    ({"covering.shape": "sphere"}, "covering.area", "be None"),
+    ({"covering.shape": "sphere", "covering.area": None}, "covering.radius", "be given"),
+    ({"covering.colour": 1.0}, "covering", "no keys but"),
+    ({"covering.damping": -1.0}, "covering.damping", "not negative"),
+    ({"covering.damping": 1e-3}, "covering.damping", "too_small"),
+    ({"covering.rate": (1.5, 0.0, 1.0)}, "covering.rate.base", r"within \[0, 1\]"),
+    ({"covering.rate": (0.5, 0.6, 1.0)}, "covering.rate.slope", r"within \[0, 1\]"),
+    ({"covering.rate": (0.5, 0.0, 0.0)}, "covering.rate.reference", "positive"),
+    ({"covering.rate": (0.5, 0.0)}, "covering.rate", "3 numbers"),
+    ({"covering.unloading": (0.0, 1.0)}, "covering.unloading.retained", "above 0 and at most 1"),
+    ({"covering.unloading": (1.1, 1.0)}, "covering.unloading.retained", "above 0 and at most 1"),
+    ({"covering.unloading": (0.5, 0.0)}, "covering.unloading.exponent", "positive"),
+    ({"covering.bottom": (1.0, 1e7)}, "covering.bottoming.strain", "below 1"),
+    ({"covering.bottom": (0.8, -1.0)}, "covering.bottoming.stiffness", "not negative"),
+    ({"covering.material.law": "gibson"}, "material.law", "one of"),
+    ({"covering.material.E": 0.0}, "covering.material.modulus", "positive"),
+    ({"covering.material.E": 2e4}, "covering.material.plateau", "below the plateau's end"),
+    ({"covering.material.e_D": 1.5}, "covering.material.lock", "at most 1"),
+    ({"covering.material.D": 1.0}, "covering.material.D", "above 1"),
+    ({"covering.material.x": 1.0}, "material", "no keys but"),
+    ({"covering.material": {"law": "linear"}}, "material.E", "be given"),
+    (
+        {"covering.material": {"law": "table", "strain": [0, 0.1, 0.2], "stress": [0, 5, 4]}},
+        "covering.material.stress[2]",
+        "at least the value before it",
+    ),
+    (
+        {"covering.material": {"law": "avalle", "A": 2e4, "E": 3e5, "m": 4.0, "B": 0.0, "n": 2.0}},
+        "covering.material.law",
+        "falls nowhere",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "name", "rule"), BAD, ids=[f"{next(iter(each[0]))}-{each[2]}" for each in BAD])
+def test_bad_numbers_are_refused_by_name(changes: dict[str, Any], name: str, rule: str) -> None:
+    with pytest.raises(InvalidParameterError, match=rule) as caught:
+        contact.simulate(**changed(changes))
+    assert caught.value.argument == name
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"limits": {"force": 0.0}}, "limits.force"),
+        ({"limits": {"pressure": math.inf}}, "limits.pressure"),
+        ({"limits": {"fource": 1.0}}, "limits"),
+        ({"limits": SimpleNamespace(permitted=False, force=1.0, pressure=None)}, "limits"),
+        ({"max_strain": 0.95}, "max_strain"),
+        ({"area": 1e-4}, "area"),
+        ({"covering": {**PAD, "bottom": (10.0, 0.0)}}, "max_strain"),
+    ],
+)
+def test_bad_limits_are_refused_by_name(changes: dict[str, Any], name: str) -> None:
+    with pytest.raises(InvalidParameterError) as caught:
+        contact.allowed_speed(**{**SPEED, **changes})
+    assert caught.value.argument == name
+
+
+def test_rows_with_bad_numbers_say_which() -> None:
+    found = contact.batch(
+        **{**HIT, "closing_speed": [0.5, 0.0, math.nan]}, thickness=[[0.02], [-1.0]], plateau=[[15e3], [15e3]]
+    )
+    assert found.status.tolist() == [
+        ["released", "no_impact", "invalid_closing_speed"],
+        ["invalid_thickness"] * 3,
+    ]
+    assert np.isfinite(found.peak_force).tolist() == [[True, False, False], [False] * 3]
+    table = contact.allowed_speeds(**SPEED, plateau=[15e3, 0.0])
+    assert table.status.tolist() == ["closed_form", "invalid_plateau"]
+    with pytest.raises(InvalidParameterError, match="did you mean"):
+        contact.batch(**HIT, thicknes=0.02)
+    with pytest.raises(ShapeError):
+        contact.batch(**{**HIT, "closing_speed": [0.1, 0.2]}, thickness=[0.1, 0.2, 0.3])
+
+
+def test_statuses() -> None:
+    assert contact.simulate(**{**HIT, "closing_speed": -1.0}).status == "no_impact"
+    points = {"law": "table", "strain": [0.0, 0.1], "stress": [0.0, 1e3]}
+    short = {"material": points, "thickness": 0.01, "area": 1e-3}
+    assert contact.simulate(**{**HIT, "covering": short}).status == "beyond_data"
+    heavy = contact.allowed_speed(**{**SPEED, "robot_mass": math.inf, "body_mass": None})
+    assert (heavy.speed, heavy.status) == (0.0, "unbounded_mass")
+    bare = contact.allowed_speed(robot_mass=8.0, region=25e3, limits={"pressure": 1e6})
+    assert (bare.speed, bare.status, bare.governs) == (None, "not_checked", "nothing")
+    assert bare.not_checked == ("force", "pressure")
+    walking = contact.allowed_speed(**SPEED, human_speed=100.0)
+    assert walking.robot_speed == 0.0
+    deep = contact.Covering(material=FOAM, thickness=0.05, shape="sphere", radius=0.009, half_width=0.01)
+    assert deep.column(0.006).status == ("outside_paraboloid", "beyond_pad", "edge")
+    with pytest.raises(InvalidParameterError, match="where the law ends"):
+        deep.column(0.046)
+    thin = contact.thickness(**SPEED, speed=0.05)
+    assert (thin.thickness, thin.status) == (0.0, "bare_is_enough")
+    never = contact.thickness(**SPEED, speed=1e3)
+    assert (never.thickness, never.status) == (None, "none_up_to_1_m")
+
+
+def test_supports_and_stops_are_solved_by_simulation() -> None:
+    held = contact.allowed_speed(**SPEED, robot_stiffness=2e4, robot_damping=200.0, stop=(0.01, 10.0))
+    assert held.status == "monotone"
+    assert held.speed is not None
+    hit = contact.simulate(
+        **{**HIT, "closing_speed": held.speed}, robot_stiffness=2e4, robot_damping=200.0, stop=(0.01, 10.0)
+    )
+    assert held.governs == "strain"
+    assert hit.peak_strain == pytest.approx(0.8, rel=1e-6)
+    assert hit.peak_force is not None
+    assert hit.peak_force < 280.0
+
+
+def test_sensitivities_of_a_bare_contact_are_known() -> None:
+    found = contact.sensitivity(robot_mass=10.0, body_mass=40.0, region=75e3, limits={"force": 280.0})
+    assert found == pytest.approx(
+        {"force_limit": 1.0, "robot_mass": -0.4, "body_mass": -0.1, "stiffness": -0.5}, rel=1e-8
+    )
+
+
+def test_distributions_are_checked() -> None:
+    given: dict[str, Any] = {"speed": 0.3, "region": 25e3, "limits": {"force": 140.0}, "draws": 2000}
+    sure = contact.probability(robot_mass=8.0, **given)
+    assert sure.probability in (0.0, 1.0)
+    for bad, rule in [
+        ({"normal": [8.0, 4.0]}, "be positive but for a chance"),
+        ({"lognormal": [-1.0, 1.0]}, "positive"),
+        ({"uniform": [3.0, 2.0]}, "upper end above"),
+        ({"triangular": [1.0, 5.0, 4.0]}, "most likely value"),
+        ({"gauss": [1.0, 2.0]}, "be one of"),
+        ({"normal": [1.0]}, "be 2 numbers"),
+        ({}, "one distribution"),
+    ]:
+        with pytest.raises(InvalidParameterError, match=rule):
+            contact.probability(robot_mass=bad, **given)
+    with pytest.raises(InvalidParameterError, match="be among"):
+        contact.probability(robot_mass=8.0, weight=3.0, **given)
+
+
+def test_materials_and_coverings_are_values() -> None:
+    pad = contact.Covering(**PAD)
+    assert pickle.loads(pickle.dumps(pad)) == pad
+    table = contact.StressTable(strain=[0, 0.5], stress=[0, 1e4])
+    assert pickle.loads(pickle.dumps(table)) == table
+    assert len({table, contact.StressTable(strain=[0, 0.5], stress=[0, 1e4])}) == 1
+    assert contact.Covering(**{**PAD, "material": table}).column(0.01).force == pytest.approx(40.0)
+
+
+@pytest.mark.parametrize("kind", [contact.HolonomicBase, contact.DifferentialBase])
+def test_margins_along_a_run(kind: Any) -> None:
+    run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
+    regions = [
+        SimpleNamespace(
+            region="lower_leg",
+            contact=contact_class,
+            permitted=True,
+            force=force,
+            pressure=None,
+            spring_constant=60e3,
+            body_mass=mass,
+        )
+        for contact_class, force, mass in (("transient", 260.0, 75.0), ("quasi_static", 130.0, math.inf))
+    ]
+    base = kind(mass=4.4, inertia=0.1)
+    found = contact.contact_margins(run, base=base, covering=None, regions=regions, robot_radius=0.2, person_radius=0.4)
+    present = np.isfinite(found.closing_speed)
+    assert found.contact == "quasi_static"
+    assert set(found.verdict[present].tolist()) <= {"within_limits", "exceeds"}
+    exceeds = found.verdict == "exceeds"
+    assert (found.margin[exceeds] < 0.0).all()
+    if kind is contact.HolonomicBase:
+        limit = 130.0 / math.sqrt(4.4 * 60e3)
+        assert (found.margin + found.closing_speed)[present] == pytest.approx(limit)
+    regions[0].permitted = False
+    refused = contact.contact_margins(
+        run, base=base, covering=None, regions=regions, robot_radius=0.2, person_radius=0.4
+    )
+    closing = present & (found.closing_speed > 0.0)
+    assert closing.any()
+    assert (refused.verdict[closing] == "not_permitted").all()
+    assert len(found.columns()["margin"]) == found.margin.size
