@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from api.arm_models import EXAMPLE, INERTIAL, LINKS, TWO, joint, robot
+from api.arms.arm_models import EXAMPLE, INERTIAL, LINKS, TWO, joint, robot
 from api.spoiled_files import spoiled
 from hrsafety import arms, standards
 from hrsafety.errors import HrsafetyError

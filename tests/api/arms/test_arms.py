@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from api.arm_models import EXAMPLE, INERTIA, INERTIAL, LINKS, TWO, joint, link, robot
+from api.arms.arm_models import EXAMPLE, INERTIA, INERTIAL, LINKS, TWO, joint, link, robot
 from hrsafety import arms, standards
 from hrsafety.errors import InvalidParameterError, ShapeError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-CORE = Path(__file__).resolve().parents[2] / "crates" / "vff_core" / "src"
+CORE = Path(__file__).resolve().parents[3] / "crates" / "vff_core" / "src"
 LOOP = "run/episode.rs"
 KERNEL = "run/rollout.rs"
 # No episode: a reference that is given over time is tracked, or a wheel turns on a bench; nothing is sensed, no law

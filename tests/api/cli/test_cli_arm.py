@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from api.arm_models import EXAMPLE  # needs the check above
+from api.arms.arm_models import EXAMPLE  # needs the check above
 from hrsafety import arms
 from hrsafety.cli import main
 
