@@ -1559,7 +1559,7 @@ class Sensor:
 
 # ---- static maps ----------------------------------------------------------------------------
 
-_Flags = npt.NDArray[np.bool_]
+_Occupied = npt.NDArray[np.bool_]
 
 @final
 class StaticMap:
@@ -1571,7 +1571,7 @@ class StaticMap:
         polylines: Sequence[tuple[_Array, float]],
         polygons: Sequence[_Array],
         discs: _Array,
-        grids: Sequence[tuple[_Flags, float, _Pair, float]],
+        grids: Sequence[tuple[_Occupied, float, _Pair, float]],
     ) -> Self: ...
     def clearance(self, points: _Array) -> _Array:
         """Return distances of points (n, 2), zero inside, in m."""
@@ -1594,7 +1594,7 @@ class StaticMap:
     def bounds(self) -> tuple[_Pair, _Pair] | None:
         """Return lower and upper corner in m."""
 
-def squared_cell_distances(occupied: _Flags) -> _Array:
+def squared_cell_distances(occupied: _Occupied) -> _Array:
     """Squared distances of cells from the nearest occupied one, in cells."""
 
 @final

@@ -61,7 +61,7 @@ def _add_solids(axes: Axes, drawn: StaticMap) -> None:
     from matplotlib.patches import Circle, Polygon
 
     patches: list[Any] = [Polygon(outline, closed=True) for outline in drawn.polygons]
-    patches += [Circle((x, y), radius) for x, y, radius in drawn.discs]  # type: ignore[union-attr]  # rows once made
+    patches += [Circle((x, y), radius) for x, y, radius in np.asarray(drawn.discs, dtype=np.float64).reshape(-1, 3)]
     thin = []
     for wall in drawn.walls:
         corners = np.asarray(wall.points)
