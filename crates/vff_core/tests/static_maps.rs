@@ -3,7 +3,13 @@
 
 use nalgebra::Vector2;
 use proptest::prelude::*;
+use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
+use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
+use vff_core::laws::{Situation, Stop};
+use vff_core::robots::HolonomicRobot;
+use vff_core::world::geometry::RobotState;
 use vff_core::world::map::{Capsule, GridPlace, MapShapes, StaticMap};
+use vff_core::world::scenario::{Rules, Scenario};
 
 type Point = Vector2<f64>;
 
@@ -273,4 +279,51 @@ fn what_is_no_wall_is_refused_with_its_rule() {
     assert!(refused(&|map| map.grid(&[true; 4], 2, grid(0.1, f64::NAN))).contains("yaw"));
     assert!(refused(&|map| map.grid(&[true; 4], 3, grid(0.1, 0.0))).contains("whole rows"));
     assert!(refused(&|map| map.grid(&[], 3, grid(0.1, 0.0))).contains("whole rows"));
+}
+
+/// A robot at rest at a place, with nobody around.
+fn alone(place: [f64; 2]) -> Situation<'static, f64> {
+    Situation {
+        time: 0.0,
+        bodies: &[],
+        robot: RobotState {
+            position: place.into(),
+            velocity: Point::zeros(),
+        },
+        heading: 0.0,
+        interval: 0.06,
+        stop: Stop::never(),
+    }
+}
+
+#[test]
+fn planners_of_whole_paths_keep_out_of_the_map() {
+    let mut shapes = MapShapes::new();
+    let trap = [[1.0, 1.5], [3.0, 1.5], [3.0, -1.5], [1.0, -1.5]];
+    shapes.polyline(&trap, 0.0).unwrap();
+    shapes
+        .polygon(&[[3.5, 2.0], [4.5, 2.0], [4.0, 3.0]])
+        .unwrap();
+    let map = shapes.map();
+    let (start, robot, rules) = ([2.0, 0.0], HolonomicRobot::default(), Rules::default());
+    let scene = Scenario::new(robot, start, [5.0, 0.0], Vec::new(), rules).unwrap();
+    let known = scene.clone().with_map(map.clone());
+    let least = |path: &[[f64; 2]]| {
+        let leg = |ends: &[[f64; 2]]| map.segment_clearance(ends[0].into(), ends[1].into());
+        path.windows(2).map(leg).fold(f64::INFINITY, f64::min)
+    };
+    let tree =
+        |scenario| TreePlanner::new(RapidlyExploringRandomTree::default(), scenario).unwrap();
+    let grid = |scenario| FieldDStarPlanner::new(FieldDStar::default(), scenario).unwrap();
+    for path in [
+        tree(&known).whole_path(&alone(start)),
+        grid(&known).whole_path(&alone(start)),
+    ] {
+        assert_eq!(path.first(), Some(&start));
+        assert_eq!(path.last(), Some(&[5.0, 0.0]));
+        assert!(least(&path) >= 0.25 - 1e-9, "{}", least(&path));
+    }
+    // Without the map the straight way leads through a wall.
+    assert_eq!(least(&tree(&scene).whole_path(&alone(start))), 0.0);
+    assert_eq!(least(&grid(&scene).whole_path(&alone(start))), 0.0);
 }

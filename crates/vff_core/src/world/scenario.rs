@@ -3,6 +3,7 @@
 use crate::error::{Failure, Given, Result, finite, finite_pair, positive};
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
 use crate::sensing::measurement::Measurement;
+use crate::world::map::StaticMap;
 use crate::world::obstacle::{Obstacle, Regions, Shape};
 use crate::world::region::{self, RobotLimits, Sensing};
 
@@ -73,6 +74,8 @@ pub struct Scenario {
     pub(crate) rules: Rules,
     pub(crate) measurement: Option<Measurement>,
     pub(crate) seed: u64,
+    /// What planners of whole paths know of walls.
+    pub(crate) map: Option<StaticMap>,
 }
 
 impl Scenario {
@@ -96,6 +99,14 @@ impl Scenario {
             rules,
             None,
         )
+    }
+
+    /// The same scenario with a map that planners of whole paths keep out of; other laws see the
+    /// boundary points that they are told of.
+    #[must_use]
+    pub fn with_map(mut self, map: StaticMap) -> Self {
+        self.map = Some(map);
+        self
     }
 
     /// The same for a two-wheel robot: its regions include the time that it needs to turn, and a
@@ -174,6 +185,7 @@ impl Scenario {
             rules: *rules,
             measurement: sensing.measurement,
             seed: 0,
+            map: None,
         })
     }
 

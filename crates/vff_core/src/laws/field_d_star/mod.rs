@@ -78,6 +78,8 @@ pub struct FieldDStarPlanner {
     /// Distance of the robot's center from an obstacle's surface, in m.
     growth: f64,
     max_speed: f64,
+    /// Walls of the map.
+    walls: Vec<Footprint>,
     grid: OccupancyGrid,
     search: IncrementalSearch,
     /// Path ahead in cells.
@@ -97,10 +99,17 @@ impl FieldDStarPlanner {
         let frame = Frame::new(start, parameters.room, parameters.resolution)?;
         let sides = [frame.columns, frame.rows];
         let first = frame.cell(frame.in_cells(start));
+        let growth = scenario.robot.radius + parameters.margin;
+        let corners = [[0.0; 2], sides.map(|count| count as f64)];
+        let corners = corners.map(|corner| frame.in_meters(corner));
+        let walls = scenario.map.as_ref();
         Ok(Self {
+            walls: walls.map_or_else(Vec::new, |map| {
+                Footprint::of_map(map, origin, growth, corners)
+            }),
             parameters,
             origin,
-            growth: scenario.robot.radius + parameters.margin,
+            growth,
             max_speed: scenario.robot.max_speed,
             grid: OccupancyGrid::new(frame),
             search: IncrementalSearch::new(sides, frame.goal, first)?,
@@ -187,10 +196,11 @@ impl FieldDStarPlanner {
     /// Brings grid and costs up to date.
     fn look(&mut self, situation: &Situation<'_, f64>) {
         let (origin, growth, horizon) = (self.origin, self.growth, self.parameters.horizon);
-        let footprints = situation
+        let bodies = situation
             .bodies
             .iter()
             .map(|body| Footprint::of(body, origin, growth, horizon));
+        let footprints = self.walls.iter().copied().map(Some).chain(bodies);
         let changed = self.grid.update(footprints).len();
         for number in 0..changed {
             let cell = self.grid.changed()[number];

@@ -1,6 +1,7 @@
 //! Ground that the center of the robot keeps out of: obstacles grown by its radius and a margin.
 
 use crate::world::geometry::Body;
+use crate::world::map::StaticMap;
 use crate::world::obstacle::Shape;
 
 /// A point, a segment or a rectangle, grown by a radius: a disc, the way that a disc takes, or a
@@ -65,6 +66,32 @@ impl Footprint {
             }
         };
         Some(footprint)
+    }
+
+    /// The walls of a map grown by the robot's radius and margin, as far as they reach into a box
+    /// from `low` to `high`; positions relative to `origin`. No path leads through the boundary of
+    /// what is filled, so its inside need not be told.
+    #[must_use]
+    pub fn of_map(
+        map: &StaticMap,
+        origin: [f64; 2],
+        growth: f64,
+        [low, high]: [[f64; 2]; 2],
+    ) -> Vec<Self> {
+        let walls = map.capsules().iter().map(|wall| {
+            let [from, to] = [wall.from, wall.to].map(|end| minus(end.into(), origin));
+            Self::swept_disc(from, to, wall.radius + growth)
+        });
+        let within = |footprint: &Self| {
+            let vertices = footprint.corners();
+            (0..2).all(|axis| {
+                let along = vertices.iter().map(|vertex| vertex[axis]);
+                let least = along.clone().fold(f64::INFINITY, f64::min) - footprint.radius;
+                let most = along.fold(f64::NEG_INFINITY, f64::max) + footprint.radius;
+                least <= high[axis] && low[axis] <= most
+            })
+        };
+        walls.filter(within).collect()
     }
 
     /// The vertices of the core.

@@ -122,6 +122,8 @@ pub struct TreePlanner {
     max_speed: f64,
     stopping: Stopping,
     tree: Tree,
+    /// Walls of the map.
+    walls: Vec<Footprint>,
     footprints: Vec<Footprint>,
     bodies: Vec<Body>,
     /// Path that is followed, relative to the goal.
@@ -149,10 +151,15 @@ impl TreePlanner {
             draws: parameters.draws,
             waypoints: parameters.waypoints,
         };
+        let grown = scenario.robot.radius + parameters.margin;
+        let walls = scenario.map.as_ref();
         Ok(Self {
+            walls: walls.map_or_else(Vec::new, |map| {
+                Footprint::of_map(map, origin, grown, [growth.low, growth.high])
+            }),
             parameters,
             origin,
-            growth: scenario.robot.radius + parameters.margin,
+            growth: grown,
             max_speed: scenario.robot.max_speed,
             stopping: Stopping {
                 radius: scenario.robot.radius,
@@ -205,6 +212,7 @@ impl TreePlanner {
         }
         let (origin, growth, horizon) = (self.origin, self.growth, self.parameters.horizon);
         let footprint = |body| Footprint::of(body, origin, growth, horizon);
+        self.footprints.extend_from_slice(&self.walls);
         self.footprints
             .extend(situation.bodies.iter().filter_map(footprint));
         let held = |point| self.footprints.iter().any(|ground| ground.holds(point));
