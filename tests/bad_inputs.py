@@ -45,6 +45,10 @@ FILES = {
     "chunk.wav": "RIFF\x14\x00\x00\x00WAVELIST\x7f\x7f\x00\x00" + 40 * "\x00",
     "search.checkpoint": "damaged",
     "timed_out.toml": "start = [3.9, 0.6]\ngoal = [0.0, 0.6]\ntime_limit = 1.0\n",
+    "outside.yaml": "image: ../map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
+    "blank.yaml": "resolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
+    "cut.yaml": "image: cut.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
+    "cut.pgm": "P5\n3 2\n255\nabcde",
     "degrees.toml": "start = [3.9, 0.6]\ngoal = [0.0, 0.6]\nheading = 90.0\n",
 }
 """Files that lie beside the caller."""
@@ -56,6 +60,7 @@ LAW = navigation.VirtualForceField()
 FOAM, ARM, HEAD = impact.FOAM_1, impact.MANIPULATOR_1, impact.Head.minimum()
 LIMITS = impact.FoamLimits()
 ARRAY = reactive.MicrophoneArray()
+TRAP = navigation.StaticMap.from_polylines([[(1.0, 1.5), (3.0, 1.5), (3.0, -1.5), (1.0, -1.5)]])
 AXIS = sweep.Axis(name="foam_stiffness", low=1e4, high=4e4, points=3)
 STUDY = sweep.ImpactStudy(manipulator=ARM, foam=FOAM, head=HEAD, fixed={"closing_speed": 1.0})
 PEOPLE = datasets.Recording(
@@ -78,6 +83,8 @@ NAMES = {
     "head": HEAD,
     "limits": LIMITS,
     "microphones": ARRAY,
+    "trap": TRAP,
+    "gate": navigation.StaticMap.from_polylines([[(1.0, -1.5), (1.0, 1.5)]]),
     "axis": AXIS,
     "study": STUDY,
     "people": PEOPLE,
@@ -136,6 +143,23 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "traffic without end": "scenarios.random_traffic(10**400, seed=0)",
         "people by fractions": "people.humans([1.0, 2.0], duration=1.0)",
         "masked positions": "nav.Human.from_path([0.0, 0.4], np.ma.masked_greater([[0.0, 0.0], [9.0, 0.0]], 5.0))",
+    },
+    "Static maps": {
+        "polygon that crosses itself": "nav.StaticMap.from_polygons([[(0, 0), (1, 1), (1, 0), (0, 1)]])",
+        "first corner repeated": "nav.StaticMap.from_polygons([[(0, 0), (1, 0), (1, 1), (0, 0)]])",
+        "polygon of two corners": "nav.StaticMap.from_polygons([[(0, 0), (1, 1)]])",
+        "wall of no length": "nav.StaticMap.from_polylines([[(1, 1), (1, 1)]])",
+        "occupancy as a share": "nav.StaticMap.from_grid([[0.0, 0.5]], resolution=0.1)",
+        "grid of one axis": "nav.StaticMap.from_grid([0, 1], resolution=0.1)",
+        "cells without size": "nav.StaticMap.from_grid([[0, 1]], resolution=0.0)",
+        "image outside of its folder": 'nav.StaticMap.from_map_server("outside.yaml")',
+        "map without image": 'nav.StaticMap.from_map_server("blank.yaml")',
+        "image that was cut off": 'nav.StaticMap.from_map_server("cut.yaml")',
+        "share of boundary points above one": "trap.boundary_points((0, 0), reach=1.0, kappa=1.5)",
+        "goal beside a wall": "nav.maps.Guide().plan(trap, radius=0.2, start=(0, 0), goal=(3.1, 0))",
+        "goal without a way": "nav.maps.Guide().plan(trap + gate, radius=0.2, start=(2, 0), goal=(5, 0))",
+        "nodes beyond memory": "nav.maps.Guide(spacing=1e-7).plan(trap, radius=0.2, start=(0, 0), goal=(5, 0))",
+        "lidar that looks around twice": "nav.sensing.Lidar(field_of_view=7.0)",
     },
     "Robots and laws": {
         "negative mass": "nav.HolonomicRobot(mass=-1.0)",
