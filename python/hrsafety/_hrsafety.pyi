@@ -108,6 +108,7 @@ __all__ = [
     "front_hypervolume",
     "gain_front",
     "guard_distance",
+    "guarded_law",
     "hic",
     "hic_of_pulse",
     "holonomic_wheels",
@@ -394,9 +395,6 @@ class Law:
     def named(name: str, **given: object) -> Law:
         """Return a law of the core's registry."""
 
-    def guarded(self, **given: object) -> Law:
-        """Return the law with parts around it."""
-
 @final
 class Yielding:
     """How a robot gives way."""
@@ -423,6 +421,9 @@ class Shield:
         people: list[tuple[_Pair, float, _Pair]],
     ) -> tuple[list[float], str, list[float]]:
         """Return the velocity that is commanded, the status, and the gap of wanted and commanded one."""
+
+def guarded_law(law: Law, **given: object) -> Law:
+    """Return the law with parts around it."""
 
 def shield_speed_bound(gap: float, angle: float, deceleration: float, person_speed: float) -> float:
     """Return the largest speed at an angle to a person, NaN where there is no limit."""

@@ -14,7 +14,6 @@ use vff_core::run::AnyLaw;
 use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;
 use crate::python_law::PythonLaw;
-use crate::safe::safe_law;
 
 /// A law of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -35,6 +34,15 @@ impl Law {
             field: None,
             python: false,
         })
+    }
+
+    /// A law around this one.
+    pub fn within(&self, any: AnyLaw) -> Self {
+        Self {
+            any,
+            field: None,
+            python: self.python,
+        }
     }
 
     /// Whether it runs under the interpreter, and so in the thread of its caller.
@@ -121,15 +129,5 @@ impl Law {
         let given = given.unwrap_or_default();
         let law = law_named(name, &given).map_err(CoreError::from)?;
         Self::made(&given, law)
-    }
-
-    /// The law with parts around it.
-    #[pyo3(signature = (**given))]
-    fn guarded(&self, given: Option<Keywords<'_>>) -> PyResult<Self> {
-        Ok(Self {
-            any: safe_law(&self.any, &given.unwrap_or_default())?,
-            field: None,
-            python: self.python,
-        })
     }
 }

@@ -143,7 +143,7 @@ mod _hrsafety {
         evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,
     };
     #[pymodule_export]
-    use crate::safe::{Shield, Yielding, shield_speed_bound};
+    use crate::safe::{Shield, Yielding, guarded_law, shield_speed_bound};
     #[pymodule_export]
     use crate::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
     #[pymodule_export]

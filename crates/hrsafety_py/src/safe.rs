@@ -6,11 +6,11 @@ use vff_core::laws::guide::TakeoverRule;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{self, Friendly, Guard, KnownVelocity, Limits, Person, View, Walls};
 use vff_core::laws::yielding;
-use vff_core::run::AnyLaw;
 use vff_core::world::geometry::RobotState;
 
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, parameter_class};
+use crate::laws::Law;
 use crate::maps::{Guide, StaticMap};
 
 parameter_class! {
@@ -118,8 +118,11 @@ pub fn shield_speed_bound(gap: f64, angle: f64, deceleration: f64, person_speed:
     shield::speed_bound(gap, angle, deceleration, person_speed).unwrap_or(f64::NAN)
 }
 
-/// A law with its parts, of the keywords of a caller.
-pub fn safe_law(law: &AnyLaw, given: &Keywords<'_>) -> PyResult<AnyLaw> {
+/// A law with its parts.
+#[pyfunction]
+#[pyo3(signature = (law, **given))]
+pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
+    let given = given.unwrap_or_default();
     let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
     let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
     let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
@@ -134,8 +137,9 @@ pub fn safe_law(law: &AnyLaw, given: &Keywords<'_>) -> PyResult<AnyLaw> {
         takeover: given.take("takeover")?,
         preferred_speed: given.take("preferred_speed")?,
         critical_distance: given.take("critical_distance")?,
-        ..SafeNavigation::bare(law.clone())
+        ..SafeNavigation::bare(law.any.clone())
     };
     given.done()?;
-    Ok(family.checked().map_err(CoreError::from)?.into())
+    let family = family.checked().map_err(CoreError::from)?;
+    Ok(law.within(family.into()))
 }

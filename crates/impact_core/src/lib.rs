@@ -8,9 +8,9 @@
 
 pub use numeric::error;
 
+pub mod allowed;
 pub mod arm;
 pub mod bare;
-pub mod allowed;
 pub mod batch;
 pub mod collision;
 pub mod columns;

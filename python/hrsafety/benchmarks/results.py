@@ -60,7 +60,8 @@ def read_rows(path: Path) -> list[Row]:
     """Return the rows of a file that was written before; a line that was cut off is left out."""
     if not path.exists():
         return []
-    lines = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
+    text = path.read_text(encoding="utf-8")
+    lines = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
     if not lines:
         return []
     if tuple(lines[0]) != NAMES:

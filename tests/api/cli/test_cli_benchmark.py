@@ -26,7 +26,7 @@ def test_entries() -> None:
     law = guarded.built(person_speed=1.0, preferred_speed=1.0)
     assert isinstance(law, SafeNavigation)
     assert entry("field").built(person_speed=1.0) == entry("field").law
-    with pytest.raises(InvalidParameterError, match="did you mean shield"):
+    with pytest.raises(InvalidParameterError, match='did you mean "shield"'):
         entry("field+sheild")
     with pytest.raises(InvalidParameterError, match="laws"):
         entry("fild")

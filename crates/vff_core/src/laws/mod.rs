@@ -16,6 +16,7 @@ pub mod reflex;
 pub mod registry;
 pub mod safe;
 pub mod shield;
+pub mod trace;
 pub mod tree;
 pub mod velocity_obstacle;
 pub mod yielding;
@@ -28,7 +29,7 @@ pub use masoud::Masoud;
 
 use crate::error::Result;
 use crate::lanes::{Real, Vector2};
-use crate::laws::safe::Trace;
+use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 

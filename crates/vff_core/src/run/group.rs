@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
-use crate::laws::safe::Trace;
+use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
 use crate::run::Interrupted;
 use crate::run::options::Options;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
-use crate::laws::safe::Trace;
+use crate::laws::trace::Trace;
 use crate::laws::{Command, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;

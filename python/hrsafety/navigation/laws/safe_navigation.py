@@ -117,7 +117,8 @@ class SafeNavigation(Law):
             raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
         helped = self.yielding is not None or self.guide is not None
         guide = Guide() if self.guide is None else self.guide
-        native = self.law._native.guarded(
+        native = _hrsafety.guarded_law(
+            self.law._native,
             shield=None if self.shield is None else self.shield._native,
             yielding=None if self.yielding is None else self.yielding._native,
             map=None if self.map is None else self.map._native,

@@ -3,11 +3,12 @@
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::guide::{Guidance, LocalGoal, Takeover, TakeoverRule};
-use crate::laws::safe::SafeNavigation;
+use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
     Decision, Guard, Limits, Status, TwistGuard, TwistState, TwistView, View,
 };
+use crate::laws::trace::Trace;
 use crate::laws::yielding::{Outlook, Yielder};
 use crate::laws::{Command, Situation};
 use crate::robots::differential::{DifferentialLimits, Twist};
@@ -16,18 +17,8 @@ use crate::run::Steering;
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
-/// What the parts did in the last control period.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trace {
-    /// Velocity that the law wanted, or the takeover, within its limit, in m/s.
-    pub wanted: Vector2<f64>,
-    /// Velocity that is commanded in m/s.
-    pub command: Vector2<f64>,
-    /// Whether the law was taken over from.
-    pub taken_over: bool,
-    /// What became of the wanted velocity.
-    pub status: Status,
-}
+/// A velocity beyond a limit by less than this share of it is within: the robot shortens it itself.
+const ROUNDING: f64 = 1e-9;
 
 /// A law with its parts.
 pub struct SafeLaw {
@@ -315,7 +306,7 @@ impl SafeLaw {
 /// A velocity shortened to a largest speed.
 fn slowed(velocity: Vector2<f64>, most: f64) -> Vector2<f64> {
     let speed = velocity.norm();
-    if speed > most {
+    if speed > most * (1.0 + ROUNDING) {
         velocity * (most / speed)
     } else {
         velocity

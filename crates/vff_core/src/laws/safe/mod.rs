@@ -4,144 +4,22 @@
 //! `wanted = law -> takeover -> yielding -> shield -> u`, `F = m (u - V)/T`. A wanted velocity that
 //! every part keeps is the law's own command, bit for bit.
 
+mod boundary;
 mod law;
 mod plans;
+mod settings;
 mod surroundings;
 
-pub use law::{SafeLaw, Trace};
+pub use law::SafeLaw;
 pub use plans::Plans;
+pub use settings::SafeNavigation;
 
-use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2};
-use crate::laws::guide::{Guidance, Guide, TakeoverRule};
-use crate::laws::safe::surroundings::boundary_obstacle;
-use crate::laws::shield::Shield;
-use crate::laws::yielding::Yielding;
+use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
-use crate::run::AnyLaw;
 use crate::world::geometry::RobotState;
-use crate::world::map::{MOST_POINTS, StaticMap};
 use crate::world::scenario::Scenario;
-
-/// A law with the parts around it.
-#[derive(Clone)]
-pub struct SafeNavigation {
-    /// The law that wants a velocity.
-    pub law: AnyLaw,
-    /// What stands and is known before.
-    pub map: Option<StaticMap>,
-    /// How ways are planned, if they are.
-    pub guide: Option<Guide>,
-    /// Plans that were made, shared by all runs.
-    pub plans: Plans,
-    /// The shield, if there is one.
-    pub shield: Option<Shield>,
-    /// How the robot gives way, if it does.
-    pub yielding: Option<Yielding>,
-    /// Whether a robot that makes no progress heads for its (local) goal by itself.
-    pub takeover: bool,
-    /// When that is, under a guide.
-    pub rule: TakeoverRule,
-    /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
-    /// `None`.
-    pub preferred_speed: Option<f64>,
-    /// Distance of the surfaces in m at which force laws brake, in place of their critical regions.
-    pub critical_distance: Option<f64>,
-}
-
-impl SafeNavigation {
-    /// A law with nothing around it.
-    #[must_use]
-    pub fn bare(law: AnyLaw) -> Self {
-        Self {
-            law,
-            map: None,
-            guide: None,
-            plans: Plans::default(),
-            shield: None,
-            yielding: None,
-            takeover: false,
-            rule: TakeoverRule::with_map(),
-            preferred_speed: None,
-            critical_distance: None,
-        }
-    }
-
-    /// Returns it if its numbers are allowed.
-    ///
-    /// # Errors
-    /// Names the number that is not.
-    pub fn checked(self) -> Result<Self> {
-        if let Some(shield) = self.shield {
-            shield.checked()?;
-        }
-        if let Some(yielding) = self.yielding {
-            yielding.checked()?;
-        }
-        if let Some(guide) = self.guide {
-            guide.checked()?;
-        }
-        self.rule.checked()?;
-        if let Some(speed) = self.preferred_speed {
-            positive("preferred_speed", speed)?;
-        }
-        if let Some(distance) = self.critical_distance {
-            not_negative("critical_distance", distance)?;
-        }
-        Ok(self)
-    }
-
-    /// What the law within is told of a scenario: a robot that is as fast as is preferred, and room
-    /// for the boundary points of the map.
-    fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
-        let mut inner = match self.preferred_speed {
-            Some(speed) => slowed(scenario, speed)?,
-            None => scenario.clone(),
-        };
-        if let Some(map) = &self.map {
-            check_start(map, scenario)?;
-            let point = boundary_obstacle(scenario.robot.radius);
-            inner
-                .obstacles
-                .extend(std::iter::repeat_n(point, MOST_POINTS));
-        }
-        Ok(inner)
-    }
-
-    /// The guide at work in a scenario.
-    fn guidance(&self, scenario: &Scenario) -> Result<Option<Guidance>> {
-        let Some(guide) = self.guide else {
-            return Ok(None);
-        };
-        let radius = scenario.robot.radius;
-        let ends = [scenario.start, scenario.goal];
-        let plan = self.plans.get(&guide, self.map.as_ref(), radius, ends)?;
-        Ok(Some(Guidance::new(guide, radius, plan)))
-    }
-}
-
-fn slowed(scenario: &Scenario, speed: f64) -> Result<Scenario> {
-    let most = scenario.robot.max_speed;
-    if speed > most {
-        let rule = format!("be at most the largest speed of the robot, {most} m/s");
-        let given = Given::Number(speed);
-        return Err(Failure::invalid("preferred_speed", rule, given));
-    }
-    scenario.slowed(speed)
-}
-
-/// Refuses a start in contact with the map.
-fn check_start(map: &StaticMap, scenario: &Scenario) -> Result<()> {
-    let radius = scenario.robot.radius;
-    let clearance = map.clearance(scenario.start.into());
-    if clearance > radius {
-        return Ok(());
-    }
-    let rule = format!("be farther from the map than the radius of the robot, {radius} m");
-    let given = Given::Pair(scenario.start);
-    let advice = format!("the map is {clearance:.4} m away");
-    Err(Failure::invalid("start", rule, given).mended_by(advice))
-}
 
 /// Robots side by side, each with a law and its parts.
 pub struct SafeLanes(Vec<SafeLaw>);

@@ -3,42 +3,19 @@
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
-use crate::laws::safe::SafeNavigation;
+use crate::laws::safe::boundary::boundary_obstacle;
+use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::shield::{Guard, KnownVelocity, Person, Walls};
 use crate::laws::yielding::{Passerby, Yielder};
 use crate::world::geometry::Body;
 use crate::world::map::{MOST_POINTS, StaticMap};
-use crate::world::motion::{BodyState, Motion};
-use crate::world::obstacle::{Limits, Obstacle, Regions, Shape};
+use crate::world::motion::BodyState;
+use crate::world::obstacle::{Regions, Shape};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 use crate::world::shape::PlacedShape;
 
-/// Distance of the surfaces at which a boundary point brakes a force law, in m.
-const CRITICAL: f64 = 0.001;
-
-/// Distance of the surfaces within which it acts on a force law, in m.
-const INFLUENCE: f64 = 0.3;
-
 /// Distance within which boundary points are shown to laws that choose velocities, in m.
 const REACH: f64 = 5.0;
-
-/// A boundary point of a map as an obstacle, for a robot of a radius in m.
-pub(super) fn boundary_obstacle(robot_radius: f64) -> PlacedObstacle {
-    PlacedObstacle {
-        obstacle: Obstacle {
-            shape: Shape::Disc { radius: 0.0 },
-            motion: Motion::at_rest([0.0; 2]),
-            limits: Limits::default(),
-        },
-        regions: Regions {
-            critical_radius: robot_radius + CRITICAL,
-            active_radius: robot_radius + INFLUENCE,
-        },
-        contact_distance: robot_radius,
-        stationary: true,
-        speed_bound: Some(0.0),
-    }
-}
 
 /// How an obstacle is dealt with.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -138,7 +138,8 @@ impl Limits {
     #[must_use]
     pub fn slowed(&self, velocity: Vector2<f64>) -> Vector2<f64> {
         let speed = velocity.norm();
-        if speed > self.max_speed {
+        // What is over it by rounding alone the robot itself shortens.
+        if speed > self.max_speed * (1.0 + SPEED_ROUNDING) {
             velocity * (self.max_speed / speed)
         } else {
             velocity
