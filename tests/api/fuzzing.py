@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety import HrsafetyError, datasets, impact, reactive, scenarios, sweep
+from hrsafety import HrsafetyError, arms, datasets, impact, reactive, scenarios, standards, sweep
 from hrsafety import navigation as nav
 
 NAN, INF = float("nan"), float("inf")
@@ -43,6 +43,9 @@ HEARD = reactive.record_burst(BURST, ARRAY, **SOUND)
 AXIS = sweep.Axis(name="foam_damping", low=0.0, high=100.0)
 WALK = {"time_s": [0.0, 0.4, 0.8], "person": [7, 7, 7], "position": [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]}
 RECORDING = datasets.Recording(**WALK)
+WEIGHED, LIMITS = arms.Arm.example(), standards.limits()
+POINT: dict[str, Any] = {"joints": np.zeros(6), "link": "tool", "point": (0.0, 0.0, 0.1), "threads": 1}
+APART = {"reaction_time": 0.1, "deceleration": 3.0, "human_speed": 1.6, "intrusion": 0.2, "uncertainty": 0.1}
 LEADER = reactive.FollowerLayouts(kind="static").scene(0)
 
 # Calls that are right, and cheap enough to be made thousands of times.
@@ -163,6 +166,33 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "locate": (reactive.locate, {"array": ARRAY, "delay_12": 1e-4, "delay_13": 2e-4, "arrival_deviation": 1e-6}),
     "locate_batch": (reactive.locate_batch, {"array": ARRAY, "delay_12": [1e-4], "delay_13": [2e-4], "threads": 1}),
     "jittered_fixes": (reactive.sound.jittered_fixes, {"array": ARRAY, **SOUND, "runs": 2, "seed": 0, "threads": 1}),
+    "Payload": (arms.Payload, {"link": "tool", "mass": 1.0, "center": (0.0, 0.0, 0.1), "inertia": np.zeros((3, 3))}),
+    "Arm.from_urdf": (
+        arms.Arm.from_urdf,
+        {"path_or_text": WEIGHED.urdf, "payload": ("tool", 1.0), "armature": {"elbow": 0.1}, "locked": ["turn"]},
+    ),
+    "Arm.effective_mass": (WEIGHED.effective_mass, POINT | {"direction": (1.0, 0.0, 0.0)}),
+    "Arm.point_masses": (WEIGHED.point_masses, POINT | {"direction": (1.0, 0.0, 0.0)}),
+    "Arm.velocity": (WEIGHED.velocity, POINT | {"rates": np.ones(6)}),
+    "workspace": (
+        arms.workspace,
+        {"arm": WEIGHED, "link": "tool", "samples": 4, "grid": None, "seed": 0},
+    ),
+    "along": (arms.along, {"arm": WEIGHED, "time": [0.0, 1.0, 2.0], "joints": np.zeros((3, 6)), "link": "tool"}),
+    "limits": (standards.limits, {"name_or_path": "iso_ts_15066_2016"}),
+    "LimitSet.contact": (LIMITS.contact, {"region": "chest", "contact": "transient", "area": "sternum"}),
+    "ContactLimit.verdict": (LIMITS.contact("chest").verdict, {"force": 100.0, "pressure": 1e5}),
+    "separation_distance": (standards.separation_distance, {"robot_speed": 1.0, **APART}),
+    "separation_speed": (standards.separation_speed, {"distance": 1.0, **APART}),
+    "speed_over_distance": (
+        standards.speed_over_distance,
+        {"distance": [0.5, 1.0], "contact_speed": 0.2, "max_speed": 1.0, **APART},
+    ),
+    "StoppingData": (
+        standards.StoppingData,
+        {"speed": [0.0, 1.0], "time": [0.0, 0.1], "distance": [0.0, 0.1], "load": 0.0, "extension": 0.0},
+    ),
+    "minimum_distance": (standards.minimum_distance, {"stopping_time": 0.3, "capability": 0.014, "height": None}),
     "random_crowd": (scenarios.random_crowd, {"people": 2, "seed": 0}),
     "random_traffic": (scenarios.random_traffic, {"obstacles": 2, "seed": 0}),
     "Recording": (datasets.Recording, dict(WALK)),

@@ -56,7 +56,7 @@ class Arm(Facts):
     ('turn', 'shoulder', 'elbow')
     >>> pose = {"shoulder": 0.4, "elbow": 1.4}
     >>> f"{arm.effective_mass(pose, link='tool', direction=(1, 0, 0)):.3f} kg, ISO {arm.iso_mass:.1f} kg"
-    '1.961 kg, ISO 14.5 kg'
+    '6.923 kg, ISO 14.5 kg'
     """
 
     urdf: str

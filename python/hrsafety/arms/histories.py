@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, vector, word
+from hrsafety._arguments import Array, instance, vector, word
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.inputs import poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule
@@ -151,7 +151,10 @@ def along(
     >>> str(history.verdict[history.worst])
     'within_limits'
     """
+    instance("arm", arm, Arm)
     word("robot_mass", robot_mass, RULES)
+    if limit is not None:
+        instance("limit", limit, ContactLimit)
     clock, poses = _instants(time), poses_of(joints, arm.joint_names)
     rates, spot = _rates_of(clock, poses), vectors_of("point", point)
     if spot.ndim != 1:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from hrsafety._arguments import Array, meant, number, numbers, readable
+from hrsafety._arguments import Array, meant, number, numbers, readable, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["Rows", "armature_of", "broadcast", "locked_of", "poses_of", "urdf_text", "vectors_of"]
@@ -42,10 +42,7 @@ def locked_of(given: object) -> tuple[str, ...]:
     """Return the names of locked joints."""
     if given is None:
         return ()
-    names = [given] if isinstance(given, str) else given
-    if not isinstance(names, Iterable) or isinstance(names, bytes):
-        raise InvalidParameterError("locked", "be names of joints", given)
-    found = tuple(names)
+    found = (given,) if isinstance(given, str) else tuple(sequence("locked", "be names of joints", given))
     for name in found:
         if not isinstance(name, str):
             raise InvalidParameterError("locked", "be names of joints", name)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety._arguments import Array, checked_seed, count, meant, number
+from hrsafety._arguments import Array, checked_seed, count, instance, meant, number
 from hrsafety._bounds import MOST_POINT_STATES
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.histories import plane_of
@@ -123,9 +123,10 @@ def workspace(
     --------
     >>> from hrsafety import arms
     >>> found = arms.workspace(arms.Arm.example(), link="tool", samples=200, seed=1)
-    >>> found.mass[found.worst] == found.mass.max()
+    >>> bool(found.mass[found.worst] == found.mass.max())
     True
     """
+    instance("arm", arm, Arm)
     poses = _poses_over(
         arm.joint_names,
         arm.limits,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, numbers
+from hrsafety._arguments import Array, number, numbers
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["CERTAINTIES", "CONTACTS", "ContactLimit", "Quantity", "Verdict"]
@@ -234,8 +234,8 @@ class ContactLimit:
         """
         missing = "not_checked" if self.permitted else "not_permitted"
         words = (
-            missing if force is None else str(self.force_verdict(force)),
-            missing if pressure is None else str(self.pressure_verdict(pressure)),
+            missing if force is None else str(self.force_verdict(number("force", force))),
+            missing if pressure is None else str(self.pressure_verdict(number("pressure", pressure))),
         )
         order = ("not_permitted", "exceeds", "not_checked", "within_limits")
         return Verdict(next(word for word in order if word in words), *words)

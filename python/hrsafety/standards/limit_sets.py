@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hrsafety._arguments import word
+from hrsafety._arguments import instance, word
 from hrsafety.standards.contact_limits import CONTACTS, ContactLimit, Quantity
 from hrsafety.tables import Columns, Table
 
@@ -122,6 +122,8 @@ class LimitSet(Table):
         """
         word("region", region, self.regions)
         word("contact", contact, CONTACTS)
+        if area is not None:
+            instance("area", area, str)
         of_region = [row for row in self.rows if row.region == region]
         chosen = of_region if area is None else self._of_area(of_region, area)
         whole = [row for row in of_region if row.area is None]

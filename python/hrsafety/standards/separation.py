@@ -298,7 +298,9 @@ def speed_over_distance(
     if target > contact:
         raise InvalidParameterError("target_speed", f"be at most contact_speed ({contact:g})", target_speed)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target)
-    distances, rows, braking, _ = _rows("distance", given, rules, deceleration, stopping)
+    single: dict[str, object] = {name: number(name, each) for name, each in rules.items()}
+    braked = None if deceleration is None else number("deceleration", deceleration)
+    distances, rows, braking, _ = _rows("distance", given, single, braked, stopping)
     if stopping is None:
         apart = _hrsafety.separation_speeds(distances, braking, rows)
         beyond = np.zeros(len(given), dtype=bool)

@@ -12,7 +12,7 @@ pytest.importorskip("matplotlib")
 
 from api.arms.arm_models import EXAMPLE  # needs the check above
 from hrsafety import arms
-from hrsafety.cli import main
+from hrsafety.cli import main, parsers
 
 ARM = arms.Arm.example()
 
@@ -108,3 +108,11 @@ def test_a_bad_urdf_is_named_with_its_element(robot: str, capsys: pytest.Capture
     Path(robot).write_text(EXAMPLE.replace('<mass value="12"/>', '<mass value="-12"/>'))
     assert main(["arm", robot]) == 2
     assert 'robot.urdf: link "upper_arm".mass must be finite and not negative, got -12.0' in capsys.readouterr().err
+
+
+def test_the_examples_of_the_help_are_understood() -> None:
+    lines = [line.split() for line in parsers._ARM_EXAMPLE.splitlines()]
+    commands = [words[1:] for words in lines if words[:1] == ["hrsafety"]]
+    assert len(commands) == 2
+    for words in commands:
+        assert parsers.parser().parse_args(words).command == "arm"
