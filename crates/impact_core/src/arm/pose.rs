@@ -1,8 +1,8 @@
 //! The kernel: one pose of an arm, its mass matrix, and the mobility of points on it.
 //!
-//! The matrix is eliminated here and not by the linear algebra library: `L D L^T` in loops of a length that
-//! is known when the program is compiled is faster for such small matrices, and shows at which joint
-//! the matrix is singular.
+//! The matrix is eliminated here and not by the linear algebra library: `L D L^T` needs no roots, its
+//! loops have a length that is known when the program is compiled, and a lost pivot shows at which
+//! joint the matrix is singular.
 
 use nalgebra::{Matrix3, Point3, SMatrix, SVector, Vector3};
 use numeric::error::{Failure, Given, Result};
