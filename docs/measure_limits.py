@@ -22,6 +22,7 @@ from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
 from hrsafety.navigation.trajectory import Outcome
 from hrsafety.reactive.sound.fixes import STATUS_WORDS as FIX_WORDS
+from hrsafety.standards.contact_limits import VERDICTS
 from measure_laws import LAWS
 from page_tables import DOCS, head, line, percent, print_or_write
 
@@ -90,6 +91,7 @@ def statuses() -> dict[str, list[str]]:
         "`outcome` of a run": list(get_args(Outcome)),
         "`status` of an impact": list(IMPACT_WORDS),
         "`status` of a located sound": list(FIX_WORDS),
+        "`verdict` of a limit of contact": list(VERDICTS),
         "`code` of a warning (`ResultWarning`)": warning_codes(),
     }
 
