@@ -59,7 +59,7 @@ def test_only_the_loop_moves_and_senses() -> None:
 
 def test_every_robot_is_stepped_by_the_loop() -> None:
     kinds = {kind for text in SOURCES.values() for kind in PARTS.findall(text)}
-    assert {"Navigation", "FollowerParts", "SkirtParts"} <= kinds
+    assert {"Navigation", "FollowerParts", "SkirtParts", "PursuitParts"} <= kinds
 
 
 @pytest.mark.parametrize("name", sorted(name for name, text in SOURCES.items() if re.search(r"\.step\(\)", text)))

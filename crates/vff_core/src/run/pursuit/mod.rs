@@ -15,6 +15,7 @@ use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::built::{Built, clock_of, robot_under};
+use crate::run::episode::{Episode, Parts};
 use crate::run::group::{AnyLaw, Steering};
 use crate::run::options::Clock;
 use crate::run::outcome::CONTACT_SPEED;
@@ -68,13 +69,15 @@ pub struct Pursued {
 /// What the robot knows of him: late and noisy positions, velocities from their differences.
 struct Tracked {
     noise: Option<(Noise, f64)>,
+    /// Motion step in s.
+    step: f64,
     /// Positions at the motion steps so far, in m.
     places: Vec<Vector2<f64>>,
     last: Option<Vector2<f64>>,
 }
 
 impl Tracked {
-    fn new(scenario: &Scenario, start: [f64; 2]) -> Self {
+    fn new(scenario: &Scenario, start: [f64; 2], step: f64) -> Self {
         let stream = scenario.obstacles.len() as u64;
         let measurement = scenario
             .measurement
@@ -85,18 +88,24 @@ impl Tracked {
         });
         Self {
             noise,
+            step,
             places: vec![start.into()],
             last: None,
         }
     }
 
+    /// Present position in m.
+    fn here(&self) -> Vector2<f64> {
+        self.places[self.places.len() - 1]
+    }
+
     /// State as measured once a control period.
-    fn measure(&mut self, clock: &Clock, velocity: Vector2<f64>) -> BodyState {
+    fn measure(&mut self, interval: f64, velocity: Vector2<f64>) -> BodyState {
         let now = self.places.len() - 1;
         let here = self.places[now];
         let (mut place, mut speed) = (here, velocity);
         if let Some((noise, latency)) = &mut self.noise {
-            let back = *latency / clock.step;
+            let back = *latency / self.step;
             let whole = (now as f64 - back).max(0.0);
             let first = whole_of(whole).min(now);
             let share = whole - first as f64;
@@ -105,7 +114,7 @@ impl Tracked {
             place += Vector2::from(noise.draw());
             speed = self
                 .last
-                .map_or(velocity, |last| (place - last) / clock.interval);
+                .map_or(velocity, |last| (place - last) / interval);
             self.last = Some(place);
         }
         BodyState {
@@ -122,17 +131,22 @@ fn whole_of(steps: f64) -> usize {
     (steps + 1e-9).floor() as usize
 }
 
-/// An episode under way.
-struct Pursuit<'a> {
+/// What an encounter consists of: a robot under a law, and somebody who answers to it.
+struct PursuitParts<'a> {
     scenario: &'a Scenario,
     pursuer: &'a Pursuer,
-    clock: Clock,
+    /// How long a force acts, in s.
+    interval: f64,
     robot: Box<dyn MotorDrive>,
     law: Box<dyn Steering>,
     tracked: Tracked,
     reading: Reading,
     found: Encounter,
-    step: usize,
+    rows: Option<&'a mut Pursued>,
+    /// Present instant in s.
+    time: f64,
+    /// Whether the time is over.
+    over: bool,
 }
 
 /// Runs a robot under a law against a pursuer, who takes the place of the last obstacle; the others
@@ -154,16 +168,15 @@ pub fn pursue(
         let given = Given::Found("none".into());
         return Err(Failure::invalid("obstacles", rule, given));
     }
-    let robot = robot_under(scenario, built, Some(law))?;
-    let reading = Reading::at(&built.start_in(scenario));
-    Pursuit {
+    let clock = clock_of(scenario, built)?;
+    let parts = PursuitParts {
         scenario,
         pursuer,
-        clock: clock_of(scenario, built)?,
-        robot,
+        interval: clock.interval,
+        robot: robot_under(scenario, built, Some(law))?,
         law: law.driven().steering(scenario)?,
-        tracked: Tracked::new(scenario, pursuer.start),
-        reading,
+        tracked: Tracked::new(scenario, pursuer.start, clock.step),
+        reading: Reading::at(&built.start_in(scenario)),
         found: Encounter {
             least_toward: f64::INFINITY,
             least_ahead: f64::INFINITY,
@@ -173,43 +186,24 @@ pub fn pursue(
             top_speed: 0.0,
             end_time: 0.0,
         },
-        step: 0,
-    }
-    .run(rows, interrupted)
+        rows,
+        time: 0.0,
+        over: false,
+    };
+    let mut ended = Episode::starting(parts, clock)?.run(interrupted)?.parts;
+    ended.keep();
+    ended.found.end_time = ended.time;
+    Ok(ended.found)
 }
 
-impl Pursuit<'_> {
-    fn run(
-        mut self,
-        mut rows: Option<&mut Pursued>,
-        interrupted: Interrupted<'_>,
-    ) -> Result<Encounter> {
-        while self.step < self.clock.steps && self.found.arrival_time.is_nan() {
-            if interrupted() {
-                return Err(Failure::Interrupted);
-            }
-            if let Some(rows) = rows.as_deref_mut() {
-                self.keep(rows);
-            }
-            self.decide(interrupted)?;
-            for _ in 0..self.clock.steps_per_sample {
-                self.travel();
-            }
-        }
-        if let Some(rows) = rows {
-            self.keep(rows);
-        }
-        self.found.end_time = self.clock.time(self.step);
-        Ok(self.found)
-    }
-
+impl PursuitParts<'_> {
     fn place(&self) -> Vector2<f64> {
-        self.tracked.places[self.step]
+        self.tracked.here()
     }
 
     /// Obstacles at the present motion step, the pursuer last.
     fn bodies(&self, state: BodyState) -> Vec<Body> {
-        let mut bodies = bodies_at(self.scenario, self.clock.time(self.step));
+        let mut bodies = bodies_at(self.scenario, self.time);
         if let Some(last) = bodies.last_mut() {
             last.state = state;
         }
@@ -218,42 +212,8 @@ impl Pursuit<'_> {
 
     /// Velocity of the pursuer now, in m/s.
     fn chased(&self) -> Vector2<f64> {
-        let time = self.clock.time(self.step);
         self.pursuer
-            .velocity(time, self.place(), &self.reading.robot)
-    }
-
-    fn decide(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
-        let velocity = self.chased();
-        let state = self.tracked.measure(&self.clock, velocity);
-        let bodies = self.bodies(state);
-        let time = self.clock.time(self.step);
-        let command = self.law.command(&Situation {
-            time,
-            bodies: &bodies,
-            robot: self.reading.robot,
-            heading: self.robot.known_heading(),
-            interval: self.clock.interval,
-            stop: Stop(interrupted),
-        });
-        if !command.force.norm().is_finite() {
-            return Err(Failure::NonFinite { run: 0, time });
-        }
-        self.robot.hold(&Order {
-            force: command.force,
-            fix: None,
-            clear: true,
-        });
-        Ok(())
-    }
-
-    /// One motion step of both.
-    fn travel(&mut self) {
-        let next = self.place() + self.chased() * self.clock.step;
-        self.reading = self.robot.step();
-        self.tracked.places.push(next);
-        self.step += 1;
-        self.look();
+            .velocity(self.time, self.place(), &self.reading.robot)
     }
 
     /// Takes down distances and speeds of the present motion step.
@@ -286,15 +246,74 @@ impl Pursuit<'_> {
         let to_go = (Vector2::from(self.scenario.goal) - robot.position).norm();
         self.found.to_go = self.found.to_go.min(to_go);
         if to_go <= self.scenario.rules.arrival_tolerance && self.found.arrival_time.is_nan() {
-            self.found.arrival_time = self.clock.time(self.step);
+            self.found.arrival_time = self.time;
         }
     }
 
-    fn keep(&self, rows: &mut Pursued) {
-        let robot = self.reading.robot;
-        rows.time.push(self.clock.time(self.step));
+    fn keep(&mut self) {
+        let (robot, place) = (self.reading.robot, self.place());
+        let Some(rows) = self.rows.as_deref_mut() else {
+            return;
+        };
+        rows.time.push(self.time);
         rows.position.extend(robot.position.lane(0));
         rows.velocity.extend(robot.velocity.lane(0));
-        rows.pursuer.extend(self.place().iter());
+        rows.pursuer.extend(place.iter());
     }
+}
+
+impl Parts for PursuitParts<'_> {
+    type Request = ();
+
+    fn ended(&self) -> bool {
+        self.over || !self.found.arrival_time.is_nan()
+    }
+
+    fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
+        self.keep();
+        let velocity = self.chased();
+        let state = self.tracked.measure(self.interval, velocity);
+        let bodies = self.bodies(state);
+        let command = self.law.command(&Situation {
+            time,
+            bodies: &bodies,
+            robot: self.reading.robot,
+            heading: self.robot.known_heading(),
+            interval: self.interval,
+            stop: Stop(interrupted),
+        });
+        if !command.force.norm().is_finite() {
+            return Err(Failure::NonFinite { run: 0, time });
+        }
+        self.robot.hold(&Order {
+            force: command.force,
+            fix: None,
+            clear: true,
+        });
+        Ok(true)
+    }
+
+    fn travel(&mut self, clock: &Clock, step: usize) {
+        let next = self.place() + self.chased() * clock.step;
+        self.reading = self.robot.step();
+        self.tracked.places.push(next);
+        self.time = clock.time(step + 1);
+        self.look();
+    }
+
+    fn look_around(&mut self, _clock: &Clock, _step: usize) {}
+
+    fn check(&self, time: f64) -> Result<()> {
+        let robot = self.reading.robot;
+        if (robot.position + robot.velocity + self.place()).norm().is_finite() {
+            return Ok(());
+        }
+        Err(Failure::NonFinite { run: 0, time })
+    }
+
+    fn time_over(&mut self, _time: f64) {
+        self.over = true;
+    }
+
+    fn sense(&mut self, _clock: &Clock, _step: usize) {}
 }
