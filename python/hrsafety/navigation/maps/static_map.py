@@ -2,72 +2,35 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, instance, not_negative, number, numbers, pair, points, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety._arguments import Array, Parameters, instance, not_negative, number, numbers, pair, points
+from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
 from hrsafety.navigation.maps.distances import occupied_cells
 from hrsafety.navigation.maps.map_server import read_map_server
+from hrsafety.navigation.maps.parts import (
+    Cells,
+    Wall,
+    checked_finite,
+    checked_place,
+    checked_points,
+    checked_wall,
+    corners_of,
+    counted,
+    items,
+    outline,
+)
 from hrsafety.navigation.obstacles import Disc, Rectangle
 
-__all__ = ["Cells", "StaticMap", "Wall"]
-
-Outline = tuple[tuple[float, float], ...]
-
-
-class Wall(NamedTuple):
-    """A wall along a polyline.
-
-    Attributes
-    ----------
-    points : tuple of (float, float)
-        Corners in m.
-    radius : float
-        Everything within this distance of the polyline belongs to the wall, in m.
-    """
-
-    points: Outline
-    radius: float
-
-
-class Cells(NamedTuple):
-    """An occupancy grid.
-
-    Attributes
-    ----------
-    bits : bytes
-        Occupied cells, row after row from the lowest y, as by ``numpy.packbits``.
-    shape : (int, int)
-        Rows and columns.
-    resolution : float
-        Side of a cell in m.
-    origin : (float, float)
-        Lower left corner of the first cell, in m.
-    yaw : float
-        Angle by which the grid is turned around it, in rad.
-    """
-
-    bits: bytes
-    shape: tuple[int, int]
-    resolution: float
-    origin: tuple[float, float]
-    yaw: float
-
-    @property
-    def occupied(self) -> npt.NDArray[np.bool_]:
-        """Which cells are occupied, (rows, columns)."""
-        rows, columns = self.shape
-        bits = np.unpackbits(np.frombuffer(self.bits, dtype=np.uint8), count=rows * columns)
-        return bits.astype(np.bool_).reshape(rows, columns)
+__all__ = ["StaticMap"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -111,15 +74,15 @@ class StaticMap(Parameters):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        walls = [_wall(f"walls[{i}]", wall) for i, wall in enumerate(_items("walls", self.walls))]
-        polygons = [points(f"polygons[{i}]", each) for i, each in enumerate(_items("polygons", self.polygons))]
+        walls = [checked_wall(f"walls[{i}]", wall) for i, wall in enumerate(items("walls", self.walls))]
+        polygons = [points(f"polygons[{i}]", each) for i, each in enumerate(items("polygons", self.polygons))]
         discs = numbers("discs", self.discs).reshape(0, 3) if np.size(self.discs) == 0 else numbers("discs", self.discs)
         if discs.ndim != 2 or discs.shape[1] != 3:
             raise ShapeError("discs", "(n, 3)", discs.shape)
-        grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(_items("grids", self.grids))]
+        grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(items("grids", self.grids))]
         self._set(
-            walls=tuple(Wall(_outline(corners), radius) for corners, radius in walls),
-            polygons=tuple(_outline(corners) for corners in polygons),
+            walls=tuple(Wall(outline(corners), radius) for corners, radius in walls),
+            polygons=tuple(outline(corners) for corners in polygons),
             discs=tuple((float(x), float(y), float(radius)) for x, y, radius in discs),
             grids=tuple(grids),
             _native=_hrsafety.StaticMap(
@@ -160,9 +123,9 @@ class StaticMap(Parameters):
         StaticMap(1 wall, x 2.9 to 3.1 m, y -1.6 to 1.6 m)
         """
         thickness = not_negative("radius", radius)
-        each = _items("polylines", polylines)
+        each = items("polylines", polylines)
         lines = [points(f"polylines[{i}]", line) for i, line in enumerate(each)]
-        return cls(walls=[Wall(_outline(line), thickness) for line in lines])
+        return cls(walls=[Wall(outline(line), thickness) for line in lines])
 
     @classmethod
     def from_polygons(cls, polygons: Iterable[npt.ArrayLike]) -> Self:
@@ -189,7 +152,7 @@ class StaticMap(Parameters):
         >>> nav.StaticMap.from_polygons([[(0, 0), (2, 0), (1, 1)]]).clearance([1.0, 0.5])
         0.0
         """
-        return cls(polygons=tuple(_items("polygons", polygons)))
+        return cls(polygons=tuple(items("polygons", polygons)))
 
     @classmethod
     def from_obstacles(cls, obstacles: Iterable[Disc | Rectangle]) -> Self:
@@ -217,10 +180,10 @@ class StaticMap(Parameters):
         >>> nav.StaticMap.from_obstacles([table, nav.Disc(center=(0.0, 2.0), radius=0.5)]).clearance((0.0, 0.0))
         1.5
         """
-        each = _items("obstacles", obstacles)
+        each = items("obstacles", obstacles)
         kept = [instance(f"obstacles[{i}]", given, Disc, Rectangle) for i, given in enumerate(each)]
         discs = [(*given.center, given.radius) for given in kept if isinstance(given, Disc)]
-        boxes = [_corners(given) for given in kept if isinstance(given, Rectangle)]
+        boxes = [corners_of(given) for given in kept if isinstance(given, Rectangle)]
         return cls(polygons=boxes, discs=discs)
 
     @classmethod
@@ -346,7 +309,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If the points are no points.
         """
-        several = _points(point)
+        several = checked_points(point)
         found = self._native.clearance(several)
         return float(found[0]) if np.ndim(point) == 1 else found
 
@@ -368,7 +331,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If an end is no point.
         """
-        return self._native.segment_clearance(_place("start", start), _place("end", end))
+        return self._native.segment_clearance(checked_place("start", start), checked_place("end", end))
 
     def nearest(self, point: npt.ArrayLike) -> Array:
         """Return the boundary points nearest to points.
@@ -388,7 +351,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If the points are no points.
         """
-        found = self._native.nearest(_points(point))
+        found = self._native.nearest(checked_points(point))
         return found[0] if np.ndim(point) == 1 else found
 
     def ray(self, start: npt.ArrayLike, bearing: npt.ArrayLike) -> Any:
@@ -411,8 +374,8 @@ class StaticMap(Parameters):
         InvalidParameterError
             If an argument is not finite.
         """
-        bearings = _finite("bearing", numbers("bearing", bearing))
-        found = np.asarray(self._native.ray(_place("start", start), bearings.ravel().tolist()))
+        bearings = checked_finite("bearing", numbers("bearing", bearing))
+        found = np.asarray(self._native.ray(checked_place("start", start), bearings.ravel().tolist()))
         return float(found[0]) if bearings.ndim == 0 else found.reshape(bearings.shape)
 
     def boundary_points(self, point: npt.ArrayLike, *, reach: float, kappa: float = 0.5) -> Array:
@@ -448,7 +411,7 @@ class StaticMap(Parameters):
         array([[4., 0.],
                [4., 2.]])
         """
-        place = _place("point", point)
+        place = checked_place("point", point)
         return self._native.boundary_points(place, not_negative("reach", reach), number("kappa", kappa))
 
     @property
@@ -476,56 +439,10 @@ class StaticMap(Parameters):
     def __repr__(self) -> str:
         """Return what is in the map and how far it reaches."""
         counts = {"wall": self.walls, "polygon": self.polygons, "disc": self.discs, "grid": self.grids}
-        parts = [_counted(word, len(each)) for word, each in counts.items() if len(each)]  # type: ignore[arg-type]
+        parts = [counted(word, len(each)) for word, each in counts.items() if len(each)]  # type: ignore[arg-type]
         if self.bounds is None:
             return "StaticMap(nothing)"
         (left, low), (right, high) = self.bounds
         parts.append(f"x {left + 0.0:g} to {right + 0.0:g} m")
         parts.append(f"y {low + 0.0:g} to {high + 0.0:g} m")
         return f"StaticMap({', '.join(parts)})"
-
-
-def _counted(word: str, many: int) -> str:
-    return f"1 {word}" if many == 1 else f"{many} {word}s"
-
-
-def _items(name: str, given: object) -> list[Any]:
-    return sequence(name, "be a sequence", given)
-
-
-def _wall(name: str, given: object) -> tuple[Array, float]:
-    parts = sequence(name, "be a pair (points, radius)", given)
-    if len(parts) != 2:
-        raise InvalidParameterError(name, "be a pair (points, radius)", given)
-    return points(name, parts[0]), number(f"radius of {name}", parts[1])
-
-
-def _outline(corners: Array) -> Outline:
-    return tuple((float(x), float(y)) for x, y in corners)
-
-
-def _corners(box: Rectangle) -> Outline:
-    """Return the corners of a rectangle, counter-clockwise."""
-    cosine, sine = math.cos(box.heading), math.sin(box.heading)
-    (x, y), along, across = box.center, 0.5 * box.length, 0.5 * box.width
-    signs = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    places = [(a * along, b * across) for a, b in signs]
-    return tuple((x + cosine * u - sine * v, y + sine * u + cosine * v) for u, v in places)
-
-
-def _finite(name: str, given: Array) -> Array:
-    if not np.isfinite(given).all():
-        first = given.ravel()[~np.isfinite(given.ravel())][0]
-        raise InvalidParameterError(name, "be finite", float(first))
-    return given
-
-
-def _place(name: str, given: object) -> tuple[float, float]:
-    x, y = pair(name, given)
-    _finite(name, np.array([x, y]))
-    return x, y
-
-
-def _points(given: npt.ArrayLike) -> Array:
-    array = numbers("point", given)
-    return _finite("point", points("point", array.reshape(1, -1) if array.ndim == 1 else array))

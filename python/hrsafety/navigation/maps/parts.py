@@ -1,0 +1,109 @@
+"""Parts of a static map, and checks of what is given for them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, number, numbers, pair, points, sequence
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.obstacles import Rectangle
+
+__all__ = ["Cells", "Wall"]
+
+Outline = tuple[tuple[float, float], ...]
+
+
+class Wall(NamedTuple):
+    """A wall along a polyline.
+
+    Attributes
+    ----------
+    points : tuple of (float, float)
+        Corners in m.
+    radius : float
+        Everything within this distance of the polyline belongs to the wall, in m.
+    """
+
+    points: Outline
+    radius: float
+
+
+class Cells(NamedTuple):
+    """An occupancy grid.
+
+    Attributes
+    ----------
+    bits : bytes
+        Occupied cells, row after row from the lowest y, as by ``numpy.packbits``.
+    shape : (int, int)
+        Rows and columns.
+    resolution : float
+        Side of a cell in m.
+    origin : (float, float)
+        Lower left corner of the first cell, in m.
+    yaw : float
+        Angle by which the grid is turned around it, in rad.
+    """
+
+    bits: bytes
+    shape: tuple[int, int]
+    resolution: float
+    origin: tuple[float, float]
+    yaw: float
+
+    @property
+    def occupied(self) -> npt.NDArray[np.bool_]:
+        """Which cells are occupied, (rows, columns)."""
+        rows, columns = self.shape
+        bits = np.unpackbits(np.frombuffer(self.bits, dtype=np.uint8), count=rows * columns)
+        return bits.astype(np.bool_).reshape(rows, columns)
+
+
+def counted(word: str, many: int) -> str:
+    return f"1 {word}" if many == 1 else f"{many} {word}s"
+
+
+def items(name: str, given: object) -> list[Any]:
+    return sequence(name, "be a sequence", given)
+
+
+def checked_wall(name: str, given: object) -> tuple[Array, float]:
+    parts = sequence(name, "be a pair (points, radius)", given)
+    if len(parts) != 2:
+        raise InvalidParameterError(name, "be a pair (points, radius)", given)
+    return points(name, parts[0]), number(f"radius of {name}", parts[1])
+
+
+def outline(corners: Array) -> Outline:
+    return tuple((float(x), float(y)) for x, y in corners)
+
+
+def corners_of(box: Rectangle) -> Outline:
+    """Return the corners of a rectangle, counter-clockwise."""
+    cosine, sine = math.cos(box.heading), math.sin(box.heading)
+    (x, y), along, across = box.center, 0.5 * box.length, 0.5 * box.width
+    signs = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    places = [(a * along, b * across) for a, b in signs]
+    return tuple((x + cosine * u - sine * v, y + sine * u + cosine * v) for u, v in places)
+
+
+def checked_finite(name: str, given: Array) -> Array:
+    if not np.isfinite(given).all():
+        first = given.ravel()[~np.isfinite(given.ravel())][0]
+        raise InvalidParameterError(name, "be finite", float(first))
+    return given
+
+
+def checked_place(name: str, given: object) -> tuple[float, float]:
+    x, y = pair(name, given)
+    checked_finite(name, np.array([x, y]))
+    return x, y
+
+
+def checked_points(given: npt.ArrayLike) -> Array:
+    array = numbers("point", given)
+    return checked_finite("point", points("point", array.reshape(1, -1) if array.ndim == 1 else array))
