@@ -15,8 +15,7 @@ __all__ = ["PARTS", "Entry", "entry"]
 
 PARTS = ("shield", "yielding")
 """Parts that a word may add to a law."""
-_ORCA = nav.OptimalReciprocalCollisionAvoidance(horizon=2.0, margin=0.0)
-_OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField(), "orca": _ORCA})
+_OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField()})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,8 +77,8 @@ def entry(word: str) -> Entry:
     Parameters
     ----------
     word : str
-        A law (``field`` is the virtual force field, ``orca`` the reciprocal law with a horizon of 2 s and
-        no margin), then ``+shield`` and ``+yielding`` as wanted.
+        A law by its long or short name (``field`` is the virtual force field), then ``+shield`` and
+        ``+yielding`` as wanted.
 
     Returns
     -------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from hrsafety._arguments import checked_seed, count, positive, sequence, thread_count, word
@@ -102,12 +102,12 @@ def benchmark(
     return Result(suite=kind.name, rows=rows)
 
 
-def case_of(settings: dict[str, object], each: Entry, cases: Sequence[int]) -> Case:
+def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -> Case:
     """Return some episodes of an entry."""
     return Case(cases=cases, entry=each, **settings)  # type: ignore[arg-type]  # checked by the caller
 
 
-def _file(place: Path, suite: Suite, each: Entry, settings: dict[str, object]) -> Path:
+def _file(place: Path, suite: Suite, each: Entry, settings: Mapping[str, object]) -> Path:
     """Return where rows are kept; other settings have another file."""
     plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
     return place / f"{suite.name}-{plain}-v{settings['person_speed']:g}-seed{settings['seed']}.csv"
@@ -117,7 +117,7 @@ def _run(
     suite: Suite,
     each: Entry,
     runs: int,
-    settings: dict[str, object],
+    settings: Mapping[str, object],
     place: Path | None,
     heard: Callable[[int], None],
 ) -> list[Row]:

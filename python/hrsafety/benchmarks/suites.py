@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -112,6 +112,13 @@ def _rows(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
 # ---- discs that drift: S4 and S5 ------------------------------------------------------------
 
 
+def _among_discs(each: Entry) -> Entry:
+    """Return the entry as the protocol has it: the reciprocal law with a horizon of 2 s and no margin."""
+    if isinstance(each.law, nav.OptimalReciprocalCollisionAvoidance):
+        return replace(each, law=each.law.replaced(horizon=2.0, margin=0.0))
+    return each
+
+
 def _drifting(discs: int) -> Callable[[Case, int], tuple[nav.Scenario, nav.Law]]:
     def scene(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
         generator = np.random.default_rng(case.seed)
@@ -135,7 +142,8 @@ def _drifting(discs: int) -> Callable[[Case, int], tuple[nav.Scenario, nav.Law]]
             rest_time=15.0,
             arrival_tolerance=0.3,
         )
-        return place, case.entry.built(person_speed=case.person_speed, preferred_speed=LAW_SPEED)
+        law = _among_discs(case.entry).built(person_speed=case.person_speed, preferred_speed=LAW_SPEED)
+        return place, law
 
     return scene
 

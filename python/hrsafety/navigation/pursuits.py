@@ -89,7 +89,7 @@ class Falsification:
 
     Parameters
     ----------
-    property : str
+    property_name : str
         The property, ``"own"`` for one of your own.
     margin : ndarray, shape (n,)
         By how much it held in each episode, negative where it was broken; of CMA-ES the worst alone.
@@ -99,7 +99,7 @@ class Falsification:
         The episode of the least margin.
     """
 
-    property: str
+    property_name: str
     margin: Array
     episodes: int
     worst: Pursuit
@@ -204,13 +204,13 @@ def falsify(
     if how == "cma_es":
         numbers, margin = hunt.worst(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
         worst = _pursuit(hunt.replay(seed=seed, index=0, numbers=numbers))
-        return Falsification(property=kind, margin=np.array([margin]), episodes=episodes, worst=worst)
+        return Falsification(property_name=kind, margin=np.array([margin]), episodes=episodes, worst=worst)
     if callable(property):
         return _own(hunt, property, episodes, seed)
     margins = hunt.sweep(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)["margin"]
     index = int(np.argmin(margins))
     worst = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
-    return Falsification(property=kind, margin=margins, episodes=episodes, worst=worst)
+    return Falsification(property_name=kind, margin=margins, episodes=episodes, worst=worst)
 
 
 def _most(most: float | None, scenario: Scenario) -> float:
@@ -245,7 +245,7 @@ def _own(hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: 
         if worst is None or margin < least:
             worst, least = pursuit, margin
     assert worst is not None  # there is at least one episode
-    return Falsification(property="own", margin=np.array(margins), episodes=episodes, worst=worst)
+    return Falsification(property_name="own", margin=np.array(margins), episodes=episodes, worst=worst)
 
 
 def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:

@@ -51,7 +51,7 @@ def test_a_property_of_your_own() -> None:
         return float(pursuit.velocity[:, 0].min()) + 1e-9
 
     found = falsify(SCENE, ORCA, never_backwards, episodes=10)
-    assert found.property == "own"
+    assert found.property_name == "own"
     assert len(found.margin) == 10
 
 
