@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any
 
-from hrsafety import arms, impact, plotting, reactive, standards
+from hrsafety import arms, contact, impact, plotting, reactive, standards
 from hrsafety import navigation as nav
 
 BELOW = {
@@ -13,6 +13,7 @@ BELOW = {
     impact: ("criteria", "identification", "joints"),
     arms: (),
     standards: (),
+    contact: (),
     reactive: ("follower", "skirt", "sonar", "sound"),
     plotting: ("arms", "comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),
 }

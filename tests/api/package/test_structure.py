@@ -21,7 +21,7 @@ import pytest
 
 import hrsafety
 from api.namespaces import BELOW, places, public
-from hrsafety import arms, impact, reactive, standards
+from hrsafety import arms, contact, impact, reactive, standards
 from hrsafety import navigation as nav
 
 REPOSITORY = Path(__file__).resolve().parents[3]
@@ -246,7 +246,7 @@ def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
     optional |= {"jinja2", "markupsafe", "rich", "shtab"}
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
-    parts += ("arms", "standards")
+    parts += ("arms", "contact", "standards")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -314,7 +314,8 @@ def fields_of(kind: Any) -> list[str]:
 
 def public_fields() -> list[tuple[str, str]]:
     """Return (class, field) for every public record of the packages that compute."""
-    kinds = {name: kind for module in (nav, impact, reactive, arms, standards) for name, kind in public(module).items()}
+    packages = (nav, impact, contact, reactive, arms, standards)
+    kinds = {name: kind for module in packages for name, kind in public(module).items()}
     return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
 
 

@@ -121,12 +121,16 @@ fn a_speed_that_is_allowed_reaches_its_limit() {
         (collision.closing_speed, collision.horizon) = (found.speed, 10.0);
         let outcome = simulate(&collision, Wanted::default());
         let limits = limits(&case["input"]);
-        let share = match case["governs"].as_str().unwrap() {
-            "force" => outcome.peak_force / limits.force.unwrap(),
-            "pressure" => outcome.peak_pressure / limits.pressure.unwrap(),
-            "strain" => outcome.peak_strain / limits.max_strain.unwrap(),
-            other => panic!("{other}"),
-        };
+        let loads = [
+            ("force", outcome.peak_force, limits.force),
+            ("pressure", outcome.peak_pressure, limits.pressure),
+            ("strain", outcome.peak_strain, limits.max_strain),
+        ];
+        let (_, load, limit) = loads
+            .into_iter()
+            .find(|(name, ..)| case["governs"] == *name)
+            .unwrap();
+        let share = load / limit.unwrap();
         assert!((share - 1.0).abs() < 1e-8, "{case}: {share}");
     }
 }

@@ -8,11 +8,15 @@ use super::{Body, Collision, Region, Stop};
 use crate::covering::{
     Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Table, Unloading,
 };
-use crate::error::Result;
+use crate::error::{Failure, Given, Result};
 
 /// A number of a case, or what stands for an absent one.
 pub fn number_or(value: &Value, name: &str, absent: f64) -> f64 {
     value[name].as_f64().unwrap_or(absent)
+}
+
+fn unknown(name: &str, word: &str) -> Failure {
+    Failure::invalid(name, "be known", Given::Word(word.to_owned()))
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -51,7 +55,7 @@ fn material(value: &Value) -> Result<Material> {
             numbers(&value["strain"]),
             numbers(&value["stress"]),
         )?)),
-        other => panic!("unknown law {other}"),
+        other => return Err(unknown("law", other)),
     })
 }
 
@@ -67,7 +71,7 @@ pub fn pad(value: &Value) -> Result<Pad> {
             radius: of("radius"),
             length: of("length"),
         },
-        other => panic!("unknown shape {other}"),
+        other => return Err(unknown("shape", other)),
     };
     let rate = numbers(&value["rate"]);
     let unloading = numbers(&value["unloading"]);

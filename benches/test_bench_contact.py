@@ -1,0 +1,139 @@
+"""Contact: closed-form speeds, chances, maps and nonlinear collisions on one core, beside a plain SciPy solution.
+
+Rates are of the processor time of one thread; the accuracy of the collisions stands beside their speed.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from hrsafety import contact
+
+FOAM = contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9)
+POWERS = contact.Rusch(a=15e3, p=0.5, b=2e5, q=5.0)
+HAND: dict[str, Any] = {"region": 75e3, "limits": {"force": 280.0, "pressure": 380e4}}
+
+
+def pad(material: contact.Material, rate: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> contact.Covering:
+    return contact.Covering(material=material, thickness=0.02, area=4e-3, rate=rate)
+
+
+def rate(rows: int, work: Callable[[], object]) -> float:
+    """Return rows per second of processor time, the best of three."""
+    spent = []
+    for _ in range(3):
+        start = time.process_time()
+        work()
+        spent.append(time.process_time() - start)
+    return rows / min(spent)
+
+
+def test_closed_form_speeds(benchmark: Any) -> None:
+    masses = np.linspace(2.0, 30.0, 1_000_000)
+    for name, material in (("gibson_ashby", FOAM), ("linear", contact.Linear(modulus=2e5)), ("rusch", POWERS)):
+
+        def speeds(covering: contact.Covering = pad(material)) -> object:
+            return contact.allowed_speeds(robot_mass=masses, body_mass=0.6, covering=covering, threads=1, **HAND)
+
+        benchmark.extra_info[f"{name} per s"] = rate(len(masses), speeds)
+    benchmark.pedantic(speeds, rounds=1)
+    print({name: f"{value:.3g}" for name, value in benchmark.extra_info.items()})
+
+
+def test_map(benchmark: Any) -> None:
+    def speeds() -> object:
+        return contact.allowed_speeds(
+            robot_mass=8.0,
+            body_mass=0.6,
+            covering=pad(FOAM),
+            thickness=np.linspace(0.005, 0.05, 1000)[:, None],
+            plateau=np.linspace(5e3, 40e3, 1000),
+            threads=1,
+            **HAND,
+        )
+
+    print("map 1000 x 1000:", 1e6 / rate(10**6, speeds), "s")
+    benchmark.pedantic(speeds, rounds=1)
+
+
+def test_chance(benchmark: Any) -> None:
+    def chance() -> object:
+        return contact.probability(
+            speed=0.5,
+            robot_mass={"lognormal": [8.0, 0.2]},
+            body_mass=0.6,
+            stiffness={"lognormal": [75e3, 0.2]},
+            force_limit={"lognormal": [280.0, 0.2]},
+            covering=pad(FOAM),
+            region=75e3,
+            draws=10**6,
+            threads=1,
+        )
+
+    print("10^6 draws:", 1e6 / rate(10**6, chance), "s")
+    benchmark.pedantic(chance, rounds=1)
+
+
+def plain(speed: float, covering: contact.Covering) -> float:
+    """Return the peak force of a collision of 8 kg with 40 kg on a rigid region, by SciPy."""
+    law = covering.material
+    assert isinstance(law, contact.Rusch)
+    base, slope, reference = covering.rate
+    unit = covering.thickness * reference
+
+    def force(total: float, closing: float) -> float:
+        e = max(total, 0.0) / covering.thickness
+        f = covering.area * (law.a * e**law.p + law.b * e**law.q)  # type: ignore[operator]
+        return f * (1.0 + closing / unit) ** (base + slope * e) if closing > 0.0 else f
+
+    def motion(_: float, y: Any) -> list[float]:
+        return [y[1], -force(y[0], y[1]) * (1 / 8 + 1 / 40)]
+
+    def parted(t: float, y: Any) -> float:
+        return float(y[0]) if t > 1e-4 else 1.0
+
+    parted.terminal = True  # type: ignore[attr-defined]
+    found = solve_ivp(motion, (0.0, 0.2), [0.0, speed], rtol=1e-6, atol=1e-9, events=parted, dense_output=True)
+    times = np.linspace(0.0, found.t[-1], 400)
+    return max(force(*y) for y in found.sol(times).T)
+
+
+def test_collisions(benchmark: Any) -> None:
+    speeds = np.linspace(0.1, 0.6, 50_000)
+    for name, material, rated in (
+        ("gibson_ashby", FOAM, (0.0, 0.0, 1.0)),
+        ("rusch", POWERS, (0.0, 0.0, 1.0)),
+        ("gibson_ashby with rate", FOAM, (0.05, 0.02, 0.1)),
+        ("rusch with rate", POWERS, (0.05, 0.02, 0.1)),
+    ):
+        for region in (None, 25e3):
+
+            def collide(covering: contact.Covering = pad(material, rated), k: float | None = region) -> Any:
+                return contact.batch(
+                    robot_mass=8.0, body_mass=40.0, closing_speed=speeds, region=k, covering=covering, threads=1
+                )
+
+            exact = contact.batch(
+                robot_mass=8.0,
+                body_mass=40.0,
+                closing_speed=speeds[::500],
+                region=region,
+                covering=pad(material, rated),
+                tolerance=1e-11,
+            )
+            error = np.abs(collide().peak_force[::500] / exact.peak_force - 1.0).max()
+            kind = f"{name}, {'rigid' if region is None else 'spring'}"
+            print(f"{kind}: {rate(len(speeds), collide):.3g} per s, peak force within {error:.1e}")
+    benchmark.pedantic(collide, rounds=1)
+    covering = pad(POWERS, (0.05, 0.02, 0.1))
+    some = speeds[::2500]
+    start = time.process_time()
+    peaks = [plain(speed, covering) for speed in some]
+    spent = time.process_time() - start
+    ours = contact.batch(robot_mass=8.0, body_mass=40.0, closing_speed=some, covering=covering).peak_force
+    print(f"SciPy: {len(some) / spent:.3g} per s, peak force within {np.abs(np.array(peaks) / ours - 1).max():.1e}")
