@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from hrsafety import (
         arms,
+        benchmarks,
         cli,
         contact,
         datasets,
@@ -47,6 +48,7 @@ __all__ = [
     "SimulationError",
     "__version__",
     "arms",
+    "benchmarks",
     "cli",
     "contact",
     "datasets",

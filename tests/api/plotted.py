@@ -56,6 +56,7 @@ def made_up_run(*obstacles: nav.Obstacle, duration: float = 5.5, arrived: bool =
         min_clearance=least - radii,
         contact_time=np.full(len(obstacles), np.nan),
         contact_speed=np.full(len(obstacles), np.nan),
+        contact_at_fault=np.zeros(len(obstacles), dtype=bool),
         path_length=4.5,
         stabilizing=np.zeros_like(position),
         lyapunov=100.0 * np.exp(-time),

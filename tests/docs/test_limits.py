@@ -15,7 +15,7 @@ from page_tables import written
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = (REPOSITORY / "docs" / "limits.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| ([^|]+?) \| (\d+) \| (.+) \|$", re.MULTILINE)
-COLUMNS = {"min_clearance", "contacts_moving", "contacts_standing"}
+COLUMNS = {"min_clearance", "contacts_moving", "contacts_standing", "contacts_at_fault"}
 """What reports a limit and is a number, not a status."""
 
 

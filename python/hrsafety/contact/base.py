@@ -332,7 +332,7 @@ def contact_margins(
     ... )
     >>> found = contact.contact_margins(
     ...     run, base=contact.HolonomicBase(mass=4.4, inertia=0.1), covering=None, regions=[leg],
-    ...     robot_radius=0.2, person_radius=0.4,
+    ...     robot_radius=0.2, person_radius=0.1,
     ... )
     >>> bool(found.touching.any()), found.region
     (False, 'lower_leg')

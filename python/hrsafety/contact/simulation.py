@@ -299,7 +299,7 @@ def batch(
     ...     thickness=[[0.01], [0.02]],
     ... )
     >>> found.peak_force.round(1).tolist()
-    [[112.2, 224.4], [102.5, 204.9]]
+    [[106.9, 213.8], [96.1, 192.2]]
     """
     callback("progress", progress)
     varying = {"robot_mass": robot_mass, "closing_speed": closing_speed, **arrays}

@@ -253,7 +253,7 @@ def allowed_speeds(
     ...     thickness=[[0.01], [0.02]], modulus=[5e4, 1e5],
     ... )
     >>> found.speed.round(3).tolist(), found.governs[0].tolist()
-    ([[0.457, 0.854], [0.536, 0.96]], ['strain', 'force'])
+    ([[0.588, 0.874], [0.733, 1.029]], ['strain', 'force'])
     """
     callback("progress", progress)
     shared, values = contact_row(robot_mass=1.0, body_mass=None, region=region, covering=covering, tolerance=tolerance)

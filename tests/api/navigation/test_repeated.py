@@ -126,7 +126,7 @@ def test_an_exception_in_progress_ends_the_work() -> None:
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        nav.simulate_many(NOISY, LAW, seeds=100_000, paths=True, progress=stop)
+        nav.simulate_many(NOISY, LAW, seeds=40_000, paths=True, progress=stop)
 
 
 def test_pictures_have_an_axes_for_each_distance(runs: nav.RunTable) -> None:

@@ -129,7 +129,7 @@ def silent_defaults(text: str) -> list[str]:
             if line.strip() and len(line) - len(line.lstrip()) < indent:
                 break
             words = words or bool(WORD_ARM.match(line.lstrip()) and len(line) - len(line.lstrip()) == indent)
-        if words and not re.search(r"\bErr\(|Failure|\bunknown\(", arm["answer"]):
+        if words and not re.search(r"\bErr\(|Failure|\bunknown\(|\bpanic!\(", arm["answer"]):
             found.append(arm.group().strip().split("\n")[0])
     return found
 

@@ -254,6 +254,7 @@ def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Traj
         min_clearance=nothing,
         contact_time=nothing,
         contact_speed=nothing,
+        contact_at_fault=np.zeros(0, dtype=bool),
         path_length=float(np.abs(history["speed"][1:] * np.diff(history["time"])).sum()),
         **history,
     )
