@@ -41,7 +41,11 @@ def same(law: nav.Law) -> Any:
 
 
 def test_all_laws_of_the_package_are_here() -> None:
-    kinds = {name for name, kind in (vars(nav) | vars(nav.laws)).items() if isinstance(kind, type) and issubclass(kind, nav.Law)}
+    kinds = {
+        name
+        for name, kind in (vars(nav) | vars(nav.laws)).items()
+        if isinstance(kind, type) and issubclass(kind, nav.Law)
+    }
     assert kinds - {"Law", "PythonLaw", "SafeNavigation"} == set(LAWS)
 
 

@@ -72,7 +72,15 @@ RESULTS: dict[str, Callable[[], Table]] = {
 # A number without a unit, a word, a flag or an index.
 PLAIN = {"seed", "outcome", "law", "scenario", "stage", "evaluations", "best_value", "value", "violation", "action"}
 PLAIN |= {"status", "collided", "follows", "contact_obstacle"}
-PLAIN |= {"goal_phase", "entered_active", "contacts_moving", "contacts_standing", "contacts_at_fault", "descent_share", "force_evaluations"}
+PLAIN |= {
+    "goal_phase",
+    "entered_active",
+    "contacts_moving",
+    "contacts_standing",
+    "contacts_at_fault",
+    "descent_share",
+    "force_evaluations",
+}
 PLAIN |= {f"performance_{part}" for part in ("total", "arrival_time", "avoidance", "energy_saving")}
 UNIT = re.compile(r"_(s|m|rad|N|A|V|J|N2|m_per_s|m_per_s2|rad_per_s|N_per_m|N_per_m2)$")
 # Their columns are those of a sweep, whose units stand beside the names.
