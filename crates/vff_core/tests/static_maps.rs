@@ -115,6 +115,10 @@ fn boundary_points(capsules: &[Capsule], place: Point, reach: f64, kappa: f64) -
         else {
             break;
         };
+        // A boundary through the place itself is in no direction.
+        if point == place {
+            break;
+        }
         let to = point - place;
         let normal = to / to.norm();
         planes.push((normal, normal.dot(&place) + kappa * to.norm() - 1e-9));

@@ -1,4 +1,4 @@
-//! A plan: what it costs to go on from a place, and the local goal there.
+//! A plan: what the way from a place costs, and the local goal there.
 
 use std::sync::Arc;
 
