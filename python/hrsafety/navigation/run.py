@@ -137,7 +137,10 @@ class Run:
     def trace(self) -> SafetyTrace | None:
         """What the parts around the law did in the last control period; ``None`` without parts."""
         found = self._native.trace
-        return None if found is None else SafetyTrace(*found)
+        if found is None:
+            return None
+        (wanted_x, wanted_y), (x, y), taken_over, status = found
+        return SafetyTrace((wanted_x, wanted_y), (x, y), taken_over, status)
 
     def observe(self) -> Situation:
         """Return what the controller sees now, measured once a control period.

@@ -176,6 +176,9 @@ def test_it_is_a_law_like_any_other() -> None:
     stepped = nav.Run(scene, law)
     while not stepped.finished:
         stepped.step()
+        assert stepped.trace is not None
+        assert stepped.trace.status in {"kept", "changed", "braking"}
+        assert math.hypot(*stepped.trace.command) <= scene.robot.max_speed * (1 + 1e-9)
     assert stepped.time == run.arrival_time
     assert nav.evaluate(scene, law).total > 0.0
     found = nav.optimize_gains([scenarios.configuration("c1")], law, grid=(2, 2, 1, 1), refinements=0, local_starts=0)
