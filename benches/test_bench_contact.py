@@ -37,7 +37,8 @@ def test_closed_form_speeds(benchmark: Any) -> None:
     masses = np.linspace(2.0, 30.0, 1_000_000)
     for name, material in (("gibson_ashby", FOAM), ("linear", contact.Linear(modulus=2e5)), ("rusch", POWERS)):
 
-        def speeds(covering: contact.Covering = pad(material)) -> object:
+        def speeds(material: Any = material) -> object:
+            covering = pad(material)
             return contact.allowed_speeds(robot_mass=masses, body_mass=0.6, covering=covering, threads=1, **HAND)
 
         benchmark.extra_info[f"{name} per s"] = rate(len(masses), speeds)
@@ -113,7 +114,8 @@ def test_collisions(benchmark: Any) -> None:
     ):
         for region in (None, 25e3):
 
-            def collide(covering: contact.Covering = pad(material, rated), k: float | None = region) -> Any:
+            def collide(material: Any = material, rated: Any = rated, k: float | None = region) -> Any:
+                covering = pad(material, rated)
                 return contact.batch(
                     robot_mass=8.0, body_mass=40.0, closing_speed=speeds, region=k, covering=covering, threads=1
                 )

@@ -32,7 +32,7 @@ def corridor(seed: int) -> tuple[nav.StaticMap, nav.Scenario]:
     x = np.array([-1.0, 2.0, 4.5, 7.0, LENGTH])
     y = np.concatenate([[0.0, 0.0], np.cumsum(random.uniform(-1.5, 1.5, 3))])
     middle = np.stack([x, y], axis=1)
-    walls = [middle + (0.0, side * WIDTH) for side in (-0.5, 0.5)]
+    walls = [middle + np.array([0.0, side * WIDTH]) for side in (-0.5, 0.5)]
     goal = middle[-1] - (0.5 * (middle[-1] - middle[-2]) / np.hypot(*(middle[-1] - middle[-2])))
     ends = {"start": (0.0, 0.0), "goal": (float(goal[0]), float(goal[1]))}
     return nav.StaticMap.from_polylines(walls), nav.Scenario(robot=nav.HolonomicRobot(), obstacles=[], **ends)

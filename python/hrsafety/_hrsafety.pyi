@@ -54,8 +54,8 @@ __all__ = [
     "SkirtScene",
     "Slip",
     "Sonar",
-    "StoppingCurve",
     "StaticMap",
+    "StoppingCurve",
     "Tracking",
     "TriOmniKinematics",
     "UltrasonicSkirt",
@@ -140,9 +140,9 @@ __all__ = [
     "run_outcomes",
     "search_gains",
     "search_gains_globally",
-    "shield_speed_bound",
     "separation_distances",
     "separation_speeds",
+    "shield_speed_bound",
     "signal_push",
     "simulate",
     "simulate_batch",
@@ -328,7 +328,6 @@ class Obstacle:
         stop: _Pair | None,
         radius: float,
         limits: tuple[float | None, float | None, float | None],
-        /,
     ) -> Obstacle:
         """Return a disc with constant acceleration or a sudden stop."""
 
@@ -360,7 +359,6 @@ class Scenario:
         obstacles: Sequence[Obstacle],
         rules: tuple[float, float, float, float, float],
         noise: tuple[Measurement | None, int],
-        /,
     ) -> Self: ...
     def regions(self) -> list[tuple[float, float]]:
         """Return critical and active radius of every obstacle."""

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from hrsafety.navigation.knowledge import warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_run", "of_runs", "of_scenes"]
+
+MAP_CONTACTS_NOT_COUNTED = "map_contacts_not_counted"
 
 
 def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[ResultWarning, ...]:
@@ -24,7 +28,7 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
         Where it runs.
     law : Law
         What drives the robot. Only the virtual force field brakes in critical regions, so their size
-        says nothing about the other laws.
+        says nothing about the other laws, nor about one that a shield keeps safe.
     built : AsBuilt or None
         How the robot is built; a point mass that is told of everything when ``None``.
 
@@ -33,9 +37,22 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
     tuple of ResultWarning
         The warnings.
     """
-    about_regions = () if isinstance(law, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
+    brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
+    about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
     of_scene = (each for each in scenario.warnings if each.code not in about_regions)
-    return (*of_scene, *(() if built is None else warnings_of(scenario, built)))
+    return (*of_scene, *(() if built is None else warnings_of(scenario, built)), *_about_maps(law, built))
+
+
+def _about_maps(law: Law, built: AsBuilt | None) -> Iterator[ResultWarning]:
+    """Warn of walls that a law or a sensor knows: a run counts contacts with obstacles of its scenario only."""
+    seen = isinstance(law, SafeNavigation) and law.map is not None
+    if seen or any(isinstance(sensor, Lidar) and sensor.map is not None for sensor in (built.sensors if built else ())):
+        yield ResultWarning(
+            MAP_CONTACTS_NOT_COUNTED,
+            "map",
+            "outcome, contacts and clearances are those of the obstacles alone: a run through a wall of the map would "
+            "count as free of contacts; look at map.clearance(run.position) less the radius of the robot",
+        )
 
 
 def of_runs(

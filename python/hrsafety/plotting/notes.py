@@ -50,7 +50,8 @@ def add_warnings(figure: Figure, *results: object) -> None:
 
 def _legend_height(figure: Figure) -> float:
     """Return the height of the legends below all axes, with the space around them, in inches."""
-    tall = [float(legend.get_tightbbox().height) / float(figure.dpi) for legend in figure.legends]
+    boxes = [legend.get_tightbbox() for legend in figure.legends]
+    tall = [float(box.height) / float(figure.dpi) for box in boxes if box is not None]
     return max(tall) + 2.0 * _EDGE if tall else 0.0
 
 

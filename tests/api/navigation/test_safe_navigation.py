@@ -272,3 +272,16 @@ def test_a_start_in_contact_with_the_map_is_refused() -> None:
     scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0))
     with pytest.raises(InvalidParameterError, match="start must be farther from the map"):
         nav.simulate(scene, SafeNavigation(FIELD, map=walls))
+
+
+def test_runs_past_a_map_say_that_its_walls_are_not_counted() -> None:
+    walls = StaticMap.from_polylines([[(1.0, 1.0), (3.0, 1.0)]])
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0))
+    known = SafeNavigation(FIELD, map=walls)
+    codes = [each.code for each in nav.simulate(scene, known).warnings]
+    assert codes == ["map_contacts_not_counted"]
+    assert nav.simulate_many(scene, [known], seeds=2).warnings[0].code == "map_contacts_not_counted"
+    lidar = nav.robots.AsBuilt(sensors=[nav.sensing.Lidar(map=walls)])
+    assert "map_contacts_not_counted" in {each.code for each in nav.simulate(scene, FIELD, built=lidar).warnings}
+    assert not nav.simulate(scene, FIELD).warnings
+    assert not nav.simulate(scene, SafeNavigation(FIELD, shield=Shield())).warnings
