@@ -2,6 +2,7 @@
 
 /// Positive nodes on [-1, 1] and their weights, order 64.
 #[rustfmt::skip]
+#[allow(clippy::unreadable_literal)] // nodes and weights as tables print them
 const NODES: [(f64, f64); 32] = [
     (0.9993050417357722, 0.001783280721696433),
     (0.9963401167719553, 0.004147033260562468),
