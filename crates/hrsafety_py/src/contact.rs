@@ -163,12 +163,12 @@ fn single(numbers: Vec<f64>) -> CoreResult<Row> {
 /// One collision with its motion; a number that is out of range is an error.
 #[pyfunction]
 #[pyo3(signature = (shared, numbers, *, gravity))]
-pub fn contact_simulate<'py>(
-    py: Python<'py>,
+pub fn contact_simulate(
+    py: Python<'_>,
     shared: Shared,
     numbers: Vec<f64>,
     gravity: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Bound<'_, PyDict>> {
     let setup = shared.setup()?;
     let row = single(numbers)?;
     let wanted = Wanted {

@@ -15,6 +15,9 @@ use crate::run::trajectory_fields;
 use crate::situation::situation_fields;
 use crate::watch::{Report, here};
 
+/// Wanted and commanded velocity, whether the law was taken over from, and the status.
+type Told = ([f64; 2], [f64; 2], bool, &'static str);
+
 /// A run under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Run(Mutex<Episode<Navigation>>);
@@ -84,7 +87,7 @@ impl Run {
     /// Wanted and commanded velocity of the last control period, whether the law was taken over from,
     /// and the status, if the law has parts around it.
     #[getter]
-    fn trace(&self) -> PyResult<Option<([f64; 2], [f64; 2], bool, &'static str)>> {
+    fn trace(&self) -> PyResult<Option<Told>> {
         let trace = self.idle()?.trace();
         Ok(trace.map(|trace| {
             let word = trace.status.word();

@@ -109,14 +109,14 @@ impl Draw {
         }
     }
 
-    fn meet(&self, law: AnyLaw, index: u64) -> (Encounter, Pursuer) {
+    fn meet(&self, law: &AnyLaw, index: u64) -> (Encounter, Pursuer) {
         let built = Built {
             step: self.step,
             ..Built::default()
         };
         let hunt = Hunt {
             scenario: &self.scenario,
-            law: &law,
+            law,
             built: &built,
             max_speed: self.speed,
             free: self.free,
@@ -145,7 +145,7 @@ fn nobody_is_ahead_at_any_instant_whatever_the_limits() {
             let draw = Draw::of(seed, two_wheels);
             for (which, law) in laws.iter().enumerate() {
                 let law = shielded(law.clone(), draw.shield, seed % 2 == 0);
-                let (found, pursuer) = draw.meet(law, seed);
+                let (found, pursuer) = draw.meet(&law, seed);
                 assert!(
                     found.least_ahead > 0.0,
                     "seed {seed}, law {which}, two wheels {two_wheels}: {found:?} {pursuer:?}"
@@ -173,7 +173,7 @@ fn somebody_faster_than_is_assumed_breaks_it() {
             position_error: 0.0,
             ..draw.shield
         };
-        let (found, _) = draw.meet(shielded(law.clone(), shield, false), seed);
+        let (found, _) = draw.meet(&shielded(law.clone(), shield, false), seed);
         broken += u32::from(found.least_ahead <= 0.0);
     }
     assert!(broken > 0);
@@ -193,8 +193,8 @@ fn a_friendly_shield_keeps_people_their_way_to_stop() {
             ..draw.shield
         };
         let law = &laws()[1];
-        let (plain, _) = draw.meet(shielded(law.clone(), draw.shield, false), seed);
-        let (kept, _) = draw.meet(shielded(law.clone(), shield, false), seed);
+        let (plain, _) = draw.meet(&shielded(law.clone(), draw.shield, false), seed);
+        let (kept, _) = draw.meet(&shielded(law.clone(), shield, false), seed);
         assert!(kept.least_ahead > 0.0);
         larger += u32::from(kept.least_ahead > plain.least_ahead);
     }

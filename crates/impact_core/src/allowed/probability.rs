@@ -237,10 +237,10 @@ fn beta_quantile(share: f64, a: f64, b: f64) -> f64 {
 
 /// Regularized incomplete beta function by its continued fraction (Lentz).
 fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
+    const TINY: f64 = 1e-300;
     if x > (a + 1.0) / (a + b + 2.0) {
         return 1.0 - incomplete_beta(1.0 - x, b, a);
     }
-    const TINY: f64 = 1e-300;
     let scale =
         libm::lgamma(a + b) - libm::lgamma(a) - libm::lgamma(b) + a * x.ln() + b * (-x).ln_1p();
     let guard = |value: f64| if value.abs() < TINY { TINY } else { value };

@@ -78,7 +78,10 @@ impl Region {
     pub fn deflection(&self, force: f64) -> f64 {
         match *self {
             Self::Rigid => 0.0,
-            Self::Spring { stiffness, cubic } if cubic == 0.0 => force / stiffness,
+            Self::Spring {
+                stiffness,
+                cubic: 0.0,
+            } => force / stiffness,
             Self::Spring { .. } => covering::inverse_of(force, |x| self.force(x)),
             Self::Power {
                 stiffness,
@@ -92,7 +95,10 @@ impl Region {
     pub fn work(&self, force: f64) -> f64 {
         match *self {
             Self::Rigid => 0.0,
-            Self::Spring { stiffness, cubic } if cubic == 0.0 => 0.5 * force * force / stiffness,
+            Self::Spring {
+                stiffness,
+                cubic: 0.0,
+            } => 0.5 * force * force / stiffness,
             Self::Spring { stiffness, cubic } => {
                 let square = self.deflection(force).powi(2);
                 square * (0.5 * stiffness + 0.25 * cubic * square)

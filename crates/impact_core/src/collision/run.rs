@@ -7,7 +7,7 @@ use super::outcome::{Node, Outcome, Status};
 use super::statics::rest_of;
 use super::step::{Step, step};
 use super::{Collision, Region};
-use crate::covering::Shape;
+use crate::covering::{Pad, Shape};
 
 /// Most steps of a collision.
 const MOST_STEPS: usize = 200_000;
@@ -147,12 +147,12 @@ impl<'a, const N: usize> Run<'a, N> {
         let pad = collision.pad;
         Self {
             marks: Marks {
-                kinks: pad.map_or_else(Vec::new, |pad| pad.kinks()),
+                kinks: pad.map_or_else(Vec::new, Pad::kinks),
                 piece: 0,
                 largest: None,
                 end: pad
                     .filter(|pad| pad.covering.material.is_measured())
-                    .map(|pad| pad.bound()),
+                    .map(Pad::bound),
             },
             sizes: Sizes {
                 length,
@@ -235,7 +235,7 @@ impl<'a, const N: usize> Run<'a, N> {
             );
             self.evaluations += 6;
             let excess = self.excess(&taken);
-            if !(excess <= 1.0) {
+            if excess > 1.0 {
                 let factor = if excess.is_finite() {
                     (0.9 * excess.powf(-0.2)).max(0.2)
                 } else {
@@ -298,9 +298,10 @@ impl<'a, const N: usize> Run<'a, N> {
         for (error, scale) in taken.error.iter().zip(&self.scales) {
             if *scale > 0.0 {
                 let share = error.abs() / (collision.tolerance * scale);
-                if !(share <= worst) {
-                    worst = share;
+                if share.is_nan() {
+                    return f64::INFINITY;
                 }
+                worst = worst.max(share);
             }
         }
         worst
@@ -344,7 +345,7 @@ impl<'a, const N: usize> Run<'a, N> {
         let least = 1e-2 * self.sizes.sharpness.max(1e-13) * self.scales[PART];
         for _ in 0..8 {
             let mismatch = self.local.mismatch;
-            if !(mismatch.abs() > least) {
+            if mismatch.is_nan() || mismatch.abs() <= least {
                 break;
             }
             let (part, total) = (self.state[PART], self.state[TOTAL]);

@@ -344,7 +344,7 @@ fn check_gibson(law: &GibsonAshby) -> Result<()> {
     positive("lock", law.lock)?;
     within("lock", law.lock, 1.0)?;
     within("m", positive("m", law.m)?, MOST_EXPONENT)?;
-    if !(finite("D", law.d)? > 1.0) {
+    if finite("D", law.d)? <= 1.0 {
         return Err(Failure::invalid("D", "be above 1", Given::Number(law.d)));
     }
     let (start, end) = (law.yield_strain(), law.plateau_end());
@@ -367,7 +367,7 @@ fn check_rusch([a, p, b, q]: [f64; 4]) -> Result<()> {
         let rule = "be above 0 and at most 1";
         return Err(Failure::invalid("p", rule, Given::Number(p)));
     }
-    if !(finite("q", q)? > 1.0) {
+    if finite("q", q)? <= 1.0 {
         return Err(Failure::invalid("q", "be above 1", Given::Number(q)));
     }
     within("q", q, MOST_EXPONENT)?;

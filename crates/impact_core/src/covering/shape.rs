@@ -19,7 +19,7 @@ use super::quadrature::unit_integral;
 use crate::error::{Result, positive};
 
 /// `1/Gamma(5/2)`.
-const RAMP: f64 = 0.752_252_778_063_675_05;
+const RAMP: f64 = 0.752_252_778_063_675;
 
 /// Shape of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use serde_json::Value;
 
-use super::{Bottoming, Covering, GibsonAshby, Material, Pad, Shape, Table};
+use super::{Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Table, Unloading};
 
 fn number(value: &Value, name: &str) -> f64 {
     value[name].as_f64().unwrap_or(f64::NAN)
@@ -15,8 +15,8 @@ fn pad(material: Material, shape: Shape) -> Pad {
         thickness: 0.02,
         shape,
         damping: 0.0,
-        rate: Default::default(),
-        unloading: Default::default(),
+        rate: Rate::default(),
+        unloading: Unloading::default(),
         bottoming: Bottoming {
             strain: 0.8,
             stiffness: 1e6,

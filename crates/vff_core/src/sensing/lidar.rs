@@ -419,7 +419,7 @@ mod tests {
                 assert_eq!(noisy, 1.8);
             }
         }
-        let deviation: f64 = (squares / hits as f64).sqrt();
+        let deviation = f64::sqrt(squares / hits);
         assert!(
             hits > 500.0 && (deviation - 0.02).abs() < 0.002,
             "{deviation}"

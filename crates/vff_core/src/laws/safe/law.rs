@@ -91,7 +91,7 @@ impl SafeLaw {
             preferred: inner.robot.max_speed,
             mass: robot.mass,
             goal: scenario.goal.into(),
-            around: Surroundings::new(family, &inner)?,
+            around: Surroundings::new(family, &inner),
             law: family.law.driven().steering_with(gains, &inner, record)?,
             trace: Trace {
                 wanted: zero,

@@ -1,6 +1,5 @@
 //! What the law, the shield and yielding look at, each in its own words.
 
-use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::safe::boundary::boundary_obstacle;
@@ -62,12 +61,12 @@ pub(super) struct Surroundings {
 
 impl Surroundings {
     /// Of a scenario as the law within knows it.
-    pub fn new(family: &SafeNavigation, inner: &Scenario) -> Result<Self> {
+    pub fn new(family: &SafeNavigation, inner: &Scenario) -> Self {
         let map = family.map.clone();
         let people = inner.obstacles.len() - if map.is_some() { MOST_POINTS } else { 0 };
         let known = inner.obstacles[..people].iter();
         let boundary = boundary_obstacle(inner.robot.radius).regions;
-        Ok(Self {
+        Self {
             known: known.map(|placed| Known::of(family, placed)).collect(),
             map,
             hiding: if family.law.driven().chooses_velocities() {
@@ -81,7 +80,7 @@ impl Surroundings {
             people: Vec::new(),
             passersby: Vec::new(),
             shapes: Vec::new(),
-        })
+        }
     }
 
     /// What does not move.

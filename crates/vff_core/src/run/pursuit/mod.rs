@@ -112,9 +112,7 @@ impl Tracked {
             let next = self.places[(first + 1).min(now)];
             place = self.places[first] * (1.0 - share) + next * share;
             place += Vector2::from(noise.draw());
-            speed = self
-                .last
-                .map_or(velocity, |last| (place - last) / interval);
+            speed = self.last.map_or(velocity, |last| (place - last) / interval);
             self.last = Some(place);
         }
         BodyState {
@@ -305,7 +303,10 @@ impl Parts for PursuitParts<'_> {
 
     fn check(&self, time: f64) -> Result<()> {
         let robot = self.reading.robot;
-        if (robot.position + robot.velocity + self.place()).norm().is_finite() {
+        if (robot.position + robot.velocity + self.place())
+            .norm()
+            .is_finite()
+        {
             return Ok(());
         }
         Err(Failure::NonFinite { run: 0, time })

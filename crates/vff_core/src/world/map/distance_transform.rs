@@ -145,7 +145,7 @@ mod tests {
                 })
                 .collect();
             let found = squared_distances(&cells, columns).unwrap();
-            for at in 0..cells.len() {
+            for (at, found) in found.iter().enumerate() {
                 let square = |other: usize| {
                     let x = (at % columns).abs_diff(other % columns);
                     let y = (at / columns).abs_diff(other / columns);
@@ -153,7 +153,7 @@ mod tests {
                 };
                 let occupied = (0..cells.len()).filter(|other| cells[*other]);
                 let least = occupied.map(square).fold(f64::INFINITY, f64::min);
-                assert_eq!(found[at], least);
+                assert_eq!(*found, least);
             }
         }
     }
