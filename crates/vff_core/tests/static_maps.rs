@@ -139,10 +139,14 @@ fn point() -> impl Strategy<Value = [f64; 2]> {
 }
 
 fn walls() -> impl Strategy<Value = StaticMap> {
-    let wall = (point(), point(), prop_oneof![Just(0.0), 0.0..0.5_f64]);
+    // More than are kept in mind from one boundary point to the next, too.
+    let wall = || (point(), point(), prop_oneof![Just(0.0), 0.0..0.5_f64]);
     let disc = (point(), 0.01..0.8_f64);
     let all = (
-        prop::collection::vec(wall, 0..40),
+        prop_oneof![
+            prop::collection::vec(wall(), 0..40),
+            prop::collection::vec(wall(), 280..400),
+        ],
         prop::collection::vec(disc, 0..10),
     );
     all.prop_map(|(walls, discs)| {
