@@ -11,6 +11,9 @@ const RINGS: u32 = 12;
 /// Halvings of the distance between two rings.
 const HALVINGS: u32 = 6;
 
+/// Steps along the edge of what is admissible.
+const SLIDES: u32 = 16;
+
 /// A velocity and its distance from the wanted one.
 type Found = (f64, Vector2<f64>);
 
@@ -54,7 +57,38 @@ pub(super) fn nearest(
             None => inner = radius,
         }
     }
-    Some(found)
+    Some(slid(wanted, found, &mut admissible))
+}
+
+/// The velocity after steps of falling size that bring it nearer: it slides along the edge of what is
+/// admissible into corners that are narrower than the directions of a ring.
+fn slid(
+    wanted: Vector2<f64>,
+    found: Vector2<f64>,
+    admissible: &mut impl FnMut(Vector2<f64>) -> bool,
+) -> Vector2<f64> {
+    let (mut found, mut distance) = (found, (found - wanted).norm());
+    let mut step = 0.25 * distance;
+    for _ in 0..SLIDES {
+        let way = (wanted - found) * (1.0 / distance.max(f64::MIN_POSITIVE));
+        // Straight ahead, then ever more to either side.
+        let turned = |angle: f64| {
+            let turn = unit(angle);
+            Vector2::new(
+                way.x * turn.x - way.y * turn.y,
+                way.x * turn.y + way.y * turn.x,
+            )
+        };
+        let nearer = [0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2]
+            .into_iter()
+            .map(|angle| found + turned(angle) * step)
+            .find(|velocity| (velocity - wanted).norm() < distance && admissible(*velocity));
+        match nearer {
+            Some(velocity) => (found, distance) = (velocity, (velocity - wanted).norm()),
+            None => step *= 0.5,
+        }
+    }
+    found
 }
 
 /// An admissible velocity on a ring whose directions are turned by a part of their step.

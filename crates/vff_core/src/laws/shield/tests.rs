@@ -120,8 +120,8 @@ fn drawn(stream: &mut numeric::random::Stream) -> (Guard, RobotState<f64>, Vec<P
         velocity: polar(limits.max_speed),
     };
     let people = (0..2).map(|_| {
-        let away = polar(1.5) + polar(0.5);
-        let away = away * (1.0 + 0.9 / away.norm());
+        let away = polar(0.6);
+        let away = away * (1.0 + 0.7 / away.norm());
         Person {
             max_speed: 1.0,
             ..Person::disc(away.into(), 0.3)
@@ -134,7 +134,7 @@ fn drawn(stream: &mut numeric::random::Stream) -> (Guard, RobotState<f64>, Vec<P
 fn the_search_is_nearly_as_near_as_a_fine_grid() {
     let mut stream = numeric::random::Stream::new(7, 0);
     let (mut changed, mut missed) = (0, 0);
-    for _ in 0..120 {
+    for _ in 0..360 {
         let (guard, robot, people) = drawn(&mut stream);
         let view = View {
             robot,

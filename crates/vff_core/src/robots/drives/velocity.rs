@@ -40,7 +40,12 @@ pub(crate) fn twist_of(velocity: Vector2<f64>, heading: f64, period: f64) -> Twi
         angle -= std::f64::consts::PI.copysign(angle);
     }
     Twist {
-        speed,
+        // What only tells the direction is no motion: a robot that turns in place stays there.
+        speed: if speed.abs() < 2.0 * TOKEN {
+            0.0
+        } else {
+            speed
+        },
         turn_rate: angle / period,
     }
 }
@@ -99,7 +104,7 @@ mod tests {
         for (speed, turn_rate) in [(0.5, 1.0), (-0.3, 2.0), (0.7, -4.0), (0.2, 0.0), (0.0, 3.0)] {
             let twist = Twist { speed, turn_rate };
             let told = twist_of(velocity_of(twist, 0.8, 0.06), 0.8, 0.06);
-            assert!((told.speed - speed).abs() < 2e-7, "{told:?}");
+            assert!((told.speed - speed).abs() < 1e-15, "{told:?}");
             assert!((told.turn_rate - turn_rate).abs() < 1e-9, "{told:?}");
         }
         let rest = velocity_of(Twist::default(), 0.8, 0.06);
