@@ -347,6 +347,8 @@ class Measurement:
     """Measurement error."""
 
     def __new__(cls, *, scale: float, distribution: str, of: str, latency: float) -> Self: ...
+    def error_bound(self) -> float:
+        """Return the largest distance of a measured position from the one that is measured, in m."""
 
 @final
 class Scenario:

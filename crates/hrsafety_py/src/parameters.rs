@@ -221,6 +221,11 @@ impl Measurement {
             .and_then(|measurement| measurement.late(latency));
         Ok(Self(built.map_err(CoreError::from)?))
     }
+
+    /// Largest distance of a measured position from the one that is measured, in m.
+    fn error_bound(&self) -> f64 {
+        self.0.error_bound()
+    }
 }
 
 /// The meaning of a word among a few, or an error that shows what was given.

@@ -12,6 +12,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.shield_warnings import of_shield
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_run", "of_runs", "of_scenes"]
@@ -40,11 +41,14 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
     brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
     about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
     of_scene = (each for each in scenario.warnings if each.code not in about_regions)
-    return (*of_scene, *(() if built is None else warnings_of(scenario, built)), *_about_maps(law, built))
+    of_sensors = () if built is None else warnings_of(scenario, built)
+    return (*of_scene, *of_sensors, *_about_parts(scenario, law, built))
 
 
-def _about_maps(law: Law, built: AsBuilt | None) -> Iterator[ResultWarning]:
-    """Warn of walls that a law or a sensor knows: a run counts contacts with obstacles of its scenario only."""
+def _about_parts(scenario: Scenario, law: Law, built: AsBuilt | None) -> Iterator[ResultWarning]:
+    """Warn of a shield that assumes too little, and of walls: a run counts contacts with obstacles of its scenario."""
+    if isinstance(law, SafeNavigation) and law.shield is not None:
+        yield from of_shield(scenario, law.shield, built)
     seen = isinstance(law, SafeNavigation) and law.map is not None
     if seen or any(isinstance(sensor, Lidar) and sensor.map is not None for sensor in (built.sensors if built else ())):
         yield ResultWarning(

@@ -15,7 +15,7 @@ from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicR
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["BELOW_SAFE", "IN_CRITICAL_REGION", "found"]
+__all__ = ["BELOW_SAFE", "IN_CRITICAL_REGION", "found", "own_speed"]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
@@ -70,7 +70,7 @@ def _regions(scenario: Described) -> Iterator[ResultWarning]:
     """Yield critical regions in which the robot cannot be sure to stop."""
     for index, obstacle in enumerate(scenario.obstacles):
         given = obstacle.as_given()
-        sized, speed = _sized_for(given), _own_speed(given)
+        sized, speed = _sized_for(given), own_speed(given)
         faster = speed > sized + ROUNDING
         if not faster and given.critical_radius is None and given.critical_clearance is None:
             continue  # computed as the safe one
@@ -102,11 +102,22 @@ def _sized_for(obstacle: Obstacle) -> float:
     """Return the speed that the regions of an obstacle are sized for, in m/s."""
     if obstacle.max_speed is not None:
         return obstacle.max_speed
-    return 1.0 if isinstance(obstacle, Human) else _own_speed(obstacle)
+    return 1.0 if isinstance(obstacle, Human) else own_speed(obstacle)
 
 
-def _own_speed(obstacle: Obstacle) -> float:
-    """Return the largest speed that the motion of an obstacle is known to have, in m/s."""
+def own_speed(obstacle: Obstacle) -> float:
+    """Return the largest speed that the motion of an obstacle is known to have, in m/s.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        Who moves.
+
+    Returns
+    -------
+    float
+        Speed in m/s; 0 for what stands.
+    """
     if not isinstance(obstacle, (Human, MovingDisc)):
         return 0.0
     if obstacle.path is not None:
@@ -115,8 +126,13 @@ def _own_speed(obstacle: Obstacle) -> float:
         return max((math.dist(first, second) / (late - soon) for soon, late, first, second in steps), default=0.0)
     if obstacle.segments is None:
         return math.hypot(*obstacle.velocity)
-    starts = (math.hypot(*velocity) for _, velocity, _ in obstacle.segments)
-    return max(starts, default=0.0)
+    # The speed of an even acceleration is largest at one of its ends.
+    ends = (
+        math.hypot(*(speed + share * duration * gained for speed, gained in zip(velocity, acceleration, strict=True)))
+        for duration, velocity, acceleration in obstacle.segments
+        for share in (0.0, 1.0)
+    )
+    return max(ends, default=0.0)
 
 
 def _starts(scenario: Described) -> Iterator[ResultWarning]:
@@ -173,7 +189,7 @@ def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     person = isinstance(obstacle, Human)
     kind = "person_speed" if person else "obstacle_speed"
     found["radius"] = (getattr(obstacle, "radius", None), "person_radius" if person else "obstacle_size")
-    return found | {"velocity": (_own_speed(obstacle), kind), "max_speed": (obstacle.max_speed, kind)}
+    return found | {"velocity": (own_speed(obstacle), kind), "max_speed": (obstacle.max_speed, kind)}
 
 
 def _reach(scenario: Described) -> Iterator[ResultWarning]:

@@ -1,0 +1,71 @@
+"""A shield that assumes less than its scene has says nothing about the run, and every result tells so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from hrsafety import navigation as nav
+from hrsafety.navigation.laws import SafeNavigation, Shield
+from hrsafety.navigation.sensing import Measurement
+
+FIELD = nav.VirtualForceField()
+WALKER = nav.Human(start=(3.0, 3.0), velocity=(0.0, -1.2), max_speed=1.6)
+SCENE = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=(WALKER,))
+
+
+def warned(scene: nav.Scenario, shield: Shield, **options: Any) -> set[tuple[str, str]]:
+    run = nav.simulate(scene, SafeNavigation(FIELD, shield=shield), **options)
+    return {(each.code, each.subject) for each in run.warnings if each.code.startswith("shield")}
+
+
+def measured(of: str = "obstacles", **values: Any) -> nav.Scenario:
+    return replace(SCENE, measurement=Measurement(of=of, **values))
+
+
+def test_a_shield_that_covers_its_scene_carries_no_warning() -> None:
+    assert warned(SCENE, Shield(person_speed=1.2)) == set()
+    late = measured(scale=0.025, latency=0.1)
+    assert warned(late, Shield(latency=0.1, position_error=0.0354)) == set()
+    assert warned(SCENE, Shield(person_speed=None)) == set()
+
+
+@pytest.mark.parametrize(
+    ("scene", "shield", "subject", "told"),
+    [
+        (SCENE, Shield(person_speed=1.0), "shield.person_speed", "person_speed=1.2"),
+        (measured(scale=0.0, latency=0.1), Shield(), "shield.latency", "latency=0.1"),
+        (measured(scale=0.025), Shield(latency=0.2), "shield.position_error", "position_error=0.03536"),
+        (measured(scale=0.025, distribution="gaussian"), Shield(), "shield.position_error", "position_error=0.2"),
+        (measured("robot", scale=0.025), Shield(), "shield.margin", "margin=0.03536"),
+        (
+            measured(scale=0.003),
+            Shield(position_error=0.01, velocity_error=0.1, person_acceleration=1.0),
+            "shield.velocity_error",
+            "velocity_error=0.1414",
+        ),
+    ],
+)
+def test_what_a_scene_exceeds_is_named_with_the_least_that_covers_it(
+    scene: nav.Scenario, shield: Shield, subject: str, told: str
+) -> None:
+    assert warned(scene, shield) == {("shield_assumes_less", subject)}
+    run = nav.simulate(scene, SafeNavigation(FIELD, shield=shield))
+    assert [told in each.message for each in run.warnings if each.subject == subject] == [True]
+    table = nav.simulate_many(scene, [SafeNavigation(FIELD, shield=shield)], seeds=2)
+    assert "shield_assumes_less" in {each.code for each in table.warnings}
+
+
+def test_a_speed_that_is_reached_later_counts() -> None:
+    runner = nav.Human.from_segments(start=(3.0, 3.0), segments=[(1.0, (0.0, -0.5), (0.0, -2.0))], max_speed=3.0)
+    scene = replace(SCENE, obstacles=(runner,))
+    assert warned(scene, Shield(person_speed=2.0)) == {("shield_assumes_less", "shield.person_speed")}
+    assert warned(scene, Shield(person_speed=2.5)) == set()
+
+
+def test_sensors_that_hide_people_are_told() -> None:
+    built = nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()])
+    assert ("shield_sees_less", "sensors") in warned(SCENE, Shield(), built=built)
+    assert warned(SCENE, Shield(), built=nav.robots.AsBuilt()) == set()
