@@ -10,21 +10,23 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.navigation.laws.declared import LAWS as DECLARED
 
-LAWS = {
-    "field": nav.VirtualForceField(),
+# Every law of the package, and some that are not the default or not of the package.
+LAWS = {name: law() for name, law in DECLARED.items()} | {
     "full": nav.VirtualForceField(stabilizing="full", side_hysteresis=3.0),
-    "masoud": nav.Masoud(),
-    "ge_cui": nav.GeCui(),
-    "khatib": nav.Khatib(),
-    "borenstein_koren": nav.BorensteinKoren(),
-    "velocity_obstacle": nav.VelocityObstacle(),
-    "reciprocal": nav.OptimalReciprocalCollisionAvoidance(),
-    "field_d_star": nav.FieldDStar(),
-    "tree": nav.RapidlyExploringRandomTree(draws=60),
-    "impedance": nav.VirtualImpedanceLaw(),
+    "rapidly_exploring_random_tree": nav.RapidlyExploringRandomTree(draws=60),
+    "safe": nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(), yielding=nav.laws.Yielding()),
     "python": lambda seen: 3.0 * (seen.goal - seen.position) - 4.0 * seen.velocity,
 }
+SOME = [
+    "virtual_force_field",
+    "masoud",
+    "optimal_reciprocal_collision_avoidance",
+    "virtual_impedance",
+    "safe",
+    "python",
+]
 
 MEASURED = {
     "exact": None,
@@ -93,7 +95,7 @@ def test_every_configuration_and_seed(name, seed):
 
 
 @pytest.mark.parametrize("built", BUILT)
-@pytest.mark.parametrize("law", ["field", "masoud", "reciprocal", "impedance", "python"])
+@pytest.mark.parametrize("law", SOME)
 def test_robots_as_built(built, law):
     scene = replace(scenarios.configuration("c2"), seed=3)
     run = nav.Run(scene, LAWS[law], BUILT[built])
@@ -101,7 +103,7 @@ def test_robots_as_built(built, law):
 
 
 @pytest.mark.parametrize("built", TWO_WHEELS)
-@pytest.mark.parametrize("law", ["field", "masoud", "reciprocal", "impedance", "python"])
+@pytest.mark.parametrize("law", SOME)
 def test_two_wheels(built, law):
     scene = two_wheels("n2")
     run = nav.Run(scene, LAWS[law], TWO_WHEELS[built])
@@ -151,6 +153,24 @@ def test_a_law_in_steps_equals_the_commands_it_gives():
         run.step(reference.force[row])
     assert run.trajectory.position.tobytes() == reference.position.tobytes()
     assert run.trajectory.law.name == "commands"
+
+
+class Late:
+    """Stands, and drives after somebody who has walked over it."""
+
+    def velocity(self, seen):
+        return (0.6, 0.0) if seen.time > 3.2 else (0.0, 0.0)
+
+
+@pytest.mark.parametrize("late", [3.2, 3.3, 3.4])
+def test_a_fault_within_a_contact_is_found_where_obstacles_were_nearer_before(late):
+    walker = nav.MovingDisc(center=(-3.0 + 3.2 - late, 0.0), velocity=(1.0, 0.0), radius=0.3)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), obstacles=[walker], time_limit=5.0, rest_time=60.0)
+    run = nav.simulate(scene, Late())
+    assert run.min_distance[0] < 0.05
+    assert (run.contacts_standing, run.contact_at_fault.tolist()) == (1, [True])
+    assert_same_bits(stepped(nav.Run(scene, Late())), run)
+    assert nav.simulate_batch([scene], Late()).contacts_at_fault.tolist() == [1]
 
 
 def test_a_velocity_is_reached_at_the_next_sample():

@@ -50,7 +50,8 @@ pub(crate) struct Runs<S, R: Real> {
     path: R,
     /// Whether any robot can arrive before the next sample.
     near_goal: bool,
-    /// Whether the least distance to each obstacle can change before the next sample.
+    /// Whether the least distance to each obstacle can change, or a contact with it last, before the
+    /// next sample.
     watched: Vec<bool>,
     /// Instant from which no obstacle moves any more, in s.
     all_stand_from: f64,
@@ -202,7 +203,9 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             self.watched[index] = match placed.speed_bound {
                 Some(speed) if body.state.present => {
                     let way = R::splat((own + speed) * interval + BOUND_MARGIN);
-                    let least = self.min_distance_squared[index].sqrt() + way;
+                    // Within a contact the robot may turn toward the obstacle, however near they have been.
+                    let reach = R::splat(placed.contact_distance);
+                    let least = self.min_distance_squared[index].sqrt().max(reach) + way;
                     let squared = body.offset(self.position).distance_squared;
                     (squared.lt(least * least) & self.running).any()
                 }
