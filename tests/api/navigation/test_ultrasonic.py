@@ -56,6 +56,18 @@ def test_other_laws_go_by_echoes_too(law: nav.Law) -> None:
     assert seen.position.tobytes() != blind.position.tobytes()
 
 
+def test_the_speed_that_echoes_are_taken_to_have_counts_for_reciprocal_avoidance() -> None:
+    # Somebody walks to where the robot goes.
+    walker = nav.MovingDisc(center=(6.0, 0.0), velocity=(-0.5, 0.0), radius=0.3)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.1), obstacles=[walker], time_limit=20.0)
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    found = {
+        speed: run(scene, nav.sensing.Ultrasonic.ring(16, 0.2, assumed_speed=speed), law=law).min_clearance[0]
+        for speed in (0.0, 0.5)
+    }
+    assert found[0.5] > found[0.0]
+
+
 def test_sensing_names_every_sensor_that_told() -> None:
     camera = nav.sensing.Vision()
     scene = scenarios.configuration("c2")
@@ -117,7 +129,7 @@ def test_bad_arrays_are_refused(options: dict[str, Any], argument: str) -> None:
 
 def test_sensors_of_another_kind_are_refused() -> None:
     with pytest.raises(InvalidParameterError, match=r"sensors\[0\]"):
-        nav.robots.AsBuilt(sensors=[reactive.Sonar()])  # type: ignore[list-item]
+        nav.robots.AsBuilt(sensors=[reactive.Sonar()])  # type: ignore[list-item]  # what is tested
 
 
 def follower_scene() -> reactive.FollowerScene:
@@ -142,4 +154,4 @@ def test_the_exact_arc_is_close_to_the_chord_of_the_source() -> None:
     assert chord.position.tobytes() != arc.position.tobytes()
     assert np.abs(chord.position[:200] - arc.position[:200]).max() < 1e-2
     with pytest.raises(InvalidParameterError, match="integration"):
-        reactive.Follower(integration="circle")  # type: ignore[arg-type]
+        reactive.Follower(integration="circle")  # type: ignore[arg-type]  # what is tested

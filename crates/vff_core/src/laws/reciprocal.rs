@@ -140,9 +140,11 @@ fn front_face(scaled: &Outline, place: Vector) -> (f64, Vector) {
     best
 }
 
-/// Whether a body is a boundary point of a map: a disc without extent.
+/// Whether a body is a boundary point, of a map or read by a sensor: a disc without extent that
+/// stands. An echo that is taken to come nearer is avoided as what moves.
 fn is_boundary_point(body: &Body) -> bool {
-    matches!(body.shape, Shape::Disc { radius } if radius == 0.0)
+    let point = matches!(body.shape, Shape::Disc { radius } if radius == 0.0);
+    point && body.state.velocity == [0.0; 2]
 }
 
 /// The planner at work in one scenario.
