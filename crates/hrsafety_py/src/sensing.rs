@@ -305,7 +305,8 @@ impl Sensor {
         given.done()?;
         Ok(Self(sensor))
     }
-    /// Rides on the robot.
+
+    /// A lidar, which holds a map and is no list of numbers.
     #[staticmethod]
     fn lidar(lidar: &Lidar) -> Self {
         Self(SensorOptions::Lidar(lidar.0.clone()))

@@ -377,6 +377,6 @@ def step_cost(law: AnyLaw, scenario: Scenario, *, repeats: int = 5) -> float:
     for _ in range(count("repeats", repeats, most=MOST_REPEATS)):
         start = time.process_time_ns()
         table = simulate_batch([scenario], law, threads=1)
-        # The work is done by a thread of its own: the time of the process counts.
+        # One thread does the work, and what waits costs nothing: the time of the process counts.
         best = min(best, (time.process_time_ns() - start) / 1e9 / int(table.force_evaluations[0]))
     return best

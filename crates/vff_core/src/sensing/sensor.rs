@@ -37,6 +37,23 @@ impl<'a> Truth<'a> {
         }
     }
 
+    /// A robot at a place with a front and a velocity in m/s, and nothing around it.
+    #[inline]
+    #[must_use]
+    pub fn alone(time: f64, frame: &Frame, velocity: Vector2<f64>) -> Self {
+        Self {
+            time,
+            robot: RobotState {
+                position: frame.position,
+                velocity,
+            },
+            heading: Heading::Direction(frame.direction),
+            bodies: &[],
+            outlines: &[],
+            source: None,
+        }
+    }
+
     /// Where the robot is and where it looks.
     #[inline]
     #[must_use]

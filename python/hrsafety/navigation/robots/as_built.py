@@ -81,7 +81,7 @@ class AsBuilt(Parameters):
         Slip of wheels with controllers.
     tracking : FullSpeedTracking, NonlinearTracking, ExponentialTracking or VirtualTorque
         How a two-wheel robot follows the point mass that the law drives, or how it turns toward
-        the force.
+        the force. Not used under a `SafeNavigation` with a shield, which commands speed and turn rate.
     robot_vision, obstacle_vision : Vision or None
         Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
         shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.

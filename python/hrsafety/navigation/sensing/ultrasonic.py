@@ -128,4 +128,4 @@ class Ultrasonic(RobotSensor):
         8
         """
         mounts = _ring(count("sensors", sensors, most=MOST_SENSORS), number("radius", radius))
-        return cls(mounts=mounts, **options)  # type: ignore[arg-type]
+        return cls(mounts=mounts, **options)  # type: ignore[arg-type]  # each under its own name

@@ -85,7 +85,7 @@ impl DrivenWheels {
         })
     }
 
-    /// Goes on by one motion step in which the wanted speeds change evenly to new ones, in rad/s;
+    /// Advances by one motion step in which the wanted speeds change evenly to new ones, in rad/s;
     /// `moved` is called after every wheel period with how fast the wheels roll on the ground, and how fast
     /// they turn, in rad/s.
     pub fn step(

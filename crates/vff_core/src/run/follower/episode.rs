@@ -16,8 +16,8 @@ use crate::sensing::ObstacleCamera;
 use crate::sensing::fixes::Ear;
 use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::{Sonar, SonarArray};
-use crate::world::frame::{Frame, Heading};
-use crate::world::geometry::{Body, RobotState};
+use crate::world::frame::Frame;
+use crate::world::geometry::Body;
 use crate::world::motion::BodyState;
 use crate::world::obstacle::{Obstacle, Regions};
 use crate::world::shape::PlacedShape;
@@ -261,15 +261,10 @@ impl Place<'_> {
     #[inline]
     fn truth(&self, time: f64) -> Truth<'_> {
         Truth {
-            time,
-            robot: RobotState {
-                position: self.pose.position,
-                velocity: self.velocity,
-            },
-            heading: Heading::Direction(self.pose.direction),
             bodies: &self.bodies,
             outlines: &self.around.near,
             source: Some(self.source),
+            ..Truth::alone(time, &self.pose, self.velocity)
         }
     }
 }

@@ -13,8 +13,7 @@ use crate::run::skirt::scene::DiscScene;
 use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
 use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
-use crate::world::frame::{Frame, Heading};
-use crate::world::geometry::RobotState;
+use crate::world::frame::Frame;
 use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
@@ -351,15 +350,8 @@ impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
     fn sense(&mut self, clock: &Clock, step: usize) {
         let robot = &self.robot;
         let truth = Truth {
-            time: clock.time(step),
-            robot: RobotState {
-                position: robot.frame.position,
-                velocity: robot.velocity,
-            },
-            heading: Heading::Direction(robot.frame.direction),
-            bodies: &[],
             outlines: &self.outlines,
-            source: None,
+            ..Truth::alone(clock.time(step), &robot.frame, robot.velocity)
         };
         self.sonar.observe(&truth, &robot.frame, &mut []);
     }
