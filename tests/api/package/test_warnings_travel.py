@@ -41,6 +41,8 @@ def results() -> dict[str, Any]:
 
 def drawn(found: dict[str, Any]) -> dict[str, Any]:
     compared = nav.compare(PLACES, LAW)
+    x, y = np.meshgrid(np.linspace(-0.2, 4.0, 12), np.linspace(-0.4, 1.6, 6))
+    field = nav.laws.force_field(LAW, NOISY, position=np.column_stack([x.ravel(), y.ravel()]))
     repeated = nav.simulate_many(NOISY, LAW, seeds=3, paths=True)
     return {
         "search_history": plotting.search_history(found["search"]),
@@ -56,6 +58,8 @@ def drawn(found: dict[str, Any]) -> dict[str, Any]:
         "repeated_paths": plotting.repeated_paths(repeated),
         "repeated_distances": plotting.repeated_distances(repeated),
         "layout": plotting.layout(NOISY),
+        "force_field": plotting.force_field(field, NOISY),
+        "potential_valley": plotting.potential_valley(field, NOISY),
     }
 
 

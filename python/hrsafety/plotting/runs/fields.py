@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.laws.forces import ForceField
-from hrsafety.plotting import inputs, shapes, style
+from hrsafety.plotting import inputs, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -171,6 +171,7 @@ def force_field(
     style.set_log_ticks(bar, low, high)
     bar.set_label(f"{term} force (N)")
     style.legend_below(figure, _scene_handles(scenario, places, limits), columns=5)
+    notes.add_warnings(figure, scenario)
     return figure
 
 
@@ -313,6 +314,7 @@ def potential_valley(
     bar.set_label(label)
     short = "V (N²)" if term == "potential" else "force (N)"
     surface.text2D(1.0, 0.9, short, transform=surface.transAxes, ha="right")
+    notes.add_warnings(figure, scenario)
     return figure
 
 
