@@ -269,7 +269,7 @@ def tuned(laws: Laws, page: str) -> dict[str, nav.Law]:
         pairs = (each.rsplit(" ", 1) for each in cell.split(", "))
         law: nav.Law = laws[name]
         if f"{name}, tuned" not in LEFT_OUT:
-            found[f"{name}, tuned"] = replace(law, **{gain: float(value) for gain, value in pairs})  # type: ignore[type-var]
+            found[f"{name}, tuned"] = replace(law, **{gain: float(value) for gain, value in pairs})  # type: ignore[type-var]  # laws
     return found
 
 
