@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+import pytest
 
 from hrsafety import HrsafetyError, InvalidParameterError, ShapeError
 
@@ -47,6 +50,21 @@ WHEELS = (
     (INF, 1.0, 1.0),
 )
 WORD = ("", "unknown", "OFF", 1, None, True)
+
+
+def spoiled(rules: Mapping[str, Mapping[str, Sequence[Any]]]) -> list[Any]:
+    """Return a case (owner, argument, value) for every value that breaks a rule of an argument."""
+    return [
+        pytest.param(owner, argument, value, id=f"{owner}-{argument}-{index}-{str(value)[:16]}")
+        for owner, arguments in rules.items()
+        for argument, values in arguments.items()
+        for index, value in enumerate(values)
+    ]
+
+
+def spoiled_calls(calls: Mapping[str, tuple[Any, ...]]) -> list[Any]:
+    """Return the cases of calls whose last part says what breaks the rules of their arguments."""
+    return spoiled({name: call[-1] for name, call in calls.items()})
 
 
 def names(error: HrsafetyError) -> str:

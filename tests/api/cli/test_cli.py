@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import hrsafety
+from api.cli_answers import error_line
 from hrsafety import navigation as nav
 from hrsafety import plotting, reproduce, scenarios
 from hrsafety.cli import main
@@ -58,13 +59,6 @@ def people(tmp_path: Path) -> Path:
 def table(path: Path) -> list[dict[str, str]]:
     with path.open(newline="") as file:
         return list(csv.DictReader(file))
-
-
-def error_line(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err.count("\n") == 1
-    assert captured.err.startswith("hrsafety: error: ")
-    return captured.err
 
 
 def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:

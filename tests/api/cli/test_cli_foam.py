@@ -6,13 +6,14 @@ import contextlib
 import csv
 import io
 import tomllib
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from api.cli_answers import error_line, written
+from api.read_pages import page_of
 from hrsafety import impact
 from hrsafety.cli import main
 from hrsafety.cli.foam_curves import Remembered
@@ -31,43 +32,13 @@ from = 0.0
 to = 200.0
 points = 5
 """
-VOID_TAGS = {"meta", "img", "br"}
 # Printed with three decimals.
 PRINTED = 0.0005
-
-
-class Page(HTMLParser):
-    """Checks that every tag is closed and counts pictures."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.images = 0
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.images += tag == "img" and (dict(attrs).get("src") or "").startswith("data:image/png;base64,")
-        if tag not in VOID_TAGS:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-
-def written(path: Path, text: str) -> str:
-    path.write_text(text, encoding="utf-8")
-    return str(path)
 
 
 def verdicts(text: str) -> dict[str, str]:
     lines = [line for line in text.splitlines() if line.startswith("Foam ")]
     return {line[:6]: "does not fit" if "does not fit" in line else "fits" for line in lines}
-
-
-def error_line(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err.count("\n") == 1
-    assert captured.err.startswith("hrsafety: error: ")
-    return captured.err
 
 
 class Answer(NamedTuple):
@@ -102,10 +73,7 @@ def test_example_fails_foam_2_for_its_compression_and_foam_3_for_its_acceleratio
 
 def test_page_is_whole_and_carries_the_picture(example: Answer) -> None:
     text = (example.folder / "summary.html").read_text(encoding="utf-8")
-    page = Page()
-    page.feed(text)
-    assert page.open == []
-    assert page.images == 1
+    assert page_of(text).images == 1
     assert "http" not in text
     assert "There are foams that fit" in text
 

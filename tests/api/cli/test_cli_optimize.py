@@ -13,14 +13,15 @@ import signal
 import subprocess
 import sys
 import tomllib
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from api.cli_answers import error_line, written
 from api.interrupting import LISTEN, needs_signals
+from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import main, progress
@@ -51,42 +52,8 @@ active_radius = 0.8
 scale = 0.01
 distribution = "gaussian"
 """
-VOID_TAGS = {"meta", "img", "br"}
 FEASIBILITY = 1e-6  # in the unit of a constraint: by how much a search may miss it
 LIMIT = 60.0  # s, for a process that has been told to stop, on a loaded machine
-
-
-class Page(HTMLParser):
-    """Checks that every tag is closed and counts pictures."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.images = 0
-        self.texts: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.images += tag == "img" and (dict(attrs).get("src") or "").startswith("data:image/png;base64,")
-        if tag not in VOID_TAGS:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        self.texts.append(data)
-
-
-def written(path: Path, text: str) -> str:
-    path.write_text(text, encoding="utf-8")
-    return str(path)
-
-
-def error_line(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err.count("\n") == 1
-    assert captured.err.startswith("hrsafety: error: ")
-    return captured.err
 
 
 def results(folder: Path) -> dict[str, Any]:
@@ -158,9 +125,7 @@ def test_example_writes_page_values_and_pictures(small_example: tuple[Path, str]
 def test_page_is_whole_and_says_what_the_values_say(small_example: tuple[Path, str]) -> None:
     folder, _ = small_example
     text = (folder / "summary.html").read_text(encoding="utf-8")
-    page = Page()
-    page.feed(text)
-    assert page.open == []
+    page = page_of(text)
     assert page.images == 7
     assert "http" not in text
     found, words = results(folder), " ".join(page.texts)

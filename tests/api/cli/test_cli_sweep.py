@@ -7,13 +7,14 @@ import signal
 import subprocess
 import sys
 import time
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from api.cli_answers import error_line, written
 from api.interrupting import LISTEN
+from api.read_pages import page_of
 from hrsafety import impact, sweep
 from hrsafety.cli import main
 from hrsafety.cli.sweep_file import load
@@ -38,44 +39,10 @@ CROSSING = """
 scenarios = ["c1", "c2"]
 axes = [{ name = "detour_gain", from = 10.0, to = 30.0, points = 3 }]
 """
-VOID_TAGS = {"meta", "img", "br"}
-
-
-class Page(HTMLParser):
-    """Checks that every tag is closed and counts pictures."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.images = 0
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.images += tag == "img" and (dict(attrs).get("src") or "").startswith("data:image/png;base64,")
-        if tag not in VOID_TAGS:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-
-def written(path: Path, text: str) -> str:
-    path.write_text(text, encoding="utf-8")
-    return str(path)
-
-
-def error_line(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err.count("\n") == 1
-    assert captured.err.startswith("hrsafety: error: ")
-    return captured.err
 
 
 def images(path: Path) -> int:
-    page = Page()
-    page.feed((path / "summary.html").read_text(encoding="utf-8"))
-    page.close()
-    assert page.open == []
-    return page.images
+    return page_of(path / "summary.html").images
 
 
 def test_example_of_impacts_writes_maps_table_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

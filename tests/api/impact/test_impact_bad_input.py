@@ -12,15 +12,9 @@ from api.impact_calls import CALLS, PARTS
 from api.namespaces import public
 from api.spoiled import (
     names,
+    spoiled_calls,
 )
 from hrsafety import InvalidParameterError, ShapeError, impact
-
-SPOILED_CALLS = [
-    pytest.param(name, argument, value, id=f"{name}-{argument}-{index}-{str(value)[:16]}")
-    for name, (_, _, arguments) in CALLS.items()
-    for argument, values in arguments.items()
-    for index, value in enumerate(values)
-]
 
 # One signal of a pair is too short for the other: the error may name either.
 PARTNERS = {
@@ -38,7 +32,7 @@ PARTNERS = {
 NUMBERS_OF = {"manipulator": "manipulator_mass", "foam": "foam_stiffness", "head": "head_mass"}
 
 
-@pytest.mark.parametrize(("name", "argument", "value"), SPOILED_CALLS)
+@pytest.mark.parametrize(("name", "argument", "value"), spoiled_calls(CALLS))
 def test_bad_argument_is_refused_by_name(name: str, argument: str, value: Any) -> None:
     function, right, _ = CALLS[name]
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:

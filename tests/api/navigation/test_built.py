@@ -13,19 +13,9 @@ import pytest
 
 from hrsafety import InvalidParameterError, scenarios
 from hrsafety import navigation as nav
+from hrsafety.navigation.laws.declared import LAWS as DECLARED
 
 LAW = nav.VirtualForceField(stabilizing="off")
-LAWS: dict[str, nav.Law] = {
-    "field": nav.VirtualForceField(),
-    "masoud": nav.Masoud(),
-    "ge_cui": nav.GeCui(),
-    "khatib": nav.Khatib(),
-    "borenstein_koren": nav.BorensteinKoren(),
-    "velocity_obstacle": nav.VelocityObstacle(),
-    "reciprocal": nav.OptimalReciprocalCollisionAvoidance(),
-    "field_d_star": nav.FieldDStar(),
-    "random_tree": nav.RapidlyExploringRandomTree(),
-}
 
 
 def two_wheels(name: str, **changes: Any) -> nav.Scenario:
@@ -69,10 +59,10 @@ def test_two_wheel_robot_arrives_without_a_contact_outside_critical_regions(name
     assert run.energy == pytest.approx(run.energy_used[-1])
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", DECLARED)
 def test_every_law_drives_a_two_wheel_robot(law: str) -> None:
     # c3 is left out: the laws of other authors give up there as point masses, too.
-    run = nav.simulate(two_wheels("n1", time_limit=20.0), LAWS[law])
+    run = nav.simulate(two_wheels("n1", time_limit=20.0), DECLARED[law]())
     assert run.wheel_speed is not None
     assert np.isfinite(run.position).all()
     # The robot never moves sideways: its velocity lies along its heading.

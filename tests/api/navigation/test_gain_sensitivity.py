@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize._numdiff import approx_derivative
 
-from api.spoiled import INF, NAN, POSITIVE, WORD, names
+from api.spoiled import INF, NAN, POSITIVE, WORD, names, spoiled_calls
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
 
@@ -194,15 +194,7 @@ BAD: dict[str, tuple[Any, dict[str, tuple[Any, ...]]]] = {
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "argument", "value"),
-    [
-        pytest.param(name, argument, value, id=f"{name}-{argument}-{index}")
-        for name, (_, arguments) in BAD.items()
-        for argument, values in arguments.items()
-        for index, value in enumerate(values)
-    ],
-)
+@pytest.mark.parametrize(("name", "argument", "value"), spoiled_calls(BAD))
 def test_bad_argument_is_refused_by_name(name: str, argument: str, value: Any) -> None:
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:
         BAD[name][0](**({"scenarios": SCENES[:1], "law": SOURCE} | {argument: value}))

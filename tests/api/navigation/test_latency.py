@@ -18,7 +18,7 @@ REGIONS = {"critical_radius": 0.8, "active_radius": 2.1}
 
 
 def scene(obstacle: nav.Obstacle, **fields: object) -> nav.Scenario:
-    return nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=(obstacle,), **fields)  # type: ignore[arg-type]
+    return nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=(obstacle,), **fields)  # type: ignore[arg-type]  # by name
 
 
 @pytest.mark.parametrize("latency", [0.06, 0.1, 0.137])
@@ -69,7 +69,7 @@ def test_a_robot_that_measures_itself_late_acts_on_where_it_was(latency: float) 
 
 @pytest.mark.parametrize("of", ["obstacles", "robot", "both"])
 def test_every_way_to_run_a_robot_is_late_alike(of: str) -> None:
-    measured = nav.Measurement(scale=0.01, of=of, latency=0.085)  # type: ignore[arg-type]
+    measured = nav.Measurement(scale=0.01, of=of, latency=0.085)  # type: ignore[arg-type]  # words of a list
     place = replace(scenarios.configuration("c4"), measurement=measured, seed=5)
     run = nav.simulate(place, LAW)
     one, two = (nav.simulate_batch([place] * 9, LAW, threads=threads) for threads in (1, 2))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from api.spoiled import INF, NAN, NOT_NEGATIVE, POSITIVE, WORD, names
+from api.spoiled import INF, NAN, NOT_NEGATIVE, POSITIVE, WORD, names, spoiled
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
 
@@ -152,15 +152,9 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "view": (*POSITIVE, math.nextafter(math.pi, 4.0), 7.0),
     },
 }
-SPOILED = [
-    pytest.param(kind, argument, value, id=f"{kind}-{argument}-{index}-{str(value)[:16]}")
-    for kind, arguments in RULES.items()
-    for argument, values in arguments.items()
-    for index, value in enumerate(values)
-]
 
 
-@pytest.mark.parametrize(("kind", "argument", "value"), SPOILED)
+@pytest.mark.parametrize(("kind", "argument", "value"), spoiled(RULES))
 def test_bad_value_is_refused_by_name(kind: str, argument: str, value: Any) -> None:
     with pytest.raises(InvalidParameterError) as caught:
         getattr(nav, kind)(**{argument: value})

@@ -19,6 +19,7 @@ from api.spoiled import (
     POSITIVE,
     WORD,
     names,
+    spoiled_calls,
 )
 from hrsafety import InvalidParameterError, ShapeError
 from hrsafety import navigation as nav
@@ -141,15 +142,8 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
     ),
 }
 
-SPOILED_CALLS = [
-    pytest.param(name, argument, value, id=f"{name}-{argument}-{index}-{str(value)[:16]}")
-    for name, (_, _, arguments) in CALLS.items()
-    for argument, values in arguments.items()
-    for index, value in enumerate(values)
-]
 
-
-@pytest.mark.parametrize(("name", "argument", "value"), SPOILED_CALLS)
+@pytest.mark.parametrize(("name", "argument", "value"), spoiled_calls(CALLS))
 def test_bad_argument_of_a_function_is_refused_by_name(name: str, argument: str, value: Any) -> None:
     function, right, _ = CALLS[name]
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:

@@ -23,6 +23,7 @@ from api.spoiled import (
     WHEELS,
     WORD,
     names,
+    spoiled,
 )
 from hrsafety import InvalidParameterError, ShapeError
 from hrsafety import navigation as nav
@@ -129,15 +130,8 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
     },
 }
 
-SPOILED = [
-    pytest.param(kind, argument, value, id=f"{kind}-{argument}-{index}-{str(value)[:16]}")
-    for kind, arguments in RULES.items()
-    for argument, values in arguments.items()
-    for index, value in enumerate(values)
-]
 
-
-@pytest.mark.parametrize(("kind", "argument", "value"), SPOILED)
+@pytest.mark.parametrize(("kind", "argument", "value"), spoiled(RULES))
 def test_bad_value_is_refused_by_name(kind: str, argument: str, value: Any) -> None:
     build, right = RIGHT[kind]
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:

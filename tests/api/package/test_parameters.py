@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import math
 import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 
+from api.namespaces import public
+from hrsafety import impact
 from hrsafety import navigation as nav
 
 VALUES: list[tuple[Any, dict[str, Any]]] = [
@@ -37,6 +40,23 @@ VALUES: list[tuple[Any, dict[str, Any]]] = [
         ),
         {"seed": 1},
     ),
+    (
+        impact.Joint(
+            inertia=0.059,
+            mechanical_stiffness=1216.8,
+            mechanical_damping=0.3,
+            control_stiffness=121.68,
+            control_damping=1.521,
+        ),
+        {"inertia": 0.06},
+    ),
+    (impact.MANIPULATOR_1, {"mass": 10.0}),
+    (impact.Head.minimum(), {"damping": 0.0}),
+    (impact.FOAM_1, {"linear_range": 0.015}),
+    (impact.joints.DirectDrive(proportional=448.7, derivative=5.579), {"voltage_limit": math.inf}),
+    (impact.SetPoint.accelerating(5.0, duration=0.05), {"feed_forward": True}),
+    (impact.FoamLimits(), {"peak_head_acceleration_g": 8.0}),
+    (impact.joints.CylinderController(), {"derivative": 0.0}),
 ]
 
 each_value = pytest.mark.parametrize(("value", "change"), VALUES, ids=[type(value).__name__ for value, _ in VALUES])
@@ -69,8 +89,10 @@ def test_equal_values_have_equal_hashes(value: Any, change: dict[str, Any]) -> N
 @each_value
 def test_printed_form_builds_the_value_again(value: Any, change: dict[str, Any]) -> None:
     assert "_native" not in repr(value)
-    assert eval(repr(value), vars(nav).copy()) == value
-    assert repr(dataclasses.replace(value, **change)) != repr(value)
+    changed = dataclasses.replace(value, **change)
+    for each in (value, changed):
+        assert eval(repr(each), {**public(impact), **public(nav), "inf": math.inf}) == each
+    assert repr(changed) != repr(value)
 
 
 @each_value
@@ -102,7 +124,7 @@ def test_numbers_of_any_kind_are_accepted() -> None:
 
 
 def test_same_scenario_and_law_give_the_same_bits_after_a_pickle() -> None:
-    scene = VALUES[-1][0]
+    (scene,) = (value for value, _ in VALUES if isinstance(value, nav.Scenario))
     law = nav.VirtualForceField()
     first = nav.simulate(scene, law)
     again = nav.simulate(*pickle.loads(pickle.dumps((scene, law))))

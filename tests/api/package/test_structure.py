@@ -246,7 +246,7 @@ def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
     optional |= {"jinja2", "markupsafe", "rich", "shtab"}
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
-    parts += ("arms", "contact", "standards")
+    parts += ("arms", "contact", "standards", "benchmarks")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -93,8 +93,8 @@ def measured() -> Any:
 
 
 def followers(kind: str, seed: int) -> Any:
-    scene = reactive.FollowerLayouts(kind=kind).scene(seed)  # type: ignore[arg-type]
-    laws = {form: reactive.VirtualImpedance(form=form) for form in ("conventional", "active")}  # type: ignore[arg-type]
+    scene = reactive.FollowerLayouts(kind=kind).scene(seed)  # type: ignore[arg-type]  # words of a list
+    laws = {form: reactive.VirtualImpedance(form=form) for form in ("conventional", "active")}  # type: ignore[arg-type]  # words
     return plotting.reactive.follower_runs(
         {name: reactive.follow(scene, law=law, seed=seed) for name, law in laws.items()}
     )
@@ -165,7 +165,7 @@ def fixes() -> Any:
 
 def rates() -> Any:
     laws = ("conventional", "active")
-    found = {law: reactive.experiment("one_dynamic", law, layouts=50).collision_rate for law in laws}  # type: ignore[arg-type]
+    found = {law: reactive.experiment("one_dynamic", law, layouts=50).collision_rate for law in laws}  # type: ignore[arg-type]  # words
     return plotting.reactive.follower_rates({"one moving box": found}, marks={"one moving box": {"active": 0.3}})
 
 

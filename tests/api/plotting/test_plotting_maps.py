@@ -73,4 +73,4 @@ def test_a_plan_is_drawn_with_costs_paths_and_local_goals() -> None:
     with pytest.raises(HrsafetyError, match=r"starts\[0\] must be a place with a plan"):
         plotting.runs.guide_plan(trap, plan, starts=[(3.0, 0.0)])
     with pytest.raises(HrsafetyError, match="plan must be a Plan"):
-        plotting.runs.guide_plan(trap, trap)  # type: ignore[arg-type]
+        plotting.runs.guide_plan(trap, trap)  # type: ignore[arg-type]  # what is tested

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from api.spoiled import INF, NAN, NOT_NEGATIVE, NUMBER, OPTIONAL_NOT_NEGATIVE, POSITIVE, WORD, names
+from api.spoiled import INF, NAN, NOT_NEGATIVE, NUMBER, OPTIONAL_NOT_NEGATIVE, POSITIVE, WORD, names, spoiled_calls
 from hrsafety import InvalidParameterError, ShapeError, reactive
 
 ROW = reactive.MicrophoneArray()
@@ -191,12 +191,6 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
         },
     ),
 }
-SPOILED = [
-    pytest.param(name, argument, value, id=f"{name}-{argument}-{index}")
-    for name, (_, _, arguments) in CALLS.items()
-    for argument, values in arguments.items()
-    for index, value in enumerate(values)
-]
 # A rule that ties two arguments may name either; noise within a window or file is about its samples.
 PARTNERS = {
     "low": {"high"},
@@ -216,7 +210,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.usefixtures("folder")
-@pytest.mark.parametrize(("name", "argument", "value"), SPOILED)
+@pytest.mark.parametrize(("name", "argument", "value"), spoiled_calls(CALLS))
 def test_bad_argument_is_refused_by_name(name: str, argument: str, value: Any) -> None:
     function, right, _ = CALLS[name]
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:

@@ -3,12 +3,12 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce
 from hrsafety.reproduce import laws_claims, laws_compared, laws_demonstrations, laws_figures, laws_study, tables
@@ -245,46 +245,19 @@ def test_pictures_have_names_and_captions(study: laws_study.LawsStudy) -> None:
     assert all(picture.caption.endswith(".") and picture.png.startswith(b"\x89PNG") for picture in pictures)
 
 
-class Reader(HTMLParser):
-    """Collects text, and tags that are closed out of order."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.faults: list[str] = []
-        self.texts: list[str] = []
-        self.sources: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.sources += [value or "" for name, value in attrs if name == "src"]
-        if tag not in {"meta", "img", "br"}:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        if not self.open or self.open.pop() != tag:
-            self.faults.append(tag)
-
-    def handle_data(self, data: str) -> None:
-        self.texts.append(data)
-
-
 def test_page_shows_every_law_and_claim_and_counts_them(
     study: laws_study.LawsStudy, claims: list[Cell], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(laws_study, "compare", lambda _: study)
     text = reproduce.run(tmp_path, only="laws").read_text(encoding="utf-8")
-    reader = Reader()
-    reader.feed(text)
-    reader.close()
-    assert (reader.faults, reader.open) == ([], [])
-    shown = " ".join(reader.texts)
+    page = page_of(text)
+    shown = " ".join(page.texts)
     assert all(entry.label in shown for entry in COMPARED.values())
     assert all(str(cell.measured) in shown for cell in claims if isinstance(cell.measured, str))
     assert all(cell.reason in shown for cell in claims)
     within = sum(bool(cell.within) for cell in claims)
     assert f"{within} of {len(claims)} judged values are within tolerance" in shown
-    assert all(source.startswith("data:image/png;base64,") for source in reader.sources)
-    assert len(reader.sources) == len(list((tmp_path / "figures").iterdir())) == 8
+    assert page.images == len(list((tmp_path / "figures").iterdir())) == 8
     written = json.loads((tmp_path / "laws.json").read_text(encoding="utf-8"))
     with (tmp_path / "laws.csv").open(encoding="utf-8", newline="") as file:
         lines = list(csv.DictReader(file))

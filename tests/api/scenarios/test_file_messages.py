@@ -135,7 +135,7 @@ def test_names_of_laws_are_taken_as_they_are_written_in_running_text() -> None:
 
 def test_an_object_is_asked_for_with_the_right_article() -> None:
     with pytest.raises(InvalidParameterError, match="must be an Obstacle"):
-        nav.Scenario(start=(1.0, 0.0), goal=(0.0, 0.0), obstacles=[1])  # type: ignore[list-item]
+        nav.Scenario(start=(1.0, 0.0), goal=(0.0, 0.0), obstacles=[1])  # type: ignore[list-item]  # what is tested
 
 
 def error_of(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
