@@ -8,10 +8,12 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 mod planar;
+mod wide;
 
 pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
-pub use planar::Planar;
+pub use planar::{Planar, widened};
+pub use wide::Wide;
 
 /// Outcome of a comparison, lane by lane.
 pub trait Mask:
@@ -20,6 +22,7 @@ pub trait Mask:
     + Send
     + Sync
     + 'static
+    + PartialEq
     + BitAnd<Output = Self>
     + BitOr<Output = Self>
     + Not<Output = Self>
@@ -199,7 +202,7 @@ impl Real for f64 {
 pub struct Lanes<const N: usize>([f64; N]);
 
 /// `N` truths side by side, each all ones or all zeros.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaneMask<const N: usize>([u64; N]);
 
 macro_rules! lane_operator {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::Real;
+use super::{Real, Wide};
 
 /// What the kernels need of a vector beyond its arithmetic, lane by lane.
 pub trait Planar<R: Real> {
@@ -38,4 +38,10 @@ impl<R: Real> Planar<R> for Vector2<R> {
     fn lane(self, index: usize) -> [f64; 2] {
         [self.x.lane(index), self.y.lane(index)]
     }
+}
+
+/// The vector with these components as robots in lanes see it.
+#[inline(always)]
+pub fn widened<R: Real, B: Wide<R>>([x, y]: [B; 2]) -> Vector2<R> {
+    Vector2::new(x.wide(), y.wide())
 }

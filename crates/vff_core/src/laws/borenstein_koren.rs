@@ -1,6 +1,6 @@
 //! Virtual force of Borenstein and Koren (1989).
 
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Vector2, Wide};
 use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
 use crate::world::geometry::RobotState;
 
@@ -34,7 +34,7 @@ impl<R: Real> PairwiseField<R> for BorensteinKoren<R> {
     }
 
     #[inline(always)]
-    fn push(&self, neighbor: &Neighbor<'_, R>, _robot: &RobotState<R>) -> Push<R> {
+    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, _robot: &RobotState<R>) -> Push<R> {
         Push::straight(neighbor.outward * (self.repulsive / neighbor.gap))
     }
 }

@@ -1,6 +1,6 @@
 //! Dynamic potential field of Ge and Cui (2002).
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
 use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
 use crate::world::geometry::{Approach, RobotState};
 
@@ -35,7 +35,7 @@ impl<R: Real> PairwiseField<R> for GeCui<R> {
     }
 
     #[inline(always)]
-    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
+    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R> {
         // The goal enters the angles of an approach only, which are not used here.
         let everywhere = R::Mask::splat(true);
         let goal = Vector2::zeros();

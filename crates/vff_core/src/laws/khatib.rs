@@ -1,6 +1,6 @@
 //! Artificial potential field of Khatib (1986).
 
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Real, Vector2, Wide, widened};
 use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
 use crate::world::geometry::RobotState;
 
@@ -41,9 +41,9 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
     }
 
     #[inline(always)]
-    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
+    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R> {
         let gap = neighbor.gap;
-        let reach = R::splat(neighbor.reach);
+        let reach = neighbor.reach.wide();
         let square = gap * gap;
         let force = match self.form {
             KhatibForm::Gradient => {
@@ -52,7 +52,7 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
                 neighbor.outward * (self.repulsive * steepness)
             }
             KhatibForm::Printed => {
-                let velocity = Vector2::splat(neighbor.body.state.velocity);
+                let velocity = widened(neighbor.body.state.velocity);
                 let strength = self.repulsive * (reach - gap) / (square * gap);
                 (velocity - robot.velocity) * strength
             }

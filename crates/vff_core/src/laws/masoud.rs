@@ -1,6 +1,6 @@
 //! Circulating repulsion of Masoud (2007).
 
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Vector2, Wide};
 use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
 use crate::world::geometry::RobotState;
 
@@ -28,7 +28,7 @@ impl<R: Real> PairwiseField<R> for Masoud<R> {
     }
 
     #[inline(always)]
-    fn push(&self, neighbor: &Neighbor<'_, R>, _robot: &RobotState<R>) -> Push<R> {
+    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, _robot: &RobotState<R>) -> Push<R> {
         let offset = neighbor.offset.vector;
         // d t = the offset turned left.
         Push {

@@ -28,7 +28,7 @@ pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;
 
 use crate::error::Result;
-use crate::lanes::{Real, Vector2};
+use crate::lanes::{Real, Vector2, Wide};
 use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
@@ -58,13 +58,14 @@ impl std::fmt::Debug for Stop<'_> {
     }
 }
 
-/// What a law knows when it is asked for a force.
+/// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
+/// side share, or which each of them has for itself.
 #[derive(Clone, Copy, Debug)]
-pub struct Situation<'a, R> {
+pub struct Situation<'a, R, B: Real = f64> {
     /// When, in s.
-    pub time: f64,
+    pub time: B,
     /// Obstacles as measured.
-    pub bodies: &'a [Body],
+    pub bodies: &'a [Body<B>],
     /// Robots as measured, one a lane.
     pub robot: RobotState<R>,
     /// Heading of the robots as measured, in rad.
@@ -111,12 +112,12 @@ impl<R: Real> Command<R> {
 }
 
 /// A law for robots side by side; it may remember what it needs between two samples.
-pub trait Law<R: Real> {
+pub trait Law<R: Real, B: Wide<R> = f64> {
     /// Whether a command takes so long that the caller is asked at each of them whether to stop.
     const THINKS: bool = false;
 
     /// Force for the time until the next sample.
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R>;
+    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R>;
 
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
     /// Laws that plan the whole way themselves keep theirs.
@@ -126,6 +127,13 @@ pub trait Law<R: Real> {
     fn trace(&self) -> Option<Trace> {
         None
     }
+}
+
+/// A law for robots side by side, each in a scene of its own.
+pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
+    /// A run begins in a lane: it forgets what it knew of the lane. The scenarios of all lanes have
+    /// the same robot and the same rules, and none has more obstacles than the first one had.
+    fn enter(&mut self, lane: usize, scenario: &Scenario);
 }
 
 /// A law up to its gains: what a search over gains needs to know of it.

@@ -1,6 +1,6 @@
 //! One obstacle as the force field sees it from the robot.
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide, widened};
 use crate::world::motion::BodyState;
 use crate::world::obstacle::Regions;
 use crate::world::shape::{Shape, into_axes, out_of_axes};
@@ -22,15 +22,15 @@ pub struct RobotState<R> {
     pub velocity: Vector2<R>,
 }
 
-/// An obstacle at one instant, the same for every lane.
+/// An obstacle at one instant: the same for every lane, or one a lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Body {
+pub struct Body<B: Real = f64> {
     /// Outline.
-    pub shape: Shape,
+    pub shape: Shape<B>,
     /// Region radii.
-    pub regions: Regions,
+    pub regions: Regions<B>,
     /// State as the controller knows it.
-    pub state: BodyState,
+    pub state: BodyState<B>,
 }
 
 /// Where the robot is relative to an obstacle: enough to tell its region.
@@ -42,11 +42,14 @@ pub struct Offset<R> {
     pub distance_squared: R,
 }
 
-impl Body {
+impl<B: Real> Body<B> {
     /// Offset of a position from this obstacle.
     #[inline(always)]
-    pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R> {
-        let from_center = position - Vector2::splat(self.state.position);
+    pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R>
+    where
+        B: Wide<R>,
+    {
+        let from_center = position - widened(self.state.position);
         let vector = self.shape.offset(from_center);
         Offset {
             vector,
@@ -95,8 +98,8 @@ impl<R: Real> Approach<R> {
 
     /// Seen by the robots from an obstacle. Values are meaningless outside the active region.
     #[inline(always)]
-    pub fn new(
-        body: &Body,
+    pub fn new<B: Wide<R>>(
+        body: &Body<B>,
         offset: Offset<R>,
         active: R::Mask,
         robot: &RobotState<R>,
@@ -111,7 +114,7 @@ impl<R: Real> Approach<R> {
         let bearing_rate = outward.perp(&relative) * inverse;
         // For a disc straight from its centre, so that one on the goal gives exactly zero.
         let to_goal = match body.shape {
-            Shape::Disc { .. } => goal - Vector2::splat(body.state.position),
+            Shape::Disc { .. } => goal - widened(body.state.position),
             Shape::Rectangle { .. } => goal - (robot.position - offset.vector),
         };
         let away = to_goal
@@ -132,37 +135,55 @@ impl<R: Real> Approach<R> {
             angle: unsigned_angle(cross, dot),
             shortest_side: cross.sign(),
             collinear: behind,
-            depth: R::splat(body.regions.active_radius) - distance,
-            margin: distance - R::splat(body.regions.critical_radius),
+            depth: body.regions.active_radius.wide() - distance,
+            margin: distance - body.regions.critical_radius.wide(),
         }
     }
 }
 
 /// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
 #[inline(always)]
-fn goal_bearing_rate<R: Real>(body: &Body, to_goal: Vector2<R>, point_velocity: Vector2<R>) -> R {
-    if matches!(body.shape, Shape::Disc { .. }) && body.state.velocity == [0.0; 2] {
+fn goal_bearing_rate<R: Real, B: Wide<R>>(
+    body: &Body<B>,
+    to_goal: Vector2<R>,
+    point_velocity: Vector2<R>,
+) -> R {
+    let turning = match body.shape {
+        Shape::Disc { .. } => B::wide_mask(!at_rest(body.state.velocity)),
+        Shape::Rectangle { .. } => R::Mask::splat(true),
+    };
+    if !turning.any() {
         return R::zero();
     }
     let length_squared = to_goal.dot(&to_goal);
     let rate = -to_goal.perp(&point_velocity) / length_squared;
-    R::select(length_squared.gt(R::zero()), rate, R::zero())
+    R::select(length_squared.gt(R::zero()) & turning, rate, R::zero())
+}
+
+/// Where both components are zero, of either sign.
+#[inline(always)]
+pub(crate) fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
+    let zero = B::zero();
+    x.le(zero) & x.ge(zero) & y.le(zero) & y.ge(zero)
 }
 
 /// Velocity of the point that distances are measured from, and where it slides along a face.
 #[inline(always)]
-fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R::Mask) {
+fn point_velocity<R: Real, B: Wide<R>>(
+    body: &Body<B>,
+    robot: &RobotState<R>,
+) -> (Vector2<R>, R::Mask) {
     match body.shape {
-        Shape::Disc { .. } => (Vector2::splat(body.state.velocity), R::Mask::none()),
+        Shape::Disc { .. } => (widened(body.state.velocity), R::Mask::none()),
         Shape::Rectangle {
             half_length,
             half_width,
             axis,
         } => {
-            let local = into_axes(robot.position - Vector2::splat(body.state.position), axis);
+            let local = into_axes(robot.position - widened(body.state.position), axis);
             let velocity = into_axes(robot.velocity, axis);
-            let beside = local.x.abs().le(R::splat(half_length));
-            let abreast = local.y.abs().le(R::splat(half_width));
+            let beside = local.x.abs().le(half_length.wide());
+            let abreast = local.y.abs().le(half_width.wide());
             let slide = Vector2::new(
                 R::select(beside, velocity.x, R::zero()),
                 R::select(abreast, velocity.y, R::zero()),
@@ -176,21 +197,21 @@ fn point_velocity<R: Real>(body: &Body, robot: &RobotState<R>) -> (Vector2<R>, R
 /// directions from the centroid to robot and goal, with their dot product.
 #[inline(always)]
 #[must_use]
-pub fn separation<R: Real>(
-    body: &Body,
-    half: [f64; 2],
-    axis: Vector2<f64>,
+pub fn separation<R: Real, B: Wide<R>>(
+    body: &Body<B>,
+    half: [B; 2],
+    axis: Vector2<B>,
     position: Vector2<R>,
     goal: Vector2<R>,
 ) -> (R::Mask, R, R) {
-    let center = Vector2::splat(body.state.position);
+    let center = widened(body.state.position);
     let from = into_axes(position - center, axis);
     let to = into_axes(goal - center, axis);
     // Separating axes of a segment (midpoint m, half vector h) and a box (Ericson 2005, 5.3.3).
     let two = R::splat(0.5);
     let middle = (from + to) * two;
     let reach = (to - from) * two;
-    let (half_x, half_y) = (R::splat(half[0]), R::splat(half[1]));
+    let (half_x, half_y): (R, R) = (half[0].wide(), half[1].wide());
     let overlaps = middle.x.abs().le(half_x + reach.x.abs())
         & middle.y.abs().le(half_y + reach.y.abs())
         & middle

@@ -1,37 +1,45 @@
 //! How an obstacle moves: pieces of constant acceleration, or a recording.
 
 use crate::error::{Failure, Given, Result, finite_pair, not_negative};
+use crate::lanes::Real;
 
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
 
 /// Position, velocity and acceleration of a body at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyState {
+pub struct BodyState<B: Real = f64> {
     /// Position in m.
-    pub position: [f64; 2],
+    pub position: [B; 2],
     /// Velocity in m/s.
-    pub velocity: [f64; 2],
+    pub velocity: [B; 2],
     /// Acceleration in m/s^2.
-    pub acceleration: [f64; 2],
+    pub acceleration: [B; 2],
     /// Whether the body is in the scene.
-    pub present: bool,
+    pub present: B::Mask,
 }
 
 /// A piece of motion with constant acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
-    start: f64,
-    position: [f64; 2],
-    velocity: [f64; 2],
-    acceleration: [f64; 2],
+pub(crate) struct Piece<B = f64> {
+    /// When it begins, in s.
+    pub start: B,
+    /// Position then, in m.
+    pub position: [B; 2],
+    /// Velocity then, in m/s.
+    pub velocity: [B; 2],
+    /// Acceleration in m/s^2.
+    pub acceleration: [B; 2],
 }
 
-impl Piece {
-    fn at(&self, time: f64) -> ([f64; 2], [f64; 2]) {
+impl<B: Real> Piece<B> {
+    /// Position and velocity at an instant.
+    #[inline(always)]
+    pub fn at(&self, time: B) -> ([B; 2], [B; 2]) {
         let t = time - self.start;
+        let half = B::splat(0.5);
         let along =
-            |i: usize| self.position[i] + (self.velocity[i] + 0.5 * self.acceleration[i] * t) * t;
+            |i: usize| self.position[i] + (self.velocity[i] + half * self.acceleration[i] * t) * t;
         let speed = |i: usize| self.velocity[i] + self.acceleration[i] * t;
         ([along(0), along(1)], [speed(0), speed(1)])
     }
@@ -322,6 +330,18 @@ impl Motion {
     pub fn max_initial_speed(&self) -> f64 {
         let speed = |piece: &Piece| piece.velocity[0].hypot(piece.velocity[1]);
         self.pieces.iter().map(speed).fold(0.0, f64::max)
+    }
+
+    /// The piece of an index, and when the next one begins; infinite for the last one.
+    pub(crate) fn piece(&self, index: usize) -> (&Piece, f64) {
+        let next = self.pieces.get(index + 1);
+        let until = next.map_or(f64::INFINITY, |next| next.start);
+        (&self.pieces[index], until)
+    }
+
+    /// First and last instant of presence, in s.
+    pub(crate) fn presence(&self) -> (f64, f64) {
+        self.presence
     }
 
     /// State at an instant. `cursor` remembers the piece; start it at 0.

@@ -8,11 +8,11 @@ pub use crate::world::shape::{PlacedShape, Shape};
 
 /// Radii of the regions of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Regions {
+pub struct Regions<B = f64> {
     /// `r_3` in m.
-    pub critical_radius: f64,
+    pub critical_radius: B,
     /// `r_2` in m.
-    pub active_radius: f64,
+    pub active_radius: B,
 }
 
 /// Region radii and the speed they are sized for, as far as given.

@@ -3,24 +3,24 @@
 use nalgebra::Vector2;
 
 use crate::error::{Result, finite, finite_pair, not_negative, positive};
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, Wide, widened};
 
 /// A convex outline around a center.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum Shape<B: Real = f64> {
     /// A disc.
     Disc {
         /// Radius in m.
-        radius: f64,
+        radius: B,
     },
     /// A rectangle; one without width is a straight wall.
     Rectangle {
         /// Half the side along the heading, in m.
-        half_length: f64,
+        half_length: B,
         /// Half the side across the heading, in m.
-        half_width: f64,
+        half_width: B,
         /// Unit vector of the heading.
-        axis: Vector2<f64>,
+        axis: Vector2<B>,
     },
 }
 
@@ -45,14 +45,17 @@ impl Shape {
             axis: Vector2::new(cos, sin),
         }
     }
+}
 
+impl<B: Real> Shape<B> {
     /// Part of the distance `d` that lies inside the obstacle (`rho_obs`), in m: `d` is measured
     /// from the center of a disc and from the contour of a rectangle.
+    #[inline(always)]
     #[must_use]
-    pub fn inner_radius(&self) -> f64 {
+    pub fn inner_radius(&self) -> B {
         match self {
             Self::Disc { radius } => *radius,
-            Self::Rectangle { .. } => 0.0,
+            Self::Rectangle { .. } => B::zero(),
         }
     }
 
@@ -60,7 +63,10 @@ impl Shape {
     /// a place that is given from the center; zero inside a rectangle.
     #[inline(always)]
     #[must_use]
-    pub fn offset<R: Real>(&self, from_center: Vector2<R>) -> Vector2<R> {
+    pub fn offset<R: Real>(&self, from_center: Vector2<R>) -> Vector2<R>
+    where
+        B: Wide<R>,
+    {
         match *self {
             Self::Disc { .. } => from_center,
             Self::Rectangle {
@@ -80,21 +86,21 @@ impl Shape {
 }
 
 #[inline(always)]
-fn clamped<R: Real>(value: R, limit: f64) -> R {
-    value.max(R::splat(-limit)).min(R::splat(limit))
+fn clamped<R: Real, B: Wide<R>>(value: R, limit: B) -> R {
+    value.max((-limit).wide()).min(limit.wide())
 }
 
 /// Components of a vector along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn into_axes<R: Real>(vector: Vector2<R>, axis: Vector2<f64>) -> Vector2<R> {
-    let axis = Vector2::splat(axis.into());
+pub(crate) fn into_axes<R: Real, B: Wide<R>>(vector: Vector2<R>, axis: Vector2<B>) -> Vector2<R> {
+    let axis = widened(axis.into());
     Vector2::new(axis.dot(&vector), axis.perp(&vector))
 }
 
 /// The vector with components along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn out_of_axes<R: Real>(vector: Vector2<R>, axis: Vector2<f64>) -> Vector2<R> {
-    let axis = Vector2::splat(axis.into());
+pub(crate) fn out_of_axes<R: Real, B: Wide<R>>(vector: Vector2<R>, axis: Vector2<B>) -> Vector2<R> {
+    let axis: Vector2<R> = widened(axis.into());
     axis * vector.x + axis.left_normal() * vector.y
 }
 

@@ -1,7 +1,7 @@
 //! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
 use crate::laws::field::attractive::attractive_force;
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::{GainLanes, Gains};
@@ -9,7 +9,7 @@ use crate::laws::field::lyapunov;
 use crate::laws::field::repulsive::Repulsion;
 use crate::laws::field::side::{self, Detour, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
-use crate::laws::{Command, Law, LawFamily, Situation};
+use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation};
 use crate::world::geometry::{Approach, Body, Offset, RobotState};
 use crate::world::scenario::Scenario;
 
@@ -110,12 +110,12 @@ struct Near<R: Real> {
 
 impl<R: Real> Near<R> {
     #[inline(always)]
-    fn new(body: &Body, robot: &RobotState<R>) -> Self {
+    fn new<B: Wide<R>>(body: &Body<B>, robot: &RobotState<R>) -> Self {
         let offset = body.offset(robot.position);
         let (r2, r3) = (body.regions.active_radius, body.regions.critical_radius);
-        let here = R::Mask::splat(body.state.present);
-        let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
-        let critical = offset.distance_squared.le(R::splat(r3 * r3)) & here;
+        let here = B::wide_mask(body.state.present);
+        let active = offset.distance_squared.lt((r2 * r2).wide()) & here;
+        let critical = offset.distance_squared.le((r3 * r3).wide()) & here;
         Self {
             offset,
             active,
@@ -175,9 +175,9 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     /// Adds repulsion and detour of every obstacle to a sum and tells the lanes inside a critical
     /// region. False if a side hangs on the other obstacles; the sum is void then.
     #[inline(always)]
-    fn add_up(
+    fn add_up<B: Wide<R>>(
         &self,
-        situation: &Situation<'_, R>,
+        situation: &Situation<'_, R, B>,
         total: &mut Vector2<R>,
         critical: &mut R::Mask,
     ) -> bool {
@@ -205,7 +205,10 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
 
     /// As [`Self::add_up`], with the sides of every rule, Omega and the terms kept in the slots.
     #[inline(always)]
-    fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vector2<R>, R::Mask) {
+    fn sum_in_full<B: Wide<R>>(
+        &mut self,
+        situation: &Situation<'_, R, B>,
+    ) -> (Vector2<R>, R::Mask) {
         let critical = self.fill_slots(situation);
         self.break_ties();
         let robot = self.dissipative(&situation.robot);
@@ -227,7 +230,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 
     #[inline(always)]
-    fn fill_slots(&mut self, situation: &Situation<'_, R>) -> R::Mask {
+    fn fill_slots<B: Wide<R>>(&mut self, situation: &Situation<'_, R, B>) -> R::Mask {
         let mut critical = R::Mask::none();
         self.slots.clear();
         for (index, body) in situation.bodies.iter().enumerate() {
@@ -327,9 +330,19 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 }
 
-impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
+impl<R: Real + Wide<R>, const RECORD: bool> SceneLaw<R> for ForceFieldLaw<R, RECORD> {
+    fn enter(&mut self, lane: usize, scenario: &Scenario) {
+        let [x, y] = scenario.goal;
+        self.goal = Vector2::new(self.goal.x.replace(lane, x), self.goal.y.replace(lane, y));
+        for side in &mut self.latched {
+            *side = side.replace(lane, 0.0);
+        }
+    }
+}
+
+impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, RECORD> {
     #[inline(always)]
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R> {
         let robot = &situation.robot;
         let stabilizes = self.stabilizing != Stabilizing::Off;
         let remembers = self.rules.hysteresis.is_finite();

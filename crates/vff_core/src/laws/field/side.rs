@@ -1,6 +1,6 @@
 //! On which side the detour leads around an obstacle: the rules of Zeng (2011), 5.4.
 
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Mask, Real, Vector2, Wide, widened};
 use crate::world::geometry::{Approach, Body, COLLINEAR_ANGLE, RobotState, separation};
 use crate::world::obstacle::Shape;
 
@@ -36,9 +36,9 @@ pub struct Detour<R: Real> {
 /// (Fig. 5.9), a moving obstacle that robot and goal straddle is passed behind (Fig. 5.8a),
 /// exactly collinear is left open, anything else turns the shortest way.
 #[inline(always)]
-pub fn decide<R: Real>(
+pub fn decide<R: Real, B: Wide<R>>(
     rules: &SideRules,
-    body: &Body,
+    body: &Body<B>,
     approach: &Approach<R>,
     robot: &RobotState<R>,
     goal: Vector2<R>,
@@ -48,14 +48,15 @@ pub fn decide<R: Real>(
         Shape::Disc { .. } => {
             let [x, y] = body.state.velocity;
             let speed = (x * x + y * y).sqrt();
-            if rules.pass_behind && speed > MOVING_SPEED {
-                let course = Vector2::splat([x / speed, y / speed]);
+            let moving = B::wide_mask(speed.gt(B::splat(MOVING_SPEED)));
+            if rules.pass_behind && moving.any() {
+                let course: Vector2<R> = widened([x / speed, y / speed]);
                 let robot_side = course.perp(&approach.offset);
                 let goal_side = course.perp(&approach.to_goal);
                 let line = R::splat(VELOCITY_LINE);
                 let straddled = (robot_side.gt(line) & goal_side.lt(-line))
                     | (robot_side.lt(-line) & goal_side.gt(line));
-                side = R::select(straddled, robot_side.sign(), side);
+                side = R::select(straddled & moving, robot_side.sign(), side);
             }
         }
         Shape::Rectangle {

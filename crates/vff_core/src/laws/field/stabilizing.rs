@@ -1,12 +1,12 @@
 //! Stabilizing force: what makes the Lyapunov function descend.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide, widened};
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::GainLanes;
 use crate::laws::field::repulsive::Repulsion;
 use crate::laws::field::side::Detour;
-use crate::world::geometry::{Approach, Body};
+use crate::world::geometry::{Approach, Body, at_rest};
 
 /// Below this `|v_L|` the direction of the force is lost and it is zero, in N/s.
 const NO_DIRECTION: f64 = 1e-6;
@@ -130,11 +130,11 @@ impl<R: Real> Dissipation<R> {
     /// `sigma` where a rule overrides the shortest turn. `docs/theory/errata.md` lists each
     /// difference to the printed form.
     #[inline(always)]
-    pub fn add(
+    pub fn add<B: Wide<R>>(
         &mut self,
         gains: &GainLanes<R>,
         robot: &Dissipative<R>,
-        body: &Body,
+        body: &Body<B>,
         seen: (&Approach<R>, &Repulsion<R>, &Turning<R>, &Detour<R>),
     ) {
         let (approach, repulsion, turning, detour) = seen;
@@ -146,7 +146,7 @@ impl<R: Real> Dissipation<R> {
         let (a, c, d) = (approach.depth, approach.margin, approach.distance);
         let ddot = approach.range_rate;
         let (betadot, phidot) = (approach.bearing_rate, approach.angle_rate());
-        let acceleration: Vector2<R> = Vector2::splat(body.state.acceleration);
+        let acceleration: Vector2<R> = widened(body.state.acceleration);
 
         let f = u * (k3 * repulsion.potential) + t * (k5 * turning.signed_potential);
         let l = u * (k3 * repulsion.rate) + t * (k5 * turning.signed_rate);
@@ -220,15 +220,16 @@ impl<R: Real> Dissipation<R> {
 /// `alphaddot = [t_W.(-a_o) - 2 Wdot alphadot]/|W|`, `Wdot = u_W.(-V_o)`, in rad/s^2, with the
 /// velocity and acceleration of the body.
 #[inline(always)]
-fn goal_bearing_acceleration<R: Real>(body: &Body, approach: &Approach<R>) -> R {
+fn goal_bearing_acceleration<R: Real, B: Wide<R>>(body: &Body<B>, approach: &Approach<R>) -> R {
     let state = &body.state;
-    if state.velocity == [0.0; 2] && state.acceleration == [0.0; 2] {
+    let moving = B::wide_mask(!(at_rest(state.velocity) & at_rest(state.acceleration)));
+    if !moving.any() {
         return R::zero();
     }
     let w = approach.to_goal;
     let length_squared = w.dot(&w);
-    let turning = w.perp(&Vector2::splat(state.acceleration));
-    let closing = w.dot(&Vector2::splat(state.velocity));
+    let turning = w.perp(&widened(state.acceleration));
+    let closing = w.dot(&widened(state.velocity));
     let value = (R::splat(2.0) * closing * approach.goal_bearing_rate - turning) / length_squared;
-    R::select(length_squared.gt(R::zero()), value, R::zero())
+    R::select(length_squared.gt(R::zero()) & moving, value, R::zero())
 }

@@ -5,10 +5,9 @@ mod family;
 
 pub use family::{Pairwise, PairwiseFamily};
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
-use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, Situation};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, SceneLaw, Situation};
 use crate::world::geometry::{Body, Offset, RobotState};
-use crate::world::obstacle::Shape;
 use crate::world::scenario::Scenario;
 
 /// Surfaces closer than this push as if they were this far apart, in m; without it the laws that
@@ -17,9 +16,9 @@ const LEAST_GAP: f64 = 1e-3;
 
 /// What a law needs of one obstacle.
 #[derive(Clone, Copy, Debug)]
-pub struct Neighbor<'a, R> {
+pub struct Neighbor<'a, R, B: Real = f64> {
     /// The obstacle.
-    pub body: &'a Body,
+    pub body: &'a Body<B>,
     /// Offset of the robot from it.
     pub offset: Offset<R>,
     /// `d` in m.
@@ -29,7 +28,7 @@ pub struct Neighbor<'a, R> {
     /// Distance of the surfaces in m, at least [`LEAST_GAP`].
     pub gap: R,
     /// `r2` measured between the surfaces, in m.
-    pub reach: f64,
+    pub reach: B,
 }
 
 /// Forces of one law, gains in lanes.
@@ -37,7 +36,7 @@ pub trait PairwiseField<R: Real>: Copy {
     /// Attraction in N; `inside`: lanes inside an active region.
     fn attraction(&self, to_goal: Vector2<R>, velocity: Vector2<R>, inside: R::Mask) -> Vector2<R>;
     /// Push of an obstacle on the robot inside its active region.
-    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R>;
+    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R>;
 }
 
 /// Parts of the force of one obstacle, in N.
@@ -79,33 +78,33 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
     }
 
     #[inline(always)]
-    fn neighbor<'a>(&self, body: &'a Body, offset: Offset<R>) -> Neighbor<'a, R> {
+    fn neighbor<'a, B: Wide<R>>(&self, body: &'a Body<B>, offset: Offset<R>) -> Neighbor<'a, R, B> {
         let distance = offset.distance_squared.sqrt();
         let apart = distance.gt(R::zero());
         // A robot exactly on the centre, or inside a rectangle, is pushed nowhere.
         let outward = offset.vector * (R::splat(1.0) / distance);
-        let touching = self.robot_radius
-            + match body.shape {
-                Shape::Disc { radius } => radius,
-                Shape::Rectangle { .. } => 0.0,
-            };
+        let touching = B::splat(self.robot_radius) + body.shape.inner_radius();
         Neighbor {
             body,
             offset,
             distance,
             outward: Vector2::select(apart, outward, Vector2::zeros()),
-            gap: (distance - R::splat(touching)).max(R::splat(LEAST_GAP)),
+            gap: (distance - touching.wide()).max(R::splat(LEAST_GAP)),
             reach: body.regions.active_radius - touching,
         }
     }
 
     /// Lanes inside the active region of an obstacle, and its push there; `None` if no lane is.
     #[inline(always)]
-    fn push_of(&self, body: &Body, robot: &RobotState<R>) -> Option<(R::Mask, Push<R>)> {
+    fn push_of<B: Wide<R>>(
+        &self,
+        body: &Body<B>,
+        robot: &RobotState<R>,
+    ) -> Option<(R::Mask, Push<R>)> {
         let offset = body.offset(robot.position);
         let r2 = body.regions.active_radius;
-        let here = R::Mask::splat(body.state.present);
-        let active = offset.distance_squared.lt(R::splat(r2 * r2)) & here;
+        let here = B::wide_mask(body.state.present);
+        let active = offset.distance_squared.lt((r2 * r2).wide()) & here;
         if !active.any() {
             return None;
         }
@@ -151,9 +150,16 @@ impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
     }
 }
 
-impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
+impl<R: Real + Wide<R>, F: PairwiseField<R>> SceneLaw<R> for PairwiseLaw<R, F> {
+    fn enter(&mut self, lane: usize, scenario: &Scenario) {
+        let [x, y] = scenario.goal;
+        self.goal = Vector2::new(self.goal.x.replace(lane, x), self.goal.y.replace(lane, y));
+    }
+}
+
+impl<R: Real, B: Wide<R>, F: PairwiseField<R>> Law<R, B> for PairwiseLaw<R, F> {
     #[inline(always)]
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
+    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R> {
         let robot = &situation.robot;
         let mut force = Vector2::zeros();
         let mut inside = R::Mask::none();
