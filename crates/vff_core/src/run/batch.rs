@@ -7,10 +7,17 @@ use crate::run::Interrupted;
 use crate::run::group::{AnyLaw, Group};
 use crate::run::metrics::{Weights, score};
 use crate::run::nominal::{NominalRuns, Ways};
-use crate::run::options::Options;
+use crate::run::options::{Integrator, Options};
 use crate::run::plan::{Instructions, Plan, Width};
+use crate::run::scene_batch::SceneBatch;
 use crate::run::table::{BatchTable, Cell, Strip};
 use crate::world::scenario::Scenario;
+
+/// Gain sets that fill the lanes by themselves.
+const FULL_LANES: usize = 8;
+
+/// Scenes from which on lanes pay.
+const FEWEST_SCENES: usize = 4;
 
 /// Options of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -113,6 +120,17 @@ impl Batch<'_> {
         };
         let count = self.scenarios.len();
         let ways = Ways::new(self.scenarios);
+        if self.scenes_suit(sets) {
+            let scenes = SceneBatch {
+                scenarios: self.scenarios,
+                law,
+                plan: &plan,
+                weights: self.options.weights,
+                interrupted: self.interrupted,
+                progress: self.progress,
+            };
+            return scenes.run(self.points, &ways);
+        }
         let nominal = NominalRuns::new(&ways, law, self.points, &plan, self.interrupted)?;
         let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
         let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
@@ -120,6 +138,15 @@ impl Batch<'_> {
             self.work(task, &plan, (&ways, &nominal))
         })?;
         Ok(BatchTable::gather(self.scenarios, &strips))
+    }
+
+    /// Whether scenes fill the lanes better than gain sets do.
+    fn scenes_suit(&self, sets: usize) -> bool {
+        let options = &self.options;
+        let held = options.run.hold || options.run.integrator != Integrator::Rk4;
+        let asked = options.width.is_none_or(|width| width != Width::One);
+        let many = sets < FULL_LANES && self.scenarios.len() >= FEWEST_SCENES;
+        self.law.driven().takes_scenes() && held && asked && many && !options.descent
     }
 
     fn work(

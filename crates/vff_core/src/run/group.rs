@@ -6,8 +6,9 @@ use std::sync::Arc;
 use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
 use crate::laws::trace::Trace;
-use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
+use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
 use crate::run::Interrupted;
+use crate::run::lane_rollout::run_scenes;
 use crate::run::options::Options;
 use crate::run::outcome::{RunSummary, RunTotals};
 use crate::run::plan::{Instructions, MAX_GAINS, Plan, Width, key_of};
@@ -38,7 +39,7 @@ impl AnyLaw {
         Self::driven_by::<_, One>(law)
     }
 
-    pub(crate) fn driven_by<F: LawFamily + Send + 'static, K: Kernels>(law: F) -> Self {
+    pub(crate) fn driven_by<F: LawFamily + Send + 'static, K: Kernels<F>>(law: F) -> Self {
         Self(Arc::new(Driver::<F, K>(law, PhantomData)))
     }
 
@@ -104,6 +105,10 @@ pub(crate) trait Driven: Send + Sync {
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
     /// Runs gain sets and hands every run over.
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// Whether it can run scenes side by side.
+    fn takes_scenes(&self) -> bool;
+    /// Runs scenes that agree in robot and rules, and hands every run over.
+    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()>;
     /// What it asks for at first, with its own gains.
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
     /// Every force term with its own gains; `None` for laws that are no sum of terms.
@@ -136,16 +141,31 @@ pub(crate) trait Driven: Send + Sync {
 struct Driver<F, K>(F, PhantomData<fn() -> K>);
 
 /// Kernels that are compiled for a law.
-pub(crate) trait Kernels: 'static {
+pub(crate) trait Kernels<F: LawFamily>: 'static {
+    /// Whether there is one for scenes side by side.
+    const SCENES: bool = false;
     /// Runs gain sets in the kernel that suits the plan.
-    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// Runs scenes side by side, if there is such a kernel.
+    fn run_scenes(_law: &F, _group: &SceneGroup<'_>, _keep: Keep<'_>) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// One, four and eight gain sets side by side, with and without the Lyapunov function.
 pub(crate) struct EveryWidth;
 
-impl Kernels for EveryWidth {
-    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+impl<F: LawFamily> Kernels<F> for EveryWidth
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    const SCENES: bool = true;
+
+    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch(law, keep)
+    }
+
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
         // One job for each kind of run: in one body an unoptimized build would need more stack
         // than a thread has.
         match (group.plan.width, group.plan.descent) {
@@ -163,8 +183,17 @@ impl Kernels for EveryWidth {
 /// One and eight gain sets side by side, for laws without a Lyapunov function.
 pub(crate) struct OneAndEight;
 
-impl Kernels for OneAndEight {
-    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+impl<F: LawFamily> Kernels<F> for OneAndEight
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    const SCENES: bool = true;
+
+    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch(law, keep)
+    }
+
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
         match group.plan.width {
             Width::One => group.dispatch::<F, f64, (), false>(law, keep),
             _ => group.dispatch::<F, Lanes<8>, (), false>(law, keep),
@@ -175,13 +204,13 @@ impl Kernels for OneAndEight {
 /// One after the other, for laws that think longer than a robot moves.
 pub(crate) struct One;
 
-impl Kernels for One {
-    fn run<F: LawFamily>(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+impl<F: LawFamily> Kernels<F> for One {
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
         group.dispatch::<F, f64, (), false>(law, keep)
     }
 }
 
-impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
+impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
     fn gain_names(&self) -> &'static [&'static str] {
         self.0.gain_names()
     }
@@ -212,6 +241,17 @@ impl<F: LawFamily + Send, K: Kernels> Driven for Driver<F, K> {
             ..*group
         };
         K::run(&self.0, group, keep)
+    }
+
+    fn takes_scenes(&self) -> bool {
+        K::SCENES
+    }
+
+    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        if (group.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        K::run_scenes(&self.0, group, keep)
     }
 
     fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
@@ -293,6 +333,72 @@ impl Group<'_> {
             keep,
             kind: PhantomData,
         })
+    }
+}
+
+/// Scenes of one task for one gain set.
+pub(crate) struct SceneGroup<'a> {
+    /// Where, all with the same robot and rules.
+    pub scenes: &'a [&'a Scenario],
+    /// The gain set.
+    pub gains: &'a [f64],
+    pub plan: &'a Plan,
+    pub interrupted: Interrupted<'a>,
+}
+
+impl SceneGroup<'_> {
+    fn dispatch<F: LawFamily>(&self, law: &F, keep: Keep<'_>) -> Result<()>
+    where
+        F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+    {
+        let processor = match self.plan.instructions {
+            Instructions::Widest => pulp::Arch::new(),
+            Instructions::Baseline => pulp::Arch::Scalar,
+        };
+        processor.dispatch(SceneJob {
+            group: self,
+            law,
+            keep,
+        })
+    }
+}
+
+/// As [`Job`], for scenes side by side.
+struct SceneJob<'a, 'b, 'c, F> {
+    group: &'a SceneGroup<'b>,
+    law: &'a F,
+    keep: Keep<'c>,
+}
+
+impl<F: LawFamily> pulp::NullaryFnOnce for SceneJob<'_, '_, '_, F>
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    type Output = Result<()>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let group = self.group;
+        let fullest = group
+            .scenes
+            .iter()
+            .max_by_key(|scene| scene.obstacle_count());
+        let Some(fullest) = fullest else {
+            return Ok(());
+        };
+        let mut law = law_of::<F, Lanes<8>, false>(self.law, group.gains, fullest)?;
+        run_scenes(
+            group.scenes,
+            &mut law,
+            &group.plan.run,
+            group.interrupted,
+            |index, runs, lane| {
+                let totals = runs.totals(lane, &());
+                (self.keep)(index, &totals, &|obstacle| {
+                    runs.min_distance(obstacle, lane)
+                });
+            },
+        )
     }
 }
 

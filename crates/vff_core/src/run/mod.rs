@@ -5,6 +5,8 @@ pub mod built;
 mod episode;
 pub mod follower;
 pub(crate) mod group;
+mod lane_rollout;
+pub(crate) mod lane_scenes;
 pub mod metrics;
 mod navigation;
 mod nominal;
@@ -16,6 +18,7 @@ mod record;
 mod rollout;
 mod runs;
 mod scene;
+mod scene_batch;
 pub mod skirt;
 mod table;
 

@@ -23,11 +23,14 @@ pub(crate) struct Ways {
 impl Ways {
     pub fn new(scenarios: &[Scenario]) -> Self {
         let mut ways: Vec<Scenario> = Vec::new();
+        let mut known: HashMap<[u64; 4], Vec<usize>> = HashMap::new();
         let way_of = |scenario: &Scenario| {
-            let nominal = scenario.nominal();
-            let known = ways.iter().position(|other| *other == nominal);
-            known.unwrap_or_else(|| {
-                ways.push(nominal);
+            let [from, to] = [scenario.start, scenario.goal].map(|end| end.map(f64::to_bits));
+            let alike = known.entry([from[0], from[1], to[0], to[1]]).or_default();
+            let found = alike.iter().find(|way| ways[**way].same_way(scenario));
+            found.copied().unwrap_or_else(|| {
+                ways.push(scenario.nominal());
+                alike.push(ways.len() - 1);
                 ways.len() - 1
             })
         };

@@ -8,7 +8,7 @@ use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::Runs;
-use crate::run::scene::{Scene, bodies_at};
+use crate::run::scene::{Scene, World, bodies_at};
 use crate::sensing::sampled::{Measured, SampledScene};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
@@ -249,8 +249,8 @@ fn observe<R: Real>(runs: &mut Runs<&Scenario, R>, measured: Option<Measured>) -
 }
 
 #[inline(always)]
-fn semi_implicit_euler<R: Real>(runs: &mut Runs<&Scenario, R>) {
-    let robot = &runs.scenario.robot;
+pub(crate) fn semi_implicit_euler<W: World<R>, R: Real>(runs: &mut Runs<W, R>) {
+    let robot = &runs.scenario.common().robot;
     let (position, velocity) = (runs.position, runs.velocity);
     let mut state = RobotState { position, velocity };
     runs.speed = robot.advance(&mut state, runs.push, runs.clock.step);
@@ -258,8 +258,8 @@ fn semi_implicit_euler<R: Real>(runs: &mut Runs<&Scenario, R>) {
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
-fn rk4_held<R: Real>(runs: &mut Runs<&Scenario, R>) {
-    let robot = &runs.scenario.robot;
+pub(crate) fn rk4_held<W: World<R>, R: Real>(runs: &mut Runs<W, R>) {
+    let robot = &runs.scenario.common().robot;
     let Clock { step, .. } = runs.clock;
     let at = |share: f64| runs.velocity + runs.acceleration * R::splat(share * step);
     let middle = robot.limited_velocity(at(0.5)).0;

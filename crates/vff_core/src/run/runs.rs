@@ -1,18 +1,15 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
-use std::ops::Deref;
-
 use crate::error::{Failure, Result};
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide, Zero};
 use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::run::options::Clock;
 use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 use crate::run::record::Recorder;
-use crate::run::scene::body_at;
+use crate::run::scene::{World, body_at};
 use crate::sensing::sampled::Past;
 use crate::world::geometry::Body;
-use crate::world::scenario::Scenario;
 
 /// A robot slower than this is at rest, in m/s.
 const REST_SPEED: f64 = 1e-3;
@@ -22,11 +19,11 @@ const BOUND_MARGIN: f64 = 1e-6;
 
 /// State of the robots of one lane group.
 ///
-/// `S` holds the scenario: a reference in the kernel, a shared owner in an episode that is stepped
-/// from outside.
+/// `W` is where they run: one scenario for all, a reference in the kernel and a shared owner in an
+/// episode that is stepped from outside, or a scenario for each lane.
 #[derive(Clone)]
-pub(crate) struct Runs<S, R: Real> {
-    pub scenario: S,
+pub(crate) struct Runs<W: World<R>, R: Real> {
+    pub scenario: W,
     pub clock: Clock,
     pub position: Vector2<R>,
     pub velocity: Vector2<R>,
@@ -53,6 +50,10 @@ pub(crate) struct Runs<S, R: Real> {
     /// Whether the least distance to each obstacle can change, or a contact with it last, before the
     /// next sample.
     watched: Vec<bool>,
+    /// Distance in m at which robot and obstacle touch, and the largest speed of each obstacle in
+    /// m/s, infinite if there is none.
+    reach: Vec<W::Number>,
+    speed_bound: Vec<W::Number>,
     /// Instant from which no obstacle moves any more, in s.
     all_stand_from: f64,
     /// Last sample at which each robot was not at rest, in s.
@@ -70,13 +71,23 @@ pub(crate) struct Runs<S, R: Real> {
     at_fault: Vec<R>,
 }
 
-impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
-    pub fn new(scenario: S, clock: Clock, bodies: &[Body]) -> Self {
-        let count = scenario.obstacles.len();
+impl<W: World<R>, R: Real> Runs<W, R> {
+    pub fn new(scenario: W, clock: Clock, bodies: &[Body<W::Number>]) -> Self {
+        let mut runs = Self::at_start(scenario, clock, bodies.len());
+        for (index, body) in bodies.iter().enumerate() {
+            runs.watch(index, body, W::Number::zero(), runs.running);
+        }
+        runs.remember();
+        runs
+    }
+
+    /// Robots at their starts, before the first look at the obstacles.
+    fn at_start(world: W, clock: Clock, count: usize) -> Self {
+        let scenario = world.common();
         let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
         let unset = R::splat(f64::NAN);
-        let mut runs = Self {
+        Self {
             clock,
             position: Vector2::splat(scenario.start),
             velocity,
@@ -91,7 +102,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             acceleration: Vector2::zeros(),
             push: Vector2::zeros(),
             last_measured: None,
-            past: Past::new(&scenario, clock.step),
+            past: Past::new(scenario, clock.step),
             goal: Vector2::splat(scenario.goal),
             wheels,
             wheel_speeds: wheels.speeds(velocity),
@@ -99,7 +110,9 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             path: R::zero(),
             near_goal: true,
             watched: vec![true; count],
-            all_stand_from: scenario.stands_from(),
+            reach: (0..count).map(|index| world.reach(index)).collect(),
+            speed_bound: (0..count).map(|index| world.speed_bound(index)).collect(),
+            all_stand_from: world.stands_from(),
             moved: R::zero(),
             end_time: unset,
             arrival_time: unset,
@@ -110,13 +123,51 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
             contact_time: vec![unset; count],
             contact_speed: vec![unset; count],
             at_fault: vec![R::zero(); count],
-            scenario,
-        };
-        for (index, body) in bodies.iter().enumerate() {
-            runs.watch(index, body, 0.0, runs.running);
+            scenario: world,
         }
-        runs.remember();
-        runs
+    }
+
+    /// A run begins in one lane, at the start of its scenario.
+    pub fn enter(&mut self, lane: usize, world: W, bodies: &[Body<W::Number>]) {
+        let [x, y] = world.of_lane(lane).start;
+        let [goal_x, goal_y] = world.of_lane(lane).goal;
+        let set = |number: &mut R, value: f64| *number = number.replace(lane, value);
+        set(&mut self.position.x, x);
+        set(&mut self.position.y, y);
+        set(&mut self.goal.x, goal_x);
+        set(&mut self.goal.y, goal_y);
+        set(&mut self.velocity.x, 0.0);
+        set(&mut self.velocity.y, 0.0);
+        let standing = self.wheels.speeds(Vector2::<R>::zeros());
+        for (speed, standing) in self.wheel_speeds.iter_mut().zip(standing) {
+            set(speed, standing.lane(lane));
+        }
+        for number in [
+            &mut self.speed,
+            &mut self.squared_current,
+            &mut self.path,
+            &mut self.moved,
+            &mut self.force_evaluations,
+        ] {
+            set(number, 0.0);
+        }
+        set(&mut self.end_time, f64::NAN);
+        set(&mut self.arrival_time, f64::NAN);
+        let others = (0..R::WIDTH).filter(|other| *other != lane);
+        let only = others.fold(R::Mask::splat(true), Mask::without);
+        self.running = self.running | only;
+        self.stopped = self.stopped & !only;
+        (self.near_goal, self.scenario) = (true, world);
+        self.watched.fill(true);
+        for (index, body) in bodies.iter().enumerate() {
+            self.reach[index] = self.scenario.reach(index);
+            self.speed_bound[index] = self.scenario.speed_bound(index);
+            set(&mut self.min_distance_squared[index], f64::INFINITY);
+            set(&mut self.contact_time[index], f64::NAN);
+            set(&mut self.contact_speed[index], f64::NAN);
+            set(&mut self.at_fault[index], 0.0);
+            self.watch(index, body, W::Number::zero(), only);
+        }
     }
 
     /// Keeps the present positions for robots that are measured late.
@@ -136,7 +187,13 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
     /// the currents are looked at afterwards.
     #[inline(always)]
-    pub fn account(&mut self, bodies: &[Body], before: Vector2<R>, time: f64, record: bool) {
+    pub fn account(
+        &mut self,
+        bodies: &[Body<W::Number>],
+        before: Vector2<R>,
+        time: W::Number,
+        record: bool,
+    ) {
         let speeds = self.wheels.speeds(self.velocity);
         let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
         self.wheel_speeds = speeds;
@@ -148,7 +205,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
         let way = self.speed * R::splat(self.clock.step);
         if self.near_goal {
             let to_goal = self.goal - self.position;
-            let tolerance = self.scenario.rules.arrival_tolerance;
+            let tolerance = self.scenario.common().rules.arrival_tolerance;
             let near = to_goal.dot(&to_goal).le(R::splat(tolerance * tolerance));
             let arrived = self.running & near;
             if arrived.any() {
@@ -166,25 +223,27 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     /// Least distance and contact of some lanes with an obstacle.
     #[inline(always)]
-    fn watch(&mut self, index: usize, body: &Body, time: f64, lanes: R::Mask) {
-        if !body.state.present {
+    fn watch<B: Wide<R>>(&mut self, index: usize, body: &Body<B>, time: B, lanes: R::Mask) {
+        let here = B::wide_mask(body.state.present);
+        if !here.any() {
             return;
         }
+        let lanes = lanes & here;
         let offset = body.offset(self.position);
         let squared = offset.distance_squared;
         let least = &mut self.min_distance_squared[index];
         *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
-        let reach = self.scenario.obstacles[index].contact_distance;
-        let touching = lanes & squared.le(R::splat(reach * reach));
+        let reach = self.reach[index];
+        let touching = lanes & squared.le((reach * reach).wide());
         if touching.any() {
-            self.touch(index, time, touching, offset.vector);
+            self.touch(index, time.wide(), touching, offset.vector);
         }
     }
 
     /// Finds out what cannot happen before the next sample, so that it need not be looked for:
     /// nothing moves farther than its largest speed takes it.
     #[inline(always)]
-    pub fn look_ahead(&mut self, bodies: &[Body]) {
+    pub fn look_ahead(&mut self, bodies: &[Body<W::Number>]) {
         let Clock {
             interval,
             steps_per_sample,
@@ -193,29 +252,28 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
         if steps_per_sample == 1 {
             return;
         }
-        let own = self.scenario.robot.max_speed;
+        let common = self.scenario.common();
+        let own = common.robot.max_speed;
         let to_goal = self.goal - self.position;
-        let reach = self.scenario.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
+        let reach = common.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
         let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
         self.near_goal = (near & self.running).any();
-        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
-            let body = &bodies[index];
-            self.watched[index] = match placed.speed_bound {
-                Some(speed) if body.state.present => {
-                    let way = R::splat((own + speed) * interval + BOUND_MARGIN);
-                    // Within a contact the robot may turn toward the obstacle, however near they have been.
-                    let reach = R::splat(placed.contact_distance);
-                    let least = self.min_distance_squared[index].sqrt().max(reach) + way;
-                    let squared = body.offset(self.position).distance_squared;
-                    (squared.lt(least * least) & self.running).any()
-                }
-                _ => true,
-            };
+        let number = W::Number::splat;
+        for (index, body) in bodies.iter().enumerate() {
+            let speed = self.speed_bound[index];
+            let way = (number(own) + speed) * number(interval) + number(BOUND_MARGIN);
+            // Within a contact the robot may turn toward the obstacle, however near they have been.
+            let reach = self.reach[index].wide();
+            let least = self.min_distance_squared[index].sqrt().max(reach) + way.wide();
+            let squared = body.offset(self.position).distance_squared;
+            let here = W::Number::wide_mask(body.state.present);
+            let near = squared.lt(least * least) | !here;
+            self.watched[index] = (near & self.running).any();
         }
     }
 
     #[cold]
-    fn touch(&mut self, index: usize, time: f64, touching: R::Mask, offset: Vector2<R>) {
+    fn touch(&mut self, index: usize, time: R, touching: R::Mask, offset: Vector2<R>) {
         let toward = self.velocity.dot(&offset).lt(R::zero());
         let moving = R::splat(CONTACT_SPEED).lt(self.velocity.dot(&self.velocity).sqrt());
         let fault = touching & toward & moving;
@@ -223,7 +281,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
         for lane in 0..R::WIDTH {
             if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
                 let speed = self.speed.lane(lane);
-                self.contact_time[index] = self.contact_time[index].replace(lane, time);
+                self.contact_time[index] = self.contact_time[index].replace(lane, time.lane(lane));
                 self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
                 self.touched = true;
             }
@@ -234,8 +292,15 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     /// instant of entry, linear inside the step.
     #[cold]
     #[inline(never)]
-    fn arrive(&mut self, before: Vector2<R>, time: f64, arrived: R::Mask, squared: R, way: R) {
-        let tolerance = self.scenario.rules.arrival_tolerance;
+    fn arrive(
+        &mut self,
+        before: Vector2<R>,
+        time: W::Number,
+        arrived: R::Mask,
+        squared: R,
+        way: R,
+    ) {
+        let tolerance = self.scenario.common().rules.arrival_tolerance;
         let after = self.position;
         let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
         let (from, to) = (length(self.goal - before), length(self.goal - after));
@@ -245,14 +310,15 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
         self.squared_current += R::select(arrived, squared * share, R::zero());
         self.path += R::select(arrived, way * share, R::zero());
         for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
-            let instant = (time - self.clock.step) + share.lane(lane) * self.clock.step;
+            let step = self.clock.step;
+            let instant = (time.wide().lane(lane) - step) + share.lane(lane) * step;
             self.arrival_time = self.arrival_time.replace(lane, instant);
             self.end_time = self.end_time.replace(lane, instant);
             // Only this lane is watched at its own instant.
             let others = (0..R::WIDTH).filter(|other| *other != lane);
             let only = others.fold(R::Mask::splat(true), Mask::without);
-            let scenario = self.scenario.clone();
-            for (index, placed) in scenario.obstacles.iter().enumerate() {
+            let world = self.scenario.clone();
+            for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
                 self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
             }
         }
@@ -261,10 +327,11 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     /// Ends the runs of lanes that have been at rest for too long.
     #[inline(always)]
-    pub fn rest(&mut self, time: f64) {
+    pub fn rest(&mut self, time: W::Number) {
         let still = self.speed.lt(R::splat(REST_SPEED));
-        self.moved = R::select(still, self.moved, R::splat(time));
-        let long = R::splat(self.scenario.rules.rest_time).le(R::splat(time) - self.moved);
+        self.moved = R::select(still, self.moved, time.wide());
+        let rest_time = self.scenario.common().rules.rest_time;
+        let long = R::splat(rest_time).le(time.wide() - self.moved);
         let ended = self.running & long;
         if ended.any() {
             self.stopped = self.stopped | ended;
@@ -274,33 +341,35 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     /// Whether any robot is in the active region of an obstacle.
     #[inline(always)]
-    pub fn feels_any(&self, bodies: &[Body]) -> bool {
+    pub fn feels_any(&self, bodies: &[Body<W::Number>]) -> bool {
         bodies.iter().any(|body| {
             let reach = body.regions.active_radius;
             let squared = body.offset(self.position).distance_squared;
-            body.state.present && squared.lt(R::splat(reach * reach)).any()
+            let here = W::Number::wide_mask(body.state.present);
+            (here & squared.lt((reach * reach).wide())).any()
         })
     }
 
     /// Ends the runs of lanes that stand in a critical region for good: obstacle and robot at
     /// rest, and nothing else that moves.
     #[inline(always)]
-    pub fn end_hopeless(&mut self, bodies: &[Body], time: f64) {
+    pub fn end_hopeless(&mut self, bodies: &[Body<W::Number>], time: W::Number) {
         let still = self.running & self.speed.lt(R::splat(REST_SPEED));
-        if still.any() && time >= self.all_stand_from {
+        let still = still & time.wide().ge(R::splat(self.all_stand_from));
+        if still.any() {
             self.end_caught(bodies, time, still);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn end_caught(&mut self, bodies: &[Body], time: f64, still: R::Mask) {
+    fn end_caught(&mut self, bodies: &[Body<W::Number>], time: W::Number, still: R::Mask) {
         // Braked within one control period, it goes no farther than that.
         let way = self.speed * R::splat(self.clock.interval) + R::splat(BOUND_MARGIN);
         let mut caught = R::Mask::none();
         for body in bodies {
             let distance = body.offset(self.position).distance_squared.sqrt();
-            caught = caught | (distance + way).lt(R::splat(body.regions.critical_radius));
+            caught = caught | (distance + way).lt(body.regions.critical_radius.wide());
         }
         let ended = still & caught;
         if ended.any() {
@@ -311,7 +380,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     /// Ends the runs of lanes that have touched an obstacle.
     #[inline(always)]
-    pub fn stop_at_contact(&mut self, time: f64) {
+    pub fn stop_at_contact(&mut self, time: W::Number) {
         if self.touched {
             self.touched = false;
             self.stop_touched(time);
@@ -320,10 +389,10 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     #[cold]
     #[inline(never)]
-    fn stop_touched(&mut self, time: f64) {
+    fn stop_touched(&mut self, time: W::Number) {
         let mut touched = R::Mask::none();
         for contact in &self.contact_time {
-            touched = touched | contact.le(R::splat(time));
+            touched = touched | contact.le(time.wide());
         }
         let ended = self.running & touched;
         if ended.any() {
@@ -332,8 +401,8 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     }
 
     /// Ends the runs of some lanes.
-    pub fn end(&mut self, lanes: R::Mask, time: f64) {
-        self.end_time = R::select(lanes, R::splat(time), self.end_time);
+    pub fn end(&mut self, lanes: R::Mask, time: W::Number) {
+        self.end_time = R::select(lanes, time.wide(), self.end_time);
         self.running = self.running & !lanes;
     }
 
@@ -343,7 +412,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     }
 
     #[inline(always)]
-    pub fn check_finite(&self, time: f64) -> Result<()> {
+    pub fn check_finite(&self, time: W::Number) -> Result<()> {
         let limit = R::splat(f64::INFINITY);
         let finite = |vector: Vector2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
         self.check(finite(self.position) & finite(self.velocity), time)
@@ -351,16 +420,17 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
 
     /// A force whose magnitude overflows has no direction left.
     #[inline(always)]
-    pub fn check_force(&self, force: Vector2<R>, time: f64) -> Result<()> {
+    pub fn check_force(&self, force: Vector2<R>, time: W::Number) -> Result<()> {
         let sound = force.dot(&force).lt(R::splat(f64::INFINITY));
         self.check(sound, time)
     }
 
     #[inline(always)]
-    fn check(&self, sound: R::Mask, time: f64) -> Result<()> {
+    fn check(&self, sound: R::Mask, time: W::Number) -> Result<()> {
         let lost = self.running & !sound;
         if lost.any() {
             let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
+            let time = time.wide().lane(run);
             return Err(Failure::NonFinite { run, time });
         }
         Ok(())
@@ -386,7 +456,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     /// What is left of the run of a lane, whatever the number of obstacles.
     pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
         let (mut contacts, mut at_fault) = ([0, 0], 0);
-        for obstacle in 0..self.scenario.obstacle_count() {
+        for obstacle in 0..self.scenario.of_lane(lane).obstacle_count() {
             if let Some(touch) = self.contact(obstacle, lane) {
                 contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
                 at_fault += u32::from(touch.at_fault);
@@ -418,7 +488,7 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> Runs<S, R> {
     /// Everything that is left of the run of a lane.
     pub fn summary(&self, lane: usize, recorder: &impl Recorder<R>) -> RunSummary {
         let totals = self.totals(lane, recorder);
-        let obstacles = 0..self.scenario.obstacle_count();
+        let obstacles = 0..self.scenario.of_lane(lane).obstacle_count();
         let distance = |obstacle| self.min_distance(obstacle, lane);
         let contact = |obstacle| self.contact(obstacle, lane);
         RunSummary {

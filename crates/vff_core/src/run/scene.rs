@@ -2,9 +2,51 @@
 
 use std::ops::Deref;
 
+use crate::lanes::{Real, Wide};
 use crate::run::options::Clock;
 use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
+
+/// Where robots side by side run.
+pub(crate) trait World<R: Real>: Clone {
+    /// Numbers that the robots share, or that each of them has for itself.
+    type Number: Wide<R>;
+    /// A scenario with the robot, the start and the rules of all lanes.
+    fn common(&self) -> &Scenario;
+    /// The scenario of a lane.
+    fn of_lane(&self, lane: usize) -> &Scenario;
+    /// Distance `d` at which the robot touches an obstacle, in m.
+    fn reach(&self, obstacle: usize) -> Self::Number;
+    /// Largest speed of an obstacle in m/s, infinite if there is none.
+    fn speed_bound(&self, obstacle: usize) -> Self::Number;
+    /// Instant from which no obstacle moves any more, in s; infinite if there is none.
+    fn stands_from(&self) -> f64;
+}
+
+impl<S: Deref<Target = Scenario> + Clone, R: Real> World<R> for S {
+    type Number = f64;
+
+    fn common(&self) -> &Scenario {
+        self
+    }
+
+    fn of_lane(&self, _lane: usize) -> &Scenario {
+        self
+    }
+
+    fn reach(&self, obstacle: usize) -> f64 {
+        self.obstacles[obstacle].contact_distance
+    }
+
+    fn speed_bound(&self, obstacle: usize) -> f64 {
+        let placed = &self.obstacles[obstacle];
+        placed.speed_bound.unwrap_or(f64::INFINITY)
+    }
+
+    fn stands_from(&self) -> f64 {
+        Scenario::stands_from(self)
+    }
+}
 
 /// Where the obstacles are at the steps of one block.
 pub(crate) struct Scene<S> {

@@ -13,17 +13,10 @@ pub(crate) struct Cell {
     pub performance: Performance,
 }
 
-/// Runs of one scenario, one a gain set.
-pub(crate) struct Strip {
-    pub cells: Vec<Cell>,
-    /// Least distances, the obstacles fastest.
-    pub distances: Vec<f64>,
-}
-
-impl Strip {
-    /// Room for a number of gain sets.
-    pub fn new(sets: usize, obstacles: usize) -> Self {
-        let cell = Cell {
+impl Cell {
+    /// A run that is still to be made.
+    pub fn unset() -> Self {
+        Self {
             run: RunTotals {
                 outcome: Outcome::TimedOut,
                 end_time: f64::NAN,
@@ -41,9 +34,22 @@ impl Strip {
                 avoidance: 0.0,
                 energy_saving: 0.0,
             },
-        };
+        }
+    }
+}
+
+/// Runs of one scenario, one a gain set.
+pub(crate) struct Strip {
+    pub cells: Vec<Cell>,
+    /// Least distances, the obstacles fastest.
+    pub distances: Vec<f64>,
+}
+
+impl Strip {
+    /// Room for a number of gain sets.
+    pub fn new(sets: usize, obstacles: usize) -> Self {
         Self {
-            cells: filled(cell, sets),
+            cells: filled(Cell::unset(), sets),
             distances: filled(f64::NAN, sets * obstacles),
         }
     }
@@ -111,11 +117,27 @@ impl BatchTable {
 
     /// Turns strips into columns, each in parallel.
     pub(crate) fn gather(scenarios: &[Scenario], strips: &[Strip]) -> Self {
+        let place = |row: usize| {
+            let (scenario, set) = (row % strips.len(), row / strips.len());
+            let count = scenarios[scenario].obstacle_count();
+            let strip = &strips[scenario];
+            let distances = &strip.distances[set * count..(set + 1) * count];
+            (&strip.cells[set], distances)
+        };
         let rows = strips.iter().map(|strip| strip.cells.len()).sum();
+        Self::of_rows(scenarios, rows, place)
+    }
+
+    /// Columns of rows that lie anywhere: each has its cell and the distances to its obstacles.
+    pub(crate) fn of_rows<'a>(
+        scenarios: &'a [Scenario],
+        rows: usize,
+        place: impl Fn(usize) -> (&'a Cell, &'a [f64]) + Sync,
+    ) -> Self {
         let source = Source {
             scenarios,
-            strips,
             rows,
+            place,
         };
         let obstacles = scenarios.iter().map(Scenario::obstacle_count).max();
         let obstacles = obstacles.unwrap_or(0);
@@ -143,32 +165,23 @@ impl BatchTable {
 }
 
 /// Where the columns come from.
-struct Source<'a> {
+struct Source<'a, P> {
     scenarios: &'a [Scenario],
-    strips: &'a [Strip],
     rows: usize,
+    /// Cell and distances of a row.
+    place: P,
 }
 
-impl Source<'_> {
-    /// Strip and gain set of a row.
-    fn place(&self, row: usize) -> (usize, usize) {
-        (row % self.strips.len(), row / self.strips.len())
-    }
-
+impl<'a, P: Fn(usize) -> (&'a Cell, &'a [f64]) + Sync> Source<'a, P> {
     fn column<T: Send>(&self, value: impl Fn(&Cell) -> T + Sync) -> Vec<T> {
-        let of_row = |row| {
-            let (strip, set) = self.place(row);
-            value(&self.strips[strip].cells[set])
-        };
-        map(self.rows, of_row)
+        let place = &self.place;
+        map(self.rows, |row| value(place(row).0))
     }
 
     /// Least distances of a row, and its scenario.
-    fn of_row(&self, row: usize) -> (&Scenario, &[f64]) {
-        let (strip, set) = self.place(row);
-        let count = self.scenarios[strip].obstacle_count();
-        let distances = &self.strips[strip].distances[set * count..(set + 1) * count];
-        (&self.scenarios[strip], distances)
+    fn of_row(&self, row: usize) -> (&'a Scenario, &'a [f64]) {
+        let place = &self.place;
+        (&self.scenarios[row % self.scenarios.len()], place(row).1)
     }
 
     fn of_distances<T: Send>(&self, value: fn(&Scenario, &[f64]) -> T) -> Vec<T> {

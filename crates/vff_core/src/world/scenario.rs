@@ -255,6 +255,15 @@ impl Scenario {
         }
     }
 
+    /// Whether [`Self::nominal`] of both is the same.
+    pub(crate) fn same_way(&self, other: &Self) -> bool {
+        self.start == other.start
+            && self.goal == other.goal
+            && self.robot == other.robot
+            && self.differential == other.differential
+            && self.rules == other.rules
+    }
+
     /// Number of obstacles.
     #[must_use]
     pub fn obstacle_count(&self) -> usize {
