@@ -56,14 +56,56 @@ pub fn avoiding(
     share: f64,
 ) -> HalfPlane {
     let relative = velocity - outline.velocity;
-    let (direction, change) = match outline.legs() {
-        None => leave(&outline.scaled(1.0 / interval), relative),
-        Some(legs) => pass(&outline.scaled(1.0 / horizon), &legs, relative),
+    let (direction, change) = match outline.center() {
+        Some(center) if center.dot(&center) > outline.radius * outline.radius => {
+            let legs = Legs::of_disc(center, outline.radius);
+            let share = 1.0 / horizon;
+            pass_disc((center * share, outline.radius * share), &legs, relative)
+        }
+        _ => edge(outline, relative, [1.0 / horizon, 1.0 / interval]),
     };
     HalfPlane {
         point: velocity + change * share,
         direction,
     }
+}
+
+/// To the nearest edge of the velocity obstacle of any outline, for the inverse of the horizon and of
+/// the interval.
+fn edge(outline: &Outline, relative: Vector, [horizon, interval]: [f64; 2]) -> (Vector, Vector) {
+    match outline.legs() {
+        None => leave(&outline.scaled(interval), relative),
+        Some(legs) => pass(&outline.scaled(horizon), &legs, relative),
+    }
+}
+
+/// [`pass`] for a disc, by its center and radius: an outline without edges, with the same arithmetic.
+#[inline]
+fn pass_disc((center, radius): (Vector, f64), legs: &Legs, relative: Vector) -> (Vector, Vector) {
+    let way = relative - center;
+    let length = way.dot(&way).sqrt();
+    if length > 0.0 {
+        let normal = way * (1.0 / length);
+        let (left_normal, right_normal) = (legs.left.left_normal(), -legs.right.left_normal());
+        if left_normal.perp(&normal) > 0.0 && normal.perp(&right_normal) > 0.0 {
+            return front(normal, radius - length);
+        }
+    }
+    nearer_leg(legs, relative)
+}
+
+/// To the leg that is less deep.
+#[inline]
+fn nearer_leg(legs: &Legs, relative: Vector) -> (Vector, Vector) {
+    let left_depth = -legs.left.perp(&relative);
+    let right_depth = legs.right.perp(&relative);
+    let direction = if left_depth < right_depth {
+        legs.left
+    } else {
+        -legs.right
+    };
+    let change = direction * relative.dot(&direction) - relative;
+    (direction, change)
 }
 
 /// Direction of the line and change of velocity at a rounded front.
@@ -111,13 +153,7 @@ fn pass(scaled: &Outline, legs: &Legs, relative: Vector) -> (Vector, Vector) {
     if depth < left_depth.min(right_depth) {
         return front(normal, depth);
     }
-    let direction = if left_depth < right_depth {
-        legs.left
-    } else {
-        -legs.right
-    };
-    let change = direction * relative.dot(&direction) - relative;
-    (direction, change)
+    nearer_leg(legs, relative)
 }
 
 /// Depth below the nearest face that looks to the robot, and its normal.
@@ -203,6 +239,22 @@ impl ReciprocalPlanner {
         }
     }
 
+    /// Distance of the surfaces less the margin, in m; 0 inside a rectangle.
+    #[inline]
+    fn gap(&self, body: &Body, position: Vector) -> f64 {
+        if let Shape::Disc { radius } = body.shape {
+            let to = Vector::splat(body.state.position) - position;
+            return to.dot(&to).sqrt() - (self.robot_radius + self.settings.margin + radius);
+        }
+        let outline = self.outline(body, position);
+        let (point, inside) = outline.nearest(Vector::zeros());
+        if inside {
+            0.0
+        } else {
+            point.dot(&point).sqrt() - outline.radius
+        }
+    }
+
     fn outline(&self, body: &Body, position: Vector) -> Outline {
         Outline::new(body, position, self.robot_radius, self.settings.margin)
     }
@@ -223,13 +275,7 @@ impl Planner for ReciprocalPlanner {
             if !body.state.present {
                 continue;
             }
-            let outline = self.outline(body, robot.position);
-            let (point, inside) = outline.nearest(Vector::zeros());
-            let gap = if inside {
-                0.0
-            } else {
-                point.dot(&point).sqrt() - outline.radius
-            };
+            let gap = self.gap(body, robot.position);
             if gap < self.settings.reach {
                 // Rectangles come first: they cannot be violated.
                 let soft = matches!(body.shape, Shape::Disc { .. }) && !is_boundary_point(body);

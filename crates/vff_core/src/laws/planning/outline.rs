@@ -95,6 +95,13 @@ impl Outline {
         self
     }
 
+    /// Center of a disc; `None` for an outline with edges.
+    #[inline]
+    #[must_use]
+    pub fn center(&self) -> Option<Vector> {
+        (self.count == 1).then_some(self.corners[0])
+    }
+
     /// Corners, counter-clockwise.
     #[must_use]
     pub fn corners(&self) -> &[Vector] {
@@ -141,21 +148,8 @@ impl Outline {
         }
         let mut legs: Option<Legs> = None;
         for &corner in self.corners() {
-            let square = corner.dot(&corner);
-            let reach = (square - self.radius * self.radius).sqrt();
-            let turned = |sine: f64| {
-                Vector2::new(
-                    (corner.x * reach - corner.y * sine) / square,
-                    (corner.y * reach + corner.x * sine) / square,
-                )
-            };
-            let (left, right) = (turned(self.radius), turned(-self.radius));
-            let own = Legs {
-                left,
-                right,
-                left_reach: reach,
-                right_reach: reach,
-            };
+            let own = Legs::of_disc(corner, self.radius);
+            let (left, right, reach) = (own.left, own.right, own.left_reach);
             let Some(known) = &mut legs else {
                 legs = Some(own);
                 continue;
@@ -212,6 +206,26 @@ impl Outline {
 }
 
 impl Legs {
+    /// Rays that touch a disc, from outside of it.
+    #[inline]
+    #[must_use]
+    pub fn of_disc(center: Vector, radius: f64) -> Self {
+        let square = center.dot(&center);
+        let reach = (square - radius * radius).sqrt();
+        let turned = |sine: f64| {
+            Vector2::new(
+                (center.x * reach - center.y * sine) / square,
+                (center.y * reach + center.x * sine) / square,
+            )
+        };
+        Self {
+            left: turned(radius),
+            right: turned(-radius),
+            left_reach: reach,
+            right_reach: reach,
+        }
+    }
+
     /// Whether a direction lies between the rays; the rays themselves touch and do not count.
     #[must_use]
     pub fn hold(&self, direction: Vector) -> bool {
