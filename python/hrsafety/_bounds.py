@@ -7,6 +7,7 @@ The cores check the bounds of what they allocate again.
 from __future__ import annotations
 
 __all__ = [
+    "MOST_BODIES",
     "MOST_CELLS",
     "MOST_COUNT",
     "MOST_DRAWN",
@@ -47,6 +48,8 @@ MOST_LANES = 1024
 
 # Obstacles that are drawn for a scenario: each takes about 60 microseconds and 1 kB.
 MOST_OBSTACLES = 10_000
+# Scenarios and obstacles made in one call: about 250 bytes each.
+MOST_BODIES = 10**7
 # Cells of an occupancy grid: 32 MB as bits.
 MOST_CELLS = 2**28
 # Rays of a beam, beams of a scan.

@@ -370,6 +370,41 @@ class Scenario:
         """Return the same scenario with another seed."""
 
 @final
+class Scenarios:
+    """Scenarios that crossed the boundary once."""
+
+    def __new__(
+        cls,
+        ends: tuple[_Array, _Array],
+        obstacles: tuple[_Array, _Array, _Array],
+        person: bool,
+        robot: HolonomicRobot | DifferentialDriveRobot,
+        rules: tuple[float, float, float, float, float],
+        seed: npt.NDArray[np.uint64],
+        /,
+    ) -> Self: ...
+    @staticmethod
+    def random_traffic(obstacles: int, robot: HolonomicRobot, seeds: Sequence[int]) -> Scenarios:
+        """Return random traffic of a number of obstacles for each seed."""
+
+    @staticmethod
+    def random_crowd(people: int, robot: HolonomicRobot | DifferentialDriveRobot, seeds: Sequence[int]) -> Scenarios:
+        """Return a random crowd of a number of people for each seed."""
+
+    def __len__(self) -> int: ...
+    def row(self, index: int) -> Scenario:
+        """Return the scenario of a row."""
+
+    def rows(self, indices: Sequence[int]) -> Scenarios:
+        """Return the scenarios of some rows."""
+
+    def reseeded(self, seeds: Sequence[int]) -> Scenarios:
+        """Return every scenario with each of the seeds, those of a scenario together."""
+
+    def seeds(self) -> list[int]:
+        """Return the seed of every scenario."""
+
+@final
 class Law:
     """A law of any kind."""
 
@@ -493,7 +528,7 @@ def lyapunov(
     """Return the Lyapunov function, its derivative and Omega at one state."""
 
 def simulate_batch(
-    scenarios: Sequence[Scenario], law: Law, gains: _Array, weights: _Triple, **given: object
+    scenarios: Sequence[Scenario] | Scenarios, law: Law, gains: _Array, weights: _Triple, **given: object
 ) -> _BatchFields:
     """Return summary columns of every gain set in every scenario."""
 
@@ -1425,7 +1460,7 @@ def built_evaluate(
     """Return the score of a run of a robot as built, the run and the nominal run."""
 
 def built_many(
-    scenarios: Sequence[Scenario],
+    scenarios: Sequence[Scenario] | Scenarios,
     laws: Sequence[Law],
     gains: _Array,
     built: AsBuilt,

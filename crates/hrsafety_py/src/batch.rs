@@ -4,14 +4,13 @@ use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::{BatchOptions, BatchTable, Instructions, Outcome, Width, run_batch};
-use vff_core::world::scenario;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::laws::Law;
-use crate::parameters::Scenario;
 use crate::run::{run_options, weights_of};
+use crate::scenes::Scenes;
 use crate::watch::{Report, watched_law};
 
 /// Summary columns of every gain set in every scenario.
@@ -19,7 +18,7 @@ use crate::watch::{Report, watched_law};
 #[pyo3(signature = (scenarios, law, gains, weights, **given))]
 pub fn simulate_batch<'py>(
     py: Python<'py>,
-    scenarios: Vec<PyRef<'py, Scenario>>,
+    scenarios: Scenes,
     law: &Law,
     gains: PyReadonlyArray2<'py, f64>,
     weights: (f64, f64, f64),
@@ -41,10 +40,6 @@ pub fn simulate_batch<'py>(
     given.done()?;
     let (count, dimension) = (gains.shape()[0], gains.shape()[1]);
     let points = gains.as_slice()?.to_vec();
-    let scenarios: Vec<scenario::Scenario> = scenarios
-        .iter()
-        .map(|scenario| scenario.0.clone())
-        .collect();
     let report = Report::new(progress.as_ref(), count * scenarios.len());
     let table = watched_law(py, (law, options.threads), report, |control| {
         let interrupted = || control.interrupted();

@@ -18,6 +18,7 @@ use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::{trajectory_fields, weights_of};
+use crate::scenes::Scenes;
 use crate::sensing::Sensor;
 use crate::watch::{Report, watched_law};
 use crate::wheels::{OmniKinematics, Slip, WheelDrive};
@@ -142,7 +143,7 @@ pub fn built_evaluate<'py>(
 #[pyo3(signature = (scenarios, laws, gains, built, weights, **given))]
 pub fn built_many<'py>(
     py: Python<'py>,
-    scenarios: Vec<PyRef<'py, Scenario>>,
+    scenarios: Scenes,
     laws: Vec<PyRef<'py, Law>>,
     gains: PyReadonlyArray2<'py, f64>,
     built: &AsBuilt,
@@ -165,10 +166,6 @@ pub fn built_many<'py>(
         threads: lead.threads(threads),
     };
     let points = gains.as_slice()?.to_vec();
-    let scenarios: Vec<scenario::Scenario> = scenarios
-        .iter()
-        .map(|scenario| scenario.0.clone())
-        .collect();
     let driven: Vec<AnyLaw> = laws.iter().map(|law| law.any.clone()).collect();
     let report = Report::new(progress.as_ref(), driven.len() * scenarios.len());
     let runs = watched_law(py, (lead, options.threads), report, |control| {

@@ -23,6 +23,7 @@ mod python_law;
 mod reactive;
 mod run;
 mod safe;
+mod scenes;
 mod sensing;
 mod separation;
 mod signals;
@@ -144,6 +145,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::safe::{Shield, Yielding, guarded_law, shield_speed_bound};
+    #[pymodule_export]
+    use crate::scenes::Scenarios;
     #[pymodule_export]
     use crate::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
     #[pymodule_export]

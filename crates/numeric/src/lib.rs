@@ -7,5 +7,6 @@ pub mod angle;
 pub mod error;
 pub mod lanes;
 pub mod parallel;
+pub mod pcg64;
 pub mod random;
 pub mod threads;

@@ -27,6 +27,7 @@ from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicR
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_arrays import Scenarios
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.simulation import evaluate, simulate
 from hrsafety.navigation.trajectory import Trajectory
@@ -56,6 +57,7 @@ __all__ = [
     "Run",
     "RunTable",
     "Scenario",
+    "Scenarios",
     "StaticMap",
     "Trajectory",
     "VelocityObstacle",

@@ -17,9 +17,10 @@ from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.run_table import RunTable, table_of_batch
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_arrays import Scenarios
 from hrsafety.navigation.trajectory import Integrator
 
-__all__ = ["check_scenarios", "check_threads", "gain_sets", "simulate_batch"]
+__all__ = ["check_scenarios", "check_threads", "gain_sets", "natives_of", "simulate_batch"]
 
 
 def simulate_batch(
@@ -99,7 +100,7 @@ def simulate_batch(
     if lanes is not None:
         count("lanes", lanes, most=MOST_LANES)
     columns = _hrsafety.simulate_batch(
-        [scenario._native for scenario in scenes],
+        natives_of(scenes),
         law._native,
         gain_sets(law, gains),
         check_weights(weights),
@@ -115,15 +116,25 @@ def simulate_batch(
     return table_of_batch(scenes, law, columns)  # type: ignore[arg-type]  # a mapping of arrays
 
 
-def check_scenarios(scenarios: Sequence[Scenario]) -> list[Scenario]:
+def natives_of(scenes: Sequence[Scenario]) -> list[_hrsafety.Scenario] | _hrsafety.Scenarios:
+    """Return what the core takes for scenarios: those of arrays in one piece."""
+    return scenes._native if isinstance(scenes, Scenarios) else [scene._native for scene in scenes]
+
+
+def check_scenarios(scenarios: Sequence[Scenario]) -> Sequence[Scenario]:
     """Return the scenarios if there is at least one and nothing else among them."""
-    scenes = sequence("scenarios", "be a sequence of Scenario", scenarios)
-    for index, scenario in enumerate(scenes):
-        instance(f"scenarios[{index}]", scenario, Scenario)
+    if isinstance(scenarios, Scenarios):
+        scenes: Sequence[Scenario] = scenarios
+        looked_at = list(scenarios[:1])  # all have the same robot
+    else:
+        scenes = looked_at = sequence("scenarios", "be a sequence of Scenario", scenarios)
+    for index, scenario in enumerate(looked_at):
+        if not isinstance(scenario, Scenario):
+            instance(f"scenarios[{index}]", scenario, Scenario)
         if not isinstance(scenario.robot, HolonomicRobot):
             rule = "be a HolonomicRobot, since batches move point masses; `simulate_many` runs the other kind"
             raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)
-    if not scenes:
+    if len(scenes) == 0:
         raise InvalidParameterError("scenarios", "hold at least one scenario", Shown("an empty list"))
     return scenes
 

@@ -67,7 +67,7 @@ class Comparison(Table):
     ----------
     runs : RunTable
         All runs, one a row, as `simulate_many` returned them.
-    laws, scenario_names : tuple of str
+    laws, scenario_names : sequence of str
         Names of the laws and of the scenarios.
     scenario : ndarray of int, shape (episodes,)
         Index of each episode's scenario.
@@ -93,7 +93,7 @@ class Comparison(Table):
         return self.runs.law_names
 
     @property
-    def scenario_names(self) -> tuple[str, ...]:
+    def scenario_names(self) -> Sequence[str]:
         """Names of the scenarios."""
         return self.runs.scenario_names
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
 from hrsafety.navigation.simulation import as_built
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns
@@ -115,13 +116,14 @@ def simulate_many(
     places, drivers = named_scenarios(scenarios), named_laws(laws)
     sets = _sets(drivers, gains)
     drawn = None if seeds is None else checked_seeds(seeds)
-    robot = as_built(list(places.values()), built, integrator, hold=hold)
+    robots = list(places.rows[:1] if isinstance(places, _Numbered) else places.values())
+    robot = as_built(robots, built, integrator, hold=hold)
     study = _Study(places, drivers, sets, drawn, robot)
     if flag("paths", paths):
         study.check_paths()
     # Only the loop of single runs keeps paths; a point mass has the same bits there.
     if paths and robot is None:
-        robot = as_built(list(places.values()), AsBuilt(), integrator, hold=hold)
+        robot = as_built(robots, AsBuilt(), integrator, hold=hold)
     if flag("descent", descent) and robot is not None:
         raise InvalidParameterError("descent", "be False for robots as built and runs with paths", descent)
     options: dict[str, object] = {"step": number("step", step), "threads": thread_count(threads)}
@@ -170,12 +172,7 @@ class _Study:
     def run(
         self, weights: tuple[float, float, float], options: dict[str, object], progress: Progress | None
     ) -> RunTable:
-        own = [[scenario.seed] if self.seeds is None else self.seeds for scenario in self.scenarios.values()]
-        natives = [
-            scenario._native.reseeded(seed)
-            for scenario, seeds in zip(self.scenarios.values(), own, strict=True)
-            for seed in seeds
-        ]
+        natives, drawn = self._episodes()
         total, done, parts = len(natives) * sum(map(len, self.sets)), 0, []
         for (name, law), sets in zip(self.laws.items(), self.sets, strict=True):
             heard = None if progress is None else _shifted(progress, done, total)
@@ -187,7 +184,19 @@ class _Study:
                 raise self._naming_run(error, name, sets, done) from None
             parts.append(_gains_fastest(columns))
             done += len(natives) * len(sets)
-        return self._table(parts, np.array(list(itertools.chain(*own)), dtype=np.uint64))
+        return self._table(parts, drawn)
+
+    def _episodes(self) -> tuple[Sequence[_hrsafety.Scenario] | _hrsafety.Scenarios, npt.NDArray[np.uint64]]:
+        """Return every scenario with each of its seeds, and the seeds."""
+        if isinstance(self.scenarios, _Numbered):
+            rows = self.scenarios.rows
+            if self.seeds is None:
+                return rows._native, rows.seeds
+            return rows._native.reseeded(self.seeds), np.tile(np.array(self.seeds, dtype=np.uint64), len(rows))
+        places = self.scenarios.values()
+        own = [[place.seed] if self.seeds is None else self.seeds for place in places]
+        natives = [place._native.reseeded(seed) for place, seeds in zip(places, own, strict=True) for seed in seeds]
+        return natives, np.array(list(itertools.chain(*own)), dtype=np.uint64)
 
     def _naming_scenarios(self, error: InvalidParameterError) -> InvalidParameterError:
         """Return an error that names the scenario instead of the episode, which is a scenario with a seed."""
@@ -233,9 +242,9 @@ class _Study:
         }
         return RunTable(
             law_names=tuple(self.laws),
-            scenario_names=tuple(self.scenarios),
+            scenario_names=self.scenarios.names if isinstance(self.scenarios, _Numbered) else tuple(self.scenarios),
             laws=tuple(self.laws.values()),
-            scenarios=tuple(self.scenarios.values()),
+            scenarios=self.scenarios.rows if isinstance(self.scenarios, _Numbered) else tuple(self.scenarios.values()),
             gain_names=tuple(names),
             law_index=np.repeat(np.arange(len(rows)), rows),
             scenario_index=episode // (len(seeds) // len(self.scenarios)),
@@ -246,7 +255,7 @@ class _Study:
 
 
 def _columns(
-    natives: Sequence[_hrsafety.Scenario],
+    natives: Sequence[_hrsafety.Scenario] | _hrsafety.Scenarios,
     law: Law,
     sets: Array,
     weights: tuple[float, float, float],
@@ -289,7 +298,26 @@ def _shifted(progress: Progress, before: int, total: int) -> Progress:
 # ---- what is given ----------------------------------------------------------------------------------
 
 
-def named_scenarios(scenarios: object) -> dict[str, Scenario]:
+class _Numbered(Mapping[str, Scenario]):
+    """Scenarios from arrays by their numbers."""
+
+    __slots__ = ("names", "rows")
+
+    def __init__(self, rows: Scenarios) -> None:
+        self.rows = rows
+        self.names = Numbers(len(rows))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __getitem__(self, name: str) -> Scenario:
+        return self.rows[self.names.index(name)]
+
+
+def named_scenarios(scenarios: object) -> Mapping[str, Scenario]:
     """Return the scenarios by name, at least one.
 
     Parameters
@@ -299,7 +327,7 @@ def named_scenarios(scenarios: object) -> dict[str, Scenario]:
 
     Returns
     -------
-    dict of str to Scenario
+    mapping of str to Scenario
         Without names they are numbered.
 
     Raises
@@ -307,6 +335,8 @@ def named_scenarios(scenarios: object) -> dict[str, Scenario]:
     InvalidParameterError
         If there is none, or one is of another kind.
     """
+    if isinstance(scenarios, Scenarios):
+        return _Numbered(scenarios)
     rule = "be a Scenario, a sequence of them or a mapping of names to them"
     given = _listed("scenarios", rule, [scenarios] if isinstance(scenarios, Scenario) else scenarios)
     return {key: instance(f"scenarios[{shown}]", each, Scenario) for key, shown, each in given}

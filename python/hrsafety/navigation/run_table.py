@@ -16,6 +16,7 @@ from hrsafety.navigation.bands import Band, along_the_way, over_time
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import SHOWN_ROWS, Column, Columns, Table, each, unit_suffix
 
@@ -53,9 +54,9 @@ class RunTable(Table):
 
     Attributes
     ----------
-    law_names, scenario_names : tuple of str
+    law_names, scenario_names : sequence of str
         Names of the laws and of the scenarios.
-    laws, scenarios : tuple
+    laws, scenarios : sequence
         The laws and the scenarios by these names.
     gain_names : tuple of str
         Names of the gains; of several kinds of laws, those of all of them.
@@ -115,9 +116,9 @@ class RunTable(Table):
     """
 
     law_names: tuple[str, ...]
-    scenario_names: tuple[str, ...]
+    scenario_names: Sequence[str]
     laws: tuple[Law, ...]
-    scenarios: tuple[Scenario, ...]
+    scenarios: Sequence[Scenario]
     gain_names: tuple[str, ...]
     law_index: npt.NDArray[np.int64]
     scenario_index: npt.NDArray[np.int64]
@@ -165,7 +166,12 @@ class RunTable(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
-        numbered = self.scenario_names == tuple(map(str, range(len(self.scenarios))))
+        if isinstance(self.scenarios, Scenarios):
+            # What a sensor or a map leaves out is the same in all of them.
+            rows = sorted({0, *self.scenarios.doubtful()})
+            names = [f"scenarios[{self.scenario_names[row]}]" for row in rows]
+            return run_warnings.of_runs([self.scenarios[row] for row in rows], names, self.laws, self.built)
+        numbered = tuple(self.scenario_names) == tuple(map(str, range(len(self.scenarios))))
         names = [f"scenarios[{name if numbered else repr(name)}]" for name in self.scenario_names]
         return run_warnings.of_runs(self.scenarios, names, self.laws, self.built)
 
@@ -378,14 +384,19 @@ def table_of_batch(
     """
     rows = len(columns["outcome"])
     columns = {**columns, "gains": columns["gains"][:, : len(law.GAIN_NAMES)]}
-    own = [scenario.seed if seed is None else seed for scenario in scenarios]
+    if seed is None and isinstance(scenarios, Scenarios):
+        own = scenarios.seeds
+    else:
+        own = np.array([scene.seed if seed is None else seed for scene in scenarios], dtype=np.uint64)
     return RunTable(
         law_names=(type(law).__name__,),
-        scenario_names=tuple(map(str, range(len(scenarios)))),
+        scenario_names=Numbers(len(scenarios))
+        if isinstance(scenarios, Scenarios)
+        else tuple(map(str, range(len(scenarios)))),
         laws=(law,),
-        scenarios=tuple(scenarios),
+        scenarios=scenarios if isinstance(scenarios, Scenarios) else tuple(scenarios),
         gain_names=law.GAIN_NAMES,
         law_index=np.zeros(rows, dtype=np.int64),
-        seed=np.tile(np.array(own, dtype=np.uint64), rows // len(own)),
+        seed=np.tile(own, rows // len(own)),
         **columns,  # type: ignore[arg-type]  # each under its own name
     )

@@ -6,11 +6,15 @@ import math
 
 import numpy as np
 
+from hrsafety import _hrsafety
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count
 from hrsafety._bounds import MOST_OBSTACLES
+from hrsafety.navigation.many import Seeds
+from hrsafety.navigation.scenario_arrays import Scenarios, checked_robot
+from hrsafety.scenarios.drawn import seeds_of
 
-__all__ = ["random_crowd"]
+__all__ = ["random_crowd", "random_crowd_batch"]
 
 SIDE = 8.0
 """Side of the square area, in m."""
@@ -29,7 +33,9 @@ INNER_MARGIN = 1.0
 """Distance from the border within which nobody's way is aimed, in m."""
 
 
-def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = None) -> nav.Scenario:
+def random_crowd(
+    people: int, *, seed: int, robot: nav.HolonomicRobot | nav.DifferentialDriveRobot | None = None
+) -> nav.Scenario:
     """Return a robot that crosses a square of 8 m while people walk through it.
 
     The robot goes from (0.5, 4) to (7.5, 4). Each person (radius 0.4 m, regions 0.8 m and
@@ -83,6 +89,45 @@ def random_crowd(people: int, *, seed: int, robot: nav.HolonomicRobot | None = N
         rest_time=TIME_LIMIT,
         seed=checked,
     )
+
+
+def random_crowd_batch(
+    seeds: Seeds, *, people: int = 12, robot: nav.HolonomicRobot | nav.DifferentialDriveRobot | None = None
+) -> Scenarios:
+    """Return `random_crowd` of many seeds, drawn in one call.
+
+    Parameters
+    ----------
+    seeds : int or iterable of int
+        Seeds, or their number: then 0, 1, 2 and so on.
+    people : int
+        How many people each has, from 0 to 10,000.
+    robot : HolonomicRobot or None
+        The robot; the default one when ``None``.
+
+    Returns
+    -------
+    Scenarios
+        Row i has the bits of ``random_crowd(people, seed=seeds[i])``.
+
+    Raises
+    ------
+    InvalidParameterError
+        As `random_crowd`, or if there are more than ten million scenarios and people together.
+
+    Examples
+    --------
+    >>> from hrsafety import scenarios
+    >>> drawn = scenarios.random_crowd_batch(100, people=5)
+    >>> len(drawn), drawn[7] == scenarios.random_crowd(5, seed=7)
+    (100, True)
+    """
+    count("people", people, least=0, most=MOST_OBSTACLES)
+    drawn = seeds_of(seeds, people)
+    driven = checked_robot(robot)
+    native = _hrsafety.Scenarios.random_crowd(people, driven._native, drawn)
+    again = random_crowd_batch, {"seeds": drawn, "people": people, "robot": driven}
+    return Scenarios(native, again, lambda row: random_crowd(people, seed=drawn[row], robot=driven))
 
 
 def _walker(generator: np.random.Generator) -> nav.Human:

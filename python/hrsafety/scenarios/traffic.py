@@ -6,11 +6,15 @@ import math
 
 import numpy as np
 
+from hrsafety import _hrsafety
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count, instance
 from hrsafety._bounds import MOST_OBSTACLES
+from hrsafety.navigation.many import Seeds
+from hrsafety.navigation.scenario_arrays import Scenarios
+from hrsafety.scenarios.drawn import seeds_of
 
-__all__ = ["random_traffic"]
+__all__ = ["random_traffic", "random_traffic_batch"]
 
 WAY = 10.0
 """Distance from start to goal, in m."""
@@ -80,6 +84,43 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
         rest_time=TIME_LIMIT,
         seed=checked,
     )
+
+
+def random_traffic_batch(seeds: Seeds, *, obstacles: int = 3, robot: nav.HolonomicRobot | None = None) -> Scenarios:
+    """Return `random_traffic` of many seeds, drawn in one call.
+
+    Parameters
+    ----------
+    seeds : int or iterable of int
+        Seeds, or their number: then 0, 1, 2 and so on.
+    obstacles : int
+        How many obstacles each has, from 0 to 10,000.
+    robot : HolonomicRobot or None
+        The robot; the default one when ``None``.
+
+    Returns
+    -------
+    Scenarios
+        Row i has the bits of ``random_traffic(obstacles, seed=seeds[i])``.
+
+    Raises
+    ------
+    InvalidParameterError
+        As `random_traffic`, or if there are more than ten million scenarios and obstacles together.
+
+    Examples
+    --------
+    >>> from hrsafety import scenarios
+    >>> drawn = scenarios.random_traffic_batch(100, obstacles=5)
+    >>> len(drawn), drawn[7] == scenarios.random_traffic(5, seed=7)
+    (100, True)
+    """
+    count("obstacles", obstacles, least=0, most=MOST_OBSTACLES)
+    drawn = seeds_of(seeds, obstacles)
+    robot = instance("robot", nav.HolonomicRobot() if robot is None else robot, nav.HolonomicRobot)
+    native = _hrsafety.Scenarios.random_traffic(obstacles, robot._native, drawn)
+    again = random_traffic_batch, {"seeds": drawn, "obstacles": obstacles, "robot": robot}
+    return Scenarios(native, again, lambda row: random_traffic(obstacles, seed=drawn[row], robot=robot))
 
 
 def _crossing(generator: np.random.Generator, robot: nav.HolonomicRobot) -> nav.MovingDisc:

@@ -21,8 +21,8 @@ use crate::errors::{CoreError, CoreResult};
 use crate::gains::scorer::Scorer;
 use crate::keywords::Keywords;
 use crate::laws::Law;
-use crate::parameters::Scenario;
 use crate::run::{run_options, weights_of};
+use crate::scenes::Scenes;
 use crate::signals::attended;
 
 /// Runs that the callables see at once: few enough that Ctrl-C is answered soon.
@@ -51,7 +51,7 @@ impl GainProblem {
     #[pyo3(signature = (**given))]
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let scenarios: Vec<PyRef<'_, Scenario>> = given.take("scenarios")?;
+        let scenarios: Scenes = given.take("scenarios")?;
         let law: PyRef<'_, Law> = given.take("law")?;
         let weights = weights_of(given.take("weights")?);
         let integrator: Bound<'_, PyAny> = given.take("integrator")?;
@@ -68,8 +68,7 @@ impl GainProblem {
         let scorer_constraints = given.take("scorer_constraints")?;
         let lanes: Option<usize> = given.take("lanes")?;
         given.done()?;
-        let scenarios: Vec<scenario::Scenario> =
-            scenarios.iter().map(|scene| scene.0.clone()).collect();
+        let scenarios: Vec<scenario::Scenario> = scenarios.to_vec();
         let width = lanes.map(Width::of).transpose().map_err(CoreError::from)?;
         let is_metric: Vec<bool> = objectives.iter().map(Option::is_some).collect();
         let alone = !is_metric.contains(&true) && constraints.is_empty();

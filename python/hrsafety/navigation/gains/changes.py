@@ -237,7 +237,7 @@ def _changes(changes: npt.ArrayLike) -> Array:
 
 
 def _collect(
-    scenes: list[Scenario],
+    scenes: Sequence[Scenario],
     law: Law,
     weights: Sequence[float],
     percent: Array,
