@@ -122,7 +122,7 @@ def measure(benchmark: Any, work: Work) -> None:
     own = seconds(work)
     benchmark.extra_info["episodes_per_s"] = round(len(table) / own)
     benchmark.extra_info["million_control_periods_per_s"] = round(int(table.force_evaluations.sum()) / own / 1e6, 2)
-    benchmark.extra_info["arrived"] = round(table.success.share, 4)
+    benchmark.extra_info["arrived"] = round(table.success.value, 4)
 
 
 @pytest.mark.benchmark(group="episodes from arrays, one core")

@@ -142,7 +142,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "crowd of a million thousands": "scenarios.random_crowd(2**31, seed=0)",
         "traffic without end": "scenarios.random_traffic(10**400, seed=0)",
         "a crowd for every seed": "scenarios.random_crowd_batch(10**6, people=100)",
-        "row of arrays that is no scenario": "navigation.Scenarios.from_arrays(start=[[0, 0], [4, 0]], goal=(4, 0))",
+        "row of arrays that is no scenario": "nav.Scenarios.from_arrays(start=[[0, 0], [4, 0]], goal=(4, 0))",
         "people by fractions": "people.humans([1.0, 2.0], duration=1.0)",
         "masked positions": "nav.Human.from_path([0.0, 0.4], np.ma.masked_greater([[0.0, 0.0], [9.0, 0.0]], 5.0))",
     },

@@ -190,7 +190,7 @@ def test_only_rows_that_may_have_warnings_are_looked_at() -> None:
     assert calm.doubtful() == []
     fast = np.where(np.arange(ROWS)[:, None, None] == 6, 2.0, VELOCITY)
     still = np.where(np.arange(ROWS)[:, None, None] == 8, 0.0, fast)
-    large = np.where(np.arange(ROWS)[:, None] == 10, 1.2, 0.2)
+    large = np.where(np.arange(ROWS)[:, None] == 10, 1.2, np.full((ROWS, MOST), 0.2))
     near = np.where(np.arange(ROWS)[:, None] == 12, 14.9, 10.0) * [1.0, 0.0]
     odd = scenes(obstacle_velocity=still, obstacle_radius=large, goal=np.where(near == 14.9, 19.0, near))
     found = {row for row, scene in enumerate(odd) if scene.warnings}

@@ -4,11 +4,10 @@ use numeric::threads::{team, try_map};
 
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::group::{Driven, Group, SceneGroup};
+use crate::run::group::{Driven, Group, Keep, SceneGroup};
 use crate::run::lane_scenes::{agree, fits};
 use crate::run::metrics::{Nominal, Weights, score};
 use crate::run::nominal::Ways;
-use crate::run::outcome::RunTotals;
 use crate::run::plan::{Plan, Width};
 use crate::run::table::{BatchTable, Cell};
 use crate::world::scenario::Scenario;
@@ -134,7 +133,7 @@ impl SceneBatch<'_> {
         &self,
         gains: &[f64],
         (scenarios, task): (&[Scenario], &Task),
-        keep: &mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -> f64),
+        keep: Keep<'_>,
     ) -> Result<()> {
         if task.side_by_side {
             let scenes: Vec<&Scenario> =
@@ -160,7 +159,7 @@ impl SceneBatch<'_> {
             };
             self.law
                 .run(&group, &mut |_, totals, distance| {
-                    keep(run, totals, distance)
+                    keep(run, totals, distance);
                 })
                 .map_err(|error| error.of_run(|_| run))?;
         }
