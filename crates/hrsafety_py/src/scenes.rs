@@ -59,6 +59,7 @@ impl Scenarios {
 
     /// Random traffic of a number of obstacles for each seed.
     #[staticmethod]
+    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn random_traffic(
         py: Python<'_>,
         obstacles: usize,
@@ -75,6 +76,7 @@ impl Scenarios {
 
     /// Random crowd of a number of people for each seed.
     #[staticmethod]
+    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn random_crowd(people: usize, robot: &Bound<'_, PyAny>, seeds: Vec<u64>) -> PyResult<Self> {
         let mover: Mover = mover_of(robot)?;
         let made = robot.py().detach(|| {
@@ -107,6 +109,7 @@ impl Scenarios {
     }
 
     /// Every scenario with each of the seeds, those of a scenario together.
+    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn reseeded(&self, seeds: Vec<u64>) -> Self {
         let with_all = |scenario: &scenario::Scenario| {
             let scenario = scenario.clone();
