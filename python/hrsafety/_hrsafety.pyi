@@ -381,7 +381,6 @@ class Scenarios:
         robot: HolonomicRobot | DifferentialDriveRobot,
         rules: tuple[float, float, float, float, float],
         seed: npt.NDArray[np.uint64],
-        /,
     ) -> Self: ...
     @staticmethod
     def random_traffic(obstacles: int, robot: HolonomicRobot, seeds: Sequence[int]) -> Scenarios:
