@@ -47,6 +47,7 @@ __all__ = [
     "ReferencePath",
     "Run",
     "Scenario",
+    "Scenarios",
     "Sensor",
     "SetPoint",
     "Shield",

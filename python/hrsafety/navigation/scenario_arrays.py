@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
-from typing import Any, Self, overload
+from typing import Any, Literal, Self, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -158,6 +158,20 @@ class Scenarios(Sequence[Scenario]):
         }
         doubt = functools.partial(_may_warn, ends, bodies, driven, rules, person=person)
         return cls(native, (_from_arrays, {**again, **rules}), row, doubt)
+
+    @classmethod
+    def _drawn(
+        cls,
+        kind: Literal["random_traffic", "random_crowd"],
+        count: int,
+        robot: HolonomicRobot | DifferentialDriveRobot,
+        seeds: Sequence[int],
+        again: tuple[Callable[..., Any], dict[str, Any]],
+        row: Callable[[int], Scenario],
+    ) -> Self:
+        """Return scenes that the core draws, one for each seed; `row` draws one of them by itself."""
+        draw: Callable[..., _hrsafety.Scenarios] = getattr(_hrsafety.Scenarios, kind)
+        return cls(draw(count, robot._native, seeds), again, row)
 
     def __len__(self) -> int:
         """Return the number of scenarios."""

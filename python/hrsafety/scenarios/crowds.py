@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from hrsafety import _hrsafety
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count
 from hrsafety._bounds import MOST_OBSTACLES
@@ -125,9 +124,10 @@ def random_crowd_batch(
     count("people", people, least=0, most=MOST_OBSTACLES)
     drawn = seeds_of(seeds, people)
     driven = checked_robot(robot)
-    native = _hrsafety.Scenarios.random_crowd(people, driven._native, drawn)
     again = random_crowd_batch, {"seeds": drawn, "people": people, "robot": driven}
-    return Scenarios(native, again, lambda row: random_crowd(people, seed=drawn[row], robot=driven))
+    return Scenarios._drawn(
+        "random_crowd", people, driven, drawn, again, lambda row: random_crowd(people, seed=drawn[row], robot=driven)
+    )
 
 
 def _walker(generator: np.random.Generator) -> nav.Human:

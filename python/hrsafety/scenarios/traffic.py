@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from hrsafety import _hrsafety
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count, instance
 from hrsafety._bounds import MOST_OBSTACLES
@@ -118,9 +117,15 @@ def random_traffic_batch(seeds: Seeds, *, obstacles: int = 3, robot: nav.Holonom
     count("obstacles", obstacles, least=0, most=MOST_OBSTACLES)
     drawn = seeds_of(seeds, obstacles)
     robot = instance("robot", nav.HolonomicRobot() if robot is None else robot, nav.HolonomicRobot)
-    native = _hrsafety.Scenarios.random_traffic(obstacles, robot._native, drawn)
     again = random_traffic_batch, {"seeds": drawn, "obstacles": obstacles, "robot": robot}
-    return Scenarios(native, again, lambda row: random_traffic(obstacles, seed=drawn[row], robot=robot))
+    return Scenarios._drawn(
+        "random_traffic",
+        obstacles,
+        robot,
+        drawn,
+        again,
+        lambda row: random_traffic(obstacles, seed=drawn[row], robot=robot),
+    )
 
 
 def _crossing(generator: np.random.Generator, robot: nav.HolonomicRobot) -> nav.MovingDisc:
