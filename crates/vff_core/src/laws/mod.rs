@@ -28,7 +28,7 @@ pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;
 
 use crate::error::Result;
-use crate::lanes::{Real, Vector2, Wide};
+use crate::lanes::{Planar, Real, Vector2, Wide};
 use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
@@ -74,6 +74,25 @@ pub struct Situation<'a, R, B: Real = f64> {
     pub interval: f64,
     /// Whether to stop.
     pub stop: Stop<'a>,
+}
+
+impl<'a, R: Real> Situation<'a, R> {
+    /// The situation of the robot in one lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn of_lane(&self, lane: usize) -> Situation<'a, f64> {
+        Situation {
+            time: self.time,
+            bodies: self.bodies,
+            robot: RobotState {
+                position: Vector2::splat(self.robot.position.lane(lane)),
+                velocity: Vector2::splat(self.robot.velocity.lane(lane)),
+            },
+            heading: self.heading,
+            interval: self.interval,
+            stop: self.stop,
+        }
+    }
 }
 
 /// What a law answers.

@@ -1,7 +1,7 @@
 //! Virtual impedance as a navigation law.
 
 use crate::error::Result;
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Real, Vector2};
 use crate::laws::impedance::attraction::Attraction;
 use crate::laws::impedance::law::{Impedance, Prepared};
 use crate::laws::{Command, Law, LawFamily, Situation};
@@ -158,21 +158,7 @@ impl<R: Real> Law<R> for ImpedanceLaw {
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut force = Vector2::<R>::zeros();
         for lane in 0..R::WIDTH {
-            let robot = RobotState {
-                position: Vector2::splat(situation.robot.position.lane(lane)),
-                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
-            };
-            let own = self.force(
-                lane,
-                &Situation {
-                    time: situation.time,
-                    bodies: situation.bodies,
-                    robot,
-                    heading: situation.heading,
-                    interval: situation.interval,
-                    stop: situation.stop,
-                },
-            );
+            let own = self.force(lane, &situation.of_lane(lane));
             force = Vector2::new(force.x.replace(lane, own.x), force.y.replace(lane, own.y));
         }
         Command {

@@ -2,14 +2,13 @@
 //! search may choose.
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Real, Vector2};
 use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
 use crate::laws::planning::Planner;
 use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
 use crate::laws::{Command, Law, LawFamily, Situation, force_toward};
-use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// A planner up to its numbers.
@@ -51,18 +50,7 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut wanted = Vector2::<R>::zeros();
         for (lane, planner) in self.planners.iter_mut().enumerate() {
-            let robot = RobotState {
-                position: Vector2::splat(situation.robot.position.lane(lane)),
-                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
-            };
-            let [x, y] = planner.desired_velocity(&Situation {
-                time: situation.time,
-                bodies: situation.bodies,
-                robot,
-                heading: situation.heading,
-                interval: situation.interval,
-                stop: situation.stop,
-            });
+            let [x, y] = planner.desired_velocity(&situation.of_lane(lane));
             wanted.x = wanted.x.replace(lane, x);
             wanted.y = wanted.y.replace(lane, y);
         }
