@@ -7,7 +7,6 @@ use numeric::error::Result;
 use pyo3::prelude::*;
 use vff_core::lanes::{Planar, Real, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
-use vff_core::world::geometry::RobotState;
 use vff_core::world::scenario::Scenario;
 
 use crate::situation::situation_fields;
@@ -63,6 +62,7 @@ impl LawFamily for PythonLaw {
             velocity: self.velocity,
             robot: point_mass(scenario),
             ends: (scenario.start(), scenario.goal()),
+            aim: None,
             seed: scenario.seed(),
         })
     }
@@ -87,11 +87,14 @@ pub struct AtWork {
     velocity: bool,
     robot: (f64, f64, f64, f64),
     ends: ([f64; 2], [f64; 2]),
+    /// Local goal on the way, in m, where a guide gives one.
+    aim: Option<[f64; 2]>,
     seed: u64,
 }
 
 impl AtWork {
     fn answer(&mut self, lane: usize, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
+        let aim = self.aim;
         Python::attach(|py| {
             let fields = situation_fields(py, situation)?;
             let slot = &mut self.asked[lane];
@@ -102,7 +105,7 @@ impl AtWork {
                 let arguments = (self.robot, start, goal, self.seed);
                 slot.insert(self.begin.call1(py, arguments)?)
             };
-            asked.call1(py, (fields,))?.extract(py)
+            asked.call1(py, (fields, aim))?.extract(py)
         })
     }
 
@@ -131,23 +134,13 @@ impl<R: Real> Law<R> for AtWork {
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut force = Vector2::<R>::zeros();
         for lane in 0..R::WIDTH {
-            let robot = RobotState {
-                position: Vector2::splat(situation.robot.position.lane(lane)),
-                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
-            };
-            let [x, y] = self.force(
-                lane,
-                &Situation {
-                    time: situation.time,
-                    bodies: situation.bodies,
-                    robot,
-                    heading: situation.heading,
-                    interval: situation.interval,
-                    stop: situation.stop,
-                },
-            );
+            let [x, y] = self.force(lane, &situation.of_lane(lane));
             force = Vector2::new(force.x.replace(lane, x), force.y.replace(lane, y));
         }
         Command::plain(force)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.aim = Some(goal);
     }
 }

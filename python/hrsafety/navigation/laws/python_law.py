@@ -164,8 +164,8 @@ class _Episode:
         self.robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
         self.origin, self.goal, self.seed = origin, fixed(goal), seed
 
-    def __call__(self, fields: Mapping[str, Any]) -> Pair:
-        situation = situation_of(fields, self.robot, self.goal)
+    def __call__(self, fields: Mapping[str, Any], aim: Pair | None = None) -> Pair:
+        situation = situation_of(fields, self.robot, self.goal if aim is None else fixed(aim))
         try:
             if self.start is not None:
                 start, self.start = self.start, None

@@ -47,7 +47,7 @@ class Situation:
     heading : float
         Of the robot, in rad.
     goal : ndarray, shape (2,)
-        In m.
+        In m; where a guide leads the law, the local goal on the way.
     obstacle_present : ndarray of bool, shape (m,)
         Whether an obstacle is there.
     obstacle_position, obstacle_velocity : ndarray, shape (m, 2)

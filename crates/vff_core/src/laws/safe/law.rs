@@ -108,6 +108,14 @@ impl SafeLaw {
         &self.trace
     }
 
+    /// Heads for another goal from now on, in m; with a guide of its own it keeps to its plan.
+    pub(crate) fn aim(&mut self, goal: [f64; 2]) {
+        if self.guidance.is_none() {
+            self.goal = goal.into();
+            self.law.aim(goal);
+        }
+    }
+
     /// Force for the time until the next sample.
     pub(crate) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);

@@ -15,10 +15,9 @@ pub use plans::Plans;
 pub use settings::SafeNavigation;
 
 use crate::error::Result;
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Real, Vector2};
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
-use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// Robots side by side, each with a law and its parts.
@@ -32,18 +31,7 @@ impl<R: Real> Law<R> for SafeLanes {
         let mut stabilizing = Vector2::<R>::zeros();
         let mut lyapunov = R::splat(f64::NAN);
         for (lane, law) in self.0.iter_mut().enumerate() {
-            let robot = RobotState {
-                position: Vector2::splat(situation.robot.position.lane(lane)),
-                velocity: Vector2::splat(situation.robot.velocity.lane(lane)),
-            };
-            let command = law.command(&Situation {
-                time: situation.time,
-                bodies: situation.bodies,
-                robot,
-                heading: situation.heading,
-                interval: situation.interval,
-                stop: situation.stop,
-            });
+            let command = law.command(&situation.of_lane(lane));
             let put = |target: &mut Vector2<R>, vector: Vector2<f64>| {
                 target.x = target.x.replace(lane, vector.x);
                 target.y = target.y.replace(lane, vector.y);
@@ -56,6 +44,12 @@ impl<R: Real> Law<R> for SafeLanes {
             force,
             stabilizing,
             lyapunov,
+        }
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        for law in &mut self.0 {
+            law.aim(goal);
         }
     }
 
