@@ -10,6 +10,7 @@ use vff_core::robots::HolonomicRobot;
 use vff_core::world::geometry::RobotState;
 use vff_core::world::map::{Capsule, GridPlace, MapShapes, StaticMap};
 use vff_core::world::scenario::{Rules, Scenario};
+use vff_core::world::shape::PlacedShape;
 
 type Point = Vector2<f64>;
 
@@ -334,4 +335,42 @@ fn planners_of_whole_paths_keep_out_of_the_map() {
     // Without the map the straight way leads through a wall.
     assert_eq!(least(&tree(&scene).whole_path(&alone(start))), 0.0);
     assert_eq!(least(&grid(&scene).whole_path(&alone(start))), 0.0);
+}
+
+#[test]
+fn a_shape_lies_in_the_map_only_as_a_whole() {
+    let mut shapes = MapShapes::new();
+    shapes
+        .polygon(&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
+        .unwrap();
+    shapes.polyline(&[[6.0, -1.0], [6.0, 1.0]], 0.0).unwrap();
+    shapes.disc([9.0, 0.0], 0.5).unwrap();
+    let place = GridPlace {
+        resolution: 0.5,
+        origin: [12.0, 0.0],
+        yaw: 0.0,
+    };
+    shapes.grid(&[true; 16], 4, place).unwrap();
+    let map = shapes.map();
+    let disc = PlacedShape::disc;
+    for (shape, held) in [
+        (disc([2.0, 1.0], 1.0), true),
+        (disc([2.0, 1.0], 1.01), false),
+        // Its center lies on a wall that is much smaller than it.
+        (disc([6.0, 0.0], 1.0), false),
+        (disc([6.0, 0.0], 0.1), false),
+        (disc([9.0, 0.0], 0.5), true),
+        (disc([9.1, 0.0], 0.5), false),
+        (disc([9.1, 0.0], 0.4), true),
+        (disc([13.0, 1.0], 1.0), true),
+        (disc([13.0, 1.0], 1.1), false),
+        (disc([20.0, 0.0], 0.1), false),
+        (PlacedShape::upright([2.0, 1.0], [4.0, 2.0]), true),
+        (PlacedShape::upright([2.0, 1.0], [4.0, 2.1]), false),
+        (PlacedShape::turned([2.0, 1.0], [3.0, 1.9], 0.6), false),
+        (PlacedShape::turned([9.0, 0.0], [0.6, 0.6], 0.6), true),
+        (PlacedShape::turned([9.0, 0.0], [0.8, 0.8], 0.6), false),
+    ] {
+        assert_eq!(map.holds(&shape), held, "{shape:?}");
+    }
 }

@@ -221,6 +221,43 @@ impl PlacedShape {
         to.dot(&to).sqrt()
     }
 
+    /// Distance of a segment from the surface, zero where they meet, in m.
+    #[must_use]
+    pub fn distance_of_segment(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+        match self.shape {
+            Shape::Disc { radius } => (from_segment(self.center, from, to) - radius).max(0.0),
+            Shape::Rectangle { .. } => {
+                let way = to - from;
+                let length = way.norm();
+                if length > 0.0 && self.cast(from, way / length) <= length {
+                    return 0.0;
+                }
+                let corners = self.corners().map(|corner| from_segment(corner, from, to));
+                let ends = [self.distance(from), self.distance(to)];
+                corners
+                    .into_iter()
+                    .chain(ends)
+                    .fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
+    /// Corners of a rectangle in m; those of a disc are all its center.
+    #[must_use]
+    pub fn corners(&self) -> [Vector2<f64>; 4] {
+        let (half, axis) = match self.shape {
+            Shape::Disc { .. } => (Vector2::zeros(), Vector2::x()),
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => (Vector2::new(half_length, half_width), axis),
+        };
+        [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[along, across]| {
+            self.center + out_of_axes(Vector2::new(along * half.x, across * half.y), axis)
+        })
+    }
+
     /// Whether all of the shape lies beyond the line through a point, on the side of its normal.
     #[inline]
     #[must_use]
@@ -257,6 +294,18 @@ impl PlacedShape {
             ),
         }
     }
+}
+
+/// Distance of a point from a segment.
+fn from_segment(point: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    let along = to - from;
+    let square = along.dot(&along);
+    let share = if square > 0.0 {
+        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (from + along * share - point).norm()
 }
 
 /// Distance along a ray to a disc at an offset from its start.

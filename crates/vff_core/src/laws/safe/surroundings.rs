@@ -23,7 +23,7 @@ enum Kind {
     Person,
     /// A rectangle that stands.
     Wall,
-    /// It stands, and the map shows it.
+    /// It stands, and all of it lies in the map, which shows it.
     Mapped,
 }
 
@@ -201,8 +201,11 @@ impl Known {
                 ..
             } => (true, half_length.hypot(half_width)),
         };
-        let place = placed.obstacle.motion.at(0.0, &mut 0).position;
-        let mapped = |map: &StaticMap| map.clearance(place.into()) == 0.0;
+        let place = PlacedShape {
+            center: placed.obstacle.motion.at(0.0, &mut 0).position.into(),
+            shape: placed.obstacle.shape,
+        };
+        let mapped = |map: &StaticMap| map.holds(&place);
         let kind = if placed.stationary && family.map.as_ref().is_some_and(mapped) {
             Kind::Mapped
         } else if placed.stationary && rectangle {

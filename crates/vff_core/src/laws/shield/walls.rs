@@ -2,7 +2,7 @@
 
 use crate::lanes::Vector2;
 use crate::world::map::StaticMap;
-use crate::world::shape::{PlacedShape, Shape, into_axes};
+use crate::world::shape::PlacedShape;
 
 /// Rounding of distances in m.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -42,50 +42,11 @@ impl Walls<'_> {
     /// Whether all points of a segment are at least so far from every wall, in m.
     #[must_use]
     pub fn segment_keeps(&self, from: Vector2<f64>, to: Vector2<f64>, least: f64) -> bool {
-        let apart = |shape: &PlacedShape| segment_distance(shape, from, to) >= least;
+        let apart = |shape: &PlacedShape| shape.distance_of_segment(from, to) >= least;
         self.shapes.iter().all(apart)
             && self
                 .map
                 .is_none_or(|map| map.segment_keeps(from, to, least))
-    }
-}
-
-/// Distance of a point from a segment.
-fn from_segment(point: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-    let along = to - from;
-    let square = along.dot(&along);
-    let share = if square > 0.0 {
-        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (from + along * share - point).norm()
-}
-
-/// Distance of a segment from a shape, zero where they meet.
-fn segment_distance(shape: &PlacedShape, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-    match shape.shape {
-        Shape::Disc { radius } => (from_segment(shape.center, from, to) - radius).max(0.0),
-        Shape::Rectangle {
-            half_length,
-            half_width,
-            axis,
-        } => {
-            let way = to - from;
-            let length = way.norm();
-            if length > 0.0 && shape.cast(from, way / length) <= length {
-                return 0.0;
-            }
-            let half = Vector2::new(half_length, half_width);
-            let ends = [from, to].map(|end| into_axes(end - shape.center, axis));
-            let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]
-                .map(|[x, y]| from_segment(Vector2::new(x * half.x, y * half.y), ends[0], ends[1]));
-            let ends = [shape.distance(from), shape.distance(to)];
-            corners
-                .into_iter()
-                .chain(ends)
-                .fold(f64::INFINITY, f64::min)
-        }
     }
 }
 

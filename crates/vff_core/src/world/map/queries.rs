@@ -5,6 +5,10 @@ use nalgebra::Vector2;
 use crate::world::map::StaticMap;
 use crate::world::map::boundary::Beyond;
 use crate::world::map::index::Bounds;
+use crate::world::shape::{PlacedShape, Shape};
+
+/// What reaches out of the map by less than this lies in it, in m: typed numbers are rounded.
+const ROUNDING: f64 = 1e-9;
 
 impl StaticMap {
     /// Distance of a point from the map in m: zero inside, infinite without shapes.
@@ -35,6 +39,37 @@ impl StaticMap {
     fn inside(&self, point: Vector2<f64>) -> bool {
         self.parts.grids.iter().any(|grid| grid.occupied_at(point))
             || (self.parts.outlines && self.turns_around(point) > 0)
+    }
+
+    /// Whether all of a shape lies in the map, so that the map shows whatever it would show. What lies
+    /// in several overlapping parts together may count as outside.
+    #[must_use]
+    pub fn holds(&self, placed: &PlacedShape) -> bool {
+        let (corners, radius) = (placed.corners(), placed.shape.inner_radius());
+        let smaller = PlacedShape {
+            shape: shrunk(placed.shape),
+            ..*placed
+        };
+        let reach = corners
+            .iter()
+            .map(|corner| (corner - placed.center).norm());
+        let reach = reach.fold(radius, f64::max) + ROUNDING;
+        let (mut held, mut cut) = (false, false);
+        self.parts.index.visit(
+            reach * reach,
+            |bounds| Some(bounds.distance_squared(placed.center)),
+            |_, capsule, limit| {
+                if capsule.radius > 0.0 {
+                    let within = |corner| capsule.distance(corner) + radius <= ROUNDING;
+                    held |= corners.into_iter().all(within);
+                } else {
+                    // A boundary inside of the shape: something of the shape may lie beyond it.
+                    cut |= smaller.distance_of_segment(capsule.from, capsule.to) == 0.0;
+                }
+                limit
+            },
+        );
+        held || (!cut && self.inside(placed.center))
     }
 
     /// How many filled outlines are around a point: their edges run counter-clockwise, so those
@@ -153,5 +188,24 @@ impl StaticMap {
             },
         );
         reached
+    }
+}
+
+/// The shape without a rim as wide as rounding.
+fn shrunk(shape: Shape) -> Shape {
+    let less = |size: f64| (size - ROUNDING).max(0.0);
+    match shape {
+        Shape::Disc { radius } => Shape::Disc {
+            radius: less(radius),
+        },
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => Shape::Rectangle {
+            half_length: less(half_length),
+            half_width: less(half_width),
+            axis,
+        },
     }
 }
