@@ -195,9 +195,6 @@ def test_what_every_part_keeps_is_the_laws_own_command() -> None:
 
 
 def test_a_law_in_python_is_shielded() -> None:
-    def straight(situation: nav.Situation) -> object:
-        return 20.0 * (situation.goal - situation.position) - 8.0 * situation.velocity
-
     scene = scenarios.random_traffic(12, seed=3)
     assert nav.simulate(scene, SafeNavigation(straight, shield=Shield())).contact_at_fault.sum() == 0
 
@@ -272,6 +269,61 @@ def test_a_start_in_contact_with_the_map_is_refused() -> None:
     scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0))
     with pytest.raises(InvalidParameterError, match="start must be farther from the map"):
         nav.simulate(scene, SafeNavigation(FIELD, map=walls))
+
+
+def test_a_goal_that_the_map_leaves_no_room_for_is_refused() -> None:
+    walls = StaticMap.from_polylines([[(5.1, -1), (5.1, 1)]])
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0))
+    for guide in (None, Guide()):
+        with pytest.raises(InvalidParameterError, match="goal must be"):
+            nav.simulate(scene, SafeNavigation(FIELD, map=walls, guide=guide))
+
+
+def straight(situation: nav.Situation) -> object:
+    return 20.0 * (situation.goal - situation.position) - 8.0 * situation.velocity
+
+
+def test_what_reaches_out_of_the_map_is_not_known_by_it_alone() -> None:
+    pillar = nav.Disc(center=(3.0, 0.0), radius=1.0)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), obstacles=(pillar,), time_limit=8.0)
+    inside = StaticMap.from_polylines([[(3.0, -0.1), (3.0, 0.1)]])
+    run = nav.simulate(scene, SafeNavigation(straight, map=inside, shield=Shield()))
+    assert run.min_clearance.min() > 0.0
+    # All of it in the map: the boundary points of the map stand for it.
+    whole = StaticMap.from_obstacles([pillar])
+    run = nav.simulate(scene, SafeNavigation(straight, map=whole, shield=Shield()))
+    assert run.min_clearance.min() > 0.0
+
+
+@pytest.mark.parametrize("law", [nav.FieldDStar(), nav.RapidlyExploringRandomTree()])
+def test_planners_of_whole_paths_keep_out_of_the_map(law: nav.Law) -> None:
+    # The end of the trap is farther away than boundary points are shown.
+    walls = StaticMap.from_polylines([[(1, 1.5), (7, 1.5), (7, -1.5), (1, -1.5)]])
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(8.5, 0.0), time_limit=60.0)
+    run = nav.simulate(scene, SafeNavigation(law, map=walls))
+    assert run.outcome == "arrived"
+    x, y = run.position.T
+    assert not ((x > 2.0) & (x < 7.0) & (abs(y) < 1.5)).any()
+
+
+def test_a_law_in_python_is_led_by_local_goals() -> None:
+    walls = StaticMap.from_polylines([[(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)]])
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), time_limit=60.0)
+    goals = []
+
+    def led(situation: nav.Situation) -> object:
+        goals.append(tuple(situation.goal.tolist()))
+        return straight(situation)
+
+    led_run = nav.simulate(scene, SafeNavigation(led, map=walls, guide=Guide(), shield=Shield(), takeover=False))
+    assert led_run.outcome == "arrived"
+    assert goals[0] != (5.0, 0.0)
+    assert goals[-1] == (5.0, 0.0)
+    # Parts within parts hand it on.
+    goals.clear()
+    inner = SafeNavigation(led, shield=Shield())
+    assert nav.simulate(scene, SafeNavigation(inner, map=walls, guide=Guide())).outcome == "arrived"
+    assert goals[0] != (5.0, 0.0)
 
 
 def test_runs_past_a_map_say_that_its_walls_are_not_counted() -> None:

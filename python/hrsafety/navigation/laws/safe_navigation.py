@@ -57,8 +57,8 @@ class SafeNavigation(Law):
     law : law
         What wants a velocity: any law of the package, or one of your own.
     map : StaticMap or None
-        What stands and is known before. Laws see its boundary points; what stands in the scene and lies
-        in the map is known by the map alone.
+        What stands and is known before. Laws see its boundary points, planners of whole paths the map
+        itself; what stands in the scene and lies in the map as a whole is known by the map alone.
     guide : Guide or None
         Plan and local goal for the law; with it, the law is taken over from where it makes no progress.
     shield : Shield or None
@@ -79,8 +79,9 @@ class SafeNavigation(Law):
     Raises
     ------
     InvalidParameterError
-        If an argument is not of its kind or not positive. A preferred speed above that of the robot is
-        refused when a run begins.
+        If an argument is not of its kind or not positive. A preferred speed above that of the robot, a
+        start in contact with the map and a goal nearer to it than the radius of the robot are refused when
+        a run begins.
 
     Examples
     --------

@@ -78,15 +78,16 @@ impl SafeNavigation {
         Ok(self)
     }
 
-    /// What the law within is told of a scenario: a robot that is as fast as is preferred, and room
-    /// for the boundary points of the map.
+    /// What the law within is told of a scenario: a robot that is as fast as is preferred, the map for
+    /// planners of whole paths, and room for the boundary points of the map.
     pub(super) fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
         let mut inner = match self.preferred_speed {
             Some(speed) => slowed(scenario, speed)?,
             None => scenario.clone(),
         };
         if let Some(map) = &self.map {
-            check_start(map, scenario)?;
+            check_ends(map, scenario)?;
+            inner = inner.with_map(map.clone());
             let point = boundary_obstacle(scenario.robot.radius);
             inner
                 .obstacles
@@ -117,15 +118,22 @@ fn slowed(scenario: &Scenario, speed: f64) -> Result<Scenario> {
     scenario.slowed(speed)
 }
 
-/// Refuses a start in contact with the map.
-fn check_start(map: &StaticMap, scenario: &Scenario) -> Result<()> {
+/// Refuses a start in contact with the map, and a goal that the robot cannot stand on.
+fn check_ends(map: &StaticMap, scenario: &Scenario) -> Result<()> {
     let radius = scenario.robot.radius;
-    let clearance = map.clearance(scenario.start.into());
-    if clearance > radius {
-        return Ok(());
-    }
-    let rule = format!("be farther from the map than the radius of the robot, {radius} m");
-    let given = Given::Pair(scenario.start);
-    let advice = format!("the map is {clearance:.4} m away");
-    Err(Failure::invalid("start", rule, given).mended_by(advice))
+    let check = |name: &str, place: [f64; 2], words: &str, allowed: fn(f64, f64) -> bool| {
+        let clearance = map.clearance(place.into());
+        if allowed(clearance, radius) {
+            return Ok(());
+        }
+        let rule = format!("be {words} the map than the radius of the robot, {radius} m");
+        let advice = format!("the map is {clearance:.4} m away");
+        Err(Failure::invalid(name, rule, Given::Pair(place)).mended_by(advice))
+    };
+    check("start", scenario.start, "farther from", |away, least| {
+        away > least
+    })?;
+    check("goal", scenario.goal, "no nearer to", |away, least| {
+        away >= least
+    })
 }
