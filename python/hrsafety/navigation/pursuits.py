@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, number, positive, thread_count, word
 from hrsafety._statistics import Share, wilson
-from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.errors import InvalidParameterError, SimulationError
+from hrsafety.navigation import run_warnings
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.obstacles import MovingDisc
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = ["Falsification", "Pursuit", "falsify"]
@@ -27,6 +28,8 @@ Progress = Callable[[int, int], object]
 MOST_EPISODES = 10_000_000
 FAR = 1e4
 """Where the person stands in the scenario before the episodes place him, in m."""
+COLUMNS = ("margin", "min_clearance", "arrival_time", "end_time")
+"""What is kept of every episode."""
 ROOM = 0.3
 """Least distance of the surfaces at the start, in m."""
 
@@ -93,16 +96,25 @@ class Falsification:
         The property, ``"own"`` for one of your own.
     margin : ndarray, shape (n,)
         By how much it held in each episode, negative where it was broken; of CMA-ES the worst alone.
+    min_clearance, arrival_time, end_time : ndarray, shape (n,)
+        Least distance of the surfaces in m, and when the robot arrived and the episode ended, in s; NaN
+        without arrival.
     episodes : int
         Episodes in all.
     worst : Pursuit
         The episode of the least margin.
+    warnings : tuple of ResultWarning
+        What is doubtful about the episodes, as for a run.
     """
 
     property_name: str
     margin: Array
+    min_clearance: Array
+    arrival_time: Array
+    end_time: Array
     episodes: int
     worst: Pursuit
+    warnings: tuple[ResultWarning, ...]
 
     @property
     def broken(self) -> bool:
@@ -136,8 +148,8 @@ def falsify(
 
     One person is added to the scenario, at most as fast as is said. Random persons keep directions for
     0.35 s, circle and then dash, pursue with a lead, or feint; CMA-ES chooses the start, eight
-    directions, the share of pursuit and the lead. What the robot knows of the person is as noisy and late
-    as the measurement of the scenario says; every episode has noise of its own.
+    directions, the share of pursuit and the lead. The robot knows itself and everybody as in a run: as its
+    sensors and the measurement of the scenario tell; every episode has noise of its own.
 
     Parameters
     ----------
@@ -179,7 +191,9 @@ def falsify(
     Raises
     ------
     InvalidParameterError
-        If a value is out of range, or the law cannot work in the scenario.
+        If a value is out of range, the law cannot work in the scenario, or your property returns no number.
+    SimulationError
+        If CMA-ES has no result.
     KeyboardInterrupt
         Within 0.2 s of Ctrl-C.
 
@@ -194,58 +208,87 @@ def falsify(
     scene = instance("scenario", scenario, Scenario)
     drives, own = as_law(law), callable(property)
     kind = "at_fault" if own else word("property", property, ("at_fault", "clearance", "arrival", "speed"))
-    limit = number("least", least) if kind == "clearance" else _most(most, scene) if kind == "speed" else 0.0
+    limit = _least(least) if kind == "clearance" else _most(most, scene) if kind == "speed" else 0.0
     how = word("method", method, ("random", "cma_es"))
     if own and how == "cma_es":
         raise InvalidParameterError("method", 'be "random" for a property of your own', method)
-    hunt = _hunt(scene, drives, built, step, positive("person_radius", person_radius), person_speed)
+    size, fastest = positive("person_radius", person_radius), positive("person_speed", person_speed)
+    pursued = _with_person(scene, size, fastest)
+    robot = AsBuilt() if built is None else instance("built", built, AsBuilt)
+    hunt = _hrsafety.Hunt(
+        pursued._native,
+        drives._native,
+        robot._native,
+        step=positive("step", step),
+        person_speed=fastest,
+        free=scene.robot.radius + size + ROOM,
+    )
     runs, start = count("episodes", episodes, most=MOST_EPISODES), checked_seed("seed", seed)
     team, heard = thread_count(threads), callback("progress", progress)
-    if how == "cma_es":
-        numbers, margin = hunt.worst(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
-        worst = _pursuit(hunt.replay(seed=seed, index=0, numbers=numbers))
-        return Falsification(property_name=kind, margin=np.array([margin]), episodes=episodes, worst=worst)
     if callable(property):
-        return _own(hunt, property, episodes, seed)
-    margins = hunt.sweep(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)["margin"]
-    index = int(np.argmin(margins))
-    worst = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
-    return Falsification(property_name=kind, margin=margins, episodes=episodes, worst=worst)
+        found, worst = _own(hunt, property, runs, start, heard)
+    elif how == "cma_es":
+        numbers, margin = hunt.worst(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
+        if math.isnan(margin):
+            raise SimulationError("the search for the worst person has no result")
+        worst = _pursuit(hunt.replay(seed=start, index=0, numbers=numbers))
+        values = (margin, worst.min_clearance, worst.arrival_time, worst.end_time)
+        found = {name: np.array([value]) for name, value in zip(COLUMNS, values, strict=True)}
+    else:
+        columns = hunt.sweep(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
+        swept = cast(Mapping[str, Array], columns)
+        found = {name: swept[name] for name in COLUMNS}
+        worst = _pursuit(hunt.replay(seed=start, index=int(np.argmin(found["margin"])), numbers=None))
+    return Falsification(
+        property_name="own" if own else kind,
+        **found,
+        episodes=runs,
+        worst=worst,
+        warnings=run_warnings.of_run(pursued, drives, robot),
+    )
+
+
+def _least(least: float) -> float:
+    given = number("least", least)
+    if not math.isfinite(given):
+        raise InvalidParameterError("least", "be finite", least)
+    return given
 
 
 def _most(most: float | None, scenario: Scenario) -> float:
     return scenario.robot.max_speed * (1.0 + 1e-9) if most is None else positive("most", most)
 
 
-def _hunt(
-    scenario: Scenario, law: Law, built: AsBuilt | None, step: float, radius: float, speed: float
-) -> _hrsafety.Hunt:
-    """Return the search in the scenario with one more person."""
-    fastest = positive("person_speed", speed)
-    person = MovingDisc(center=(FAR, FAR), velocity=(fastest, 0.0), radius=radius)
-    scene = replace(scenario, obstacles=(*scenario.obstacles, person))
-    how = AsBuilt() if built is None else instance("built", built, AsBuilt)
-    return _hrsafety.Hunt(
-        scene._native,
-        law._native,
-        how._native,
-        step=positive("step", step),
-        person_speed=fastest,
-        free=scenario.robot.radius + radius + ROOM,
-    )
+def _with_person(scenario: Scenario, radius: float, speed: float) -> Scenario:
+    """Return the scenario with one more person, whom the episodes place."""
+    person = MovingDisc(center=(FAR, FAR), velocity=(speed, 0.0), radius=radius)
+    return replace(scenario, obstacles=(*scenario.obstacles, person))
 
 
-def _own(hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: int, seed: int) -> Falsification:
-    """Judge every episode by a function."""
-    margins, worst, least = [], None, math.inf
+def _own(
+    hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: int, seed: int, heard: Progress | None
+) -> tuple[dict[str, Array], Pursuit]:
+    """Judge every episode by a function; return columns and the worst episode."""
+    margins, clearances, arrivals, ends = [], [], [], []
+    worst, least = None, math.inf
     for index in range(episodes):
         pursuit = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
         margin = number("margin of the property", margin_of(pursuit))
+        if math.isnan(margin):
+            # Not below zero either: it would count as kept.
+            what = f"margin of the property in episode {index}"
+            raise InvalidParameterError(what, "be a number, negative where it is broken", margin)
         margins.append(margin)
+        clearances.append(pursuit.min_clearance)
+        arrivals.append(pursuit.arrival_time)
+        ends.append(pursuit.end_time)
         if worst is None or margin < least:
             worst, least = pursuit, margin
+        if heard is not None:
+            heard(index + 1, episodes)
     assert worst is not None  # there is at least one episode
-    return Falsification(property_name="own", margin=np.array(margins), episodes=episodes, worst=worst)
+    values = (margins, clearances, arrivals, ends)
+    return {name: np.array(value) for name, value in zip(COLUMNS, values, strict=True)}, worst
 
 
 def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:

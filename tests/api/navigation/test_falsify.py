@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws import SafeNavigation, Shield
+from hrsafety.navigation.maps import StaticMap
 from hrsafety.navigation.metrics import Pursuit, falsify
 
 SCENE = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), time_limit=10.0)
@@ -50,9 +53,51 @@ def test_a_property_of_your_own() -> None:
     def never_backwards(pursuit: Pursuit) -> float:
         return float(pursuit.velocity[:, 0].min()) + 1e-9
 
-    found = falsify(SCENE, ORCA, never_backwards, episodes=10)
+    told: list[tuple[int, int]] = []
+    found = falsify(SCENE, ORCA, never_backwards, episodes=10, progress=lambda *done: told.append(done))
     assert found.property_name == "own"
-    assert len(found.margin) == 10
+    assert len(found.margin) == len(found.min_clearance) == 10
+    assert told[-1] == (10, 10)
+
+
+def test_sensors_tell_of_the_person_as_in_a_run() -> None:
+    law = SafeNavigation(ORCA, shield=Shield())
+    blind = nav.robots.AsBuilt(sensors=[nav.sensing.Lidar(sees_obstacles=False)])
+    assert falsify(SCENE, law, episodes=60, seed=2, built=blind).broken
+    camera = nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(latency=0.5))
+    exact = falsify(SCENE, ORCA, episodes=20, seed=2)
+    late = falsify(SCENE, ORCA, episodes=20, seed=2, built=camera)
+    assert not np.array_equal(exact.margin, late.margin)
+
+
+def test_the_own_place_is_measured_as_in_a_run() -> None:
+    def found(of: str) -> object:
+        measured = replace(SCENE, measurement=nav.Measurement(scale=0.05, latency=0.2, of=of))
+        return falsify(measured, ORCA, episodes=20, seed=2).margin
+
+    assert not np.array_equal(found("robot"), falsify(SCENE, ORCA, episodes=20, seed=2).margin)
+    assert not np.array_equal(found("both"), found("obstacles"))
+
+
+def test_every_episode_has_its_clearance_and_arrival() -> None:
+    found = falsify(SCENE, SafeNavigation(ORCA, shield=Shield()), episodes=30, seed=2)
+    arrived = ~np.isnan(found.arrival_time)
+    assert 0 < arrived.sum() < 30
+    assert np.array_equal(found.arrival_time[arrived], found.end_time[arrived])
+    assert found.min_clearance.min() == found.min_clearance[np.argmin(found.min_clearance)] < found.margin.min()
+
+
+def test_results_carry_the_warnings_of_a_run() -> None:
+    walls = StaticMap.from_polylines([[(1.0, 2.0), (3.0, 2.0)]])
+    found = falsify(SCENE, SafeNavigation(ORCA, map=walls), episodes=2)
+    assert "map_contacts_not_counted" in {each.code for each in found.warnings}
+
+
+def test_a_margin_that_is_no_number_counts_for_nothing() -> None:
+    with pytest.raises(InvalidParameterError, match="margin of the property in episode 0"):
+        falsify(SCENE, ORCA, lambda _: float("nan"), episodes=3)
+    with pytest.raises(InvalidParameterError, match="least"):
+        falsify(SCENE, ORCA, "clearance", least=float("nan"), episodes=3)
 
 
 def test_cma_es_finds_a_fault() -> None:

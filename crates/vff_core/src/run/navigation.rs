@@ -13,7 +13,7 @@ use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::built::Built;
 use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
-use crate::run::built::sight::Sight;
+use crate::run::built::sight::{Seen, Sight};
 use crate::run::built::{clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::group::{AnyLaw, Steering};
@@ -38,12 +38,47 @@ pub enum Request {
 
 /// State of the robot as measured at the last sample.
 #[derive(Clone, Copy, Debug)]
-struct Known {
-    robot: RobotState<f64>,
+pub(super) struct Known {
+    pub robot: RobotState<f64>,
     /// The pose, `None` where it is known exactly.
-    fix: Option<Fix>,
+    pub fix: Option<Fix>,
     /// Whether the robot is outside every active region, as far as it knows.
-    clear: bool,
+    pub clear: bool,
+}
+
+impl Known {
+    /// A robot that stands where it is, and knows it.
+    pub fn exactly(robot: RobotState<f64>) -> Self {
+        Self {
+            robot,
+            fix: None,
+            clear: true,
+        }
+    }
+
+    /// What was seen at a sample.
+    pub fn of(seen: &Seen<'_>) -> Self {
+        Self {
+            robot: seen.robot,
+            fix: seen.fix,
+            clear: seen.clear(),
+        }
+    }
+
+    /// The heading in rad as measured, or as the robot itself takes it.
+    pub fn heading(&self, robot: &dyn MotorDrive) -> f64 {
+        let measured = self.fix.and_then(|fix| fix.heading);
+        measured.unwrap_or_else(|| robot.known_heading())
+    }
+
+    /// A force with what the robot knows when it is told of it.
+    pub fn order(&self, force: Vector2<f64>) -> Order {
+        Order {
+            force,
+            fix: self.fix,
+            clear: self.clear,
+        }
+    }
 }
 
 /// A robot under a law, or told what to do, in a scenario, and what is kept of its run.
@@ -108,11 +143,7 @@ impl<L: Listener> Episode<Navigation<L>> {
             stop_on_contact: built.stop_on_contact,
             interval: clock.interval,
             sight,
-            known: Known {
-                robot: reading.robot,
-                fix: None,
-                clear: true,
-            },
+            known: Known::exactly(reading.robot),
             runs: Runs::new(Arc::clone(&scenario), clock, bodies),
             reading,
             energy: 0.0,
@@ -189,11 +220,7 @@ impl<L: Listener> Parts for Navigation<L> {
         };
         self.runs.check_force(command.force, time)?;
         self.runs.count_sample();
-        self.robot.hold(&Order {
-            force: command.force,
-            fix: self.known.fix,
-            clear: self.known.clear,
-        });
+        self.robot.hold(&self.known.order(command.force));
         self.listener
             .sample(&command, self.known.robot.position.lane(0));
         Ok(true)
@@ -232,22 +259,17 @@ impl<L: Listener> Parts for Navigation<L> {
         let heading = self.robot.known_heading();
         let bodies = &self.scene.frames[0];
         let seen = self.sight.look(time, &self.reading, heading, bodies);
-        self.known = Known {
-            robot: seen.robot,
-            fix: seen.fix,
-            clear: seen.clear(),
-        };
+        self.known = Known::of(&seen);
     }
 }
 
 impl<L: Listener> Navigation<L> {
     fn seen<'a>(&'a self, time: f64, stop: Stop<'a>) -> Situation<'a, f64> {
-        let heading = self.known.fix.and_then(|fix| fix.heading);
         Situation {
             time,
             bodies: self.sight.bodies(&self.scene.frames[0]),
             robot: self.known.robot,
-            heading: heading.unwrap_or_else(|| self.robot.known_heading()),
+            heading: self.known.heading(&*self.robot),
             interval: self.interval,
             stop,
         }

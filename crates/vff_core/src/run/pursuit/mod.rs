@@ -1,7 +1,9 @@
 //! A robot and somebody who sees it: an episode in which one obstacle answers to the robot.
 //!
 //! The obstacles of an episode walk ways that are known before; here the last one of the scenario
-//! decides at every motion step. The robot senses, decides and moves as it does there.
+//! decides at every motion step. The robot senses, decides and moves as it does there, with the same
+//! sensors; only what the measurement of the scenario tells of the last obstacle is computed here,
+//! from the way that it took.
 
 mod pursuer;
 
@@ -12,11 +14,13 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Planar;
 use crate::laws::{Situation, Stop};
-use crate::robots::drives::{MotorDrive, Order, Reading};
+use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
+use crate::run::built::sight::{Seen, Sight};
 use crate::run::built::{Built, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::group::{AnyLaw, Steering};
+use crate::run::navigation::Known;
 use crate::run::options::Clock;
 use crate::run::outcome::CONTACT_SPEED;
 use crate::run::scene::bodies_at;
@@ -66,8 +70,10 @@ pub struct Pursued {
     pub pursuer: Vec<f64>,
 }
 
-/// What the robot knows of him: late and noisy positions, velocities from their differences.
+/// The way that he took, and what a measurement tells of it: late and noisy positions, velocities
+/// from their differences.
 struct Tracked {
+    /// `None` where the scenario measures no obstacles: sensors, if any, tell of him.
     noise: Option<(Noise, f64)>,
     /// Motion step in s.
     step: f64,
@@ -99,28 +105,31 @@ impl Tracked {
         self.places[self.places.len() - 1]
     }
 
-    /// State as measured once a control period.
-    fn measure(&mut self, interval: f64, velocity: Vector2<f64>) -> BodyState {
+    /// State as measured once a control period, with his velocity now in m/s; `None` where the
+    /// scenario does not measure it.
+    fn measure(&mut self, interval: f64, velocity: Vector2<f64>) -> Option<BodyState> {
         let now = self.places.len() - 1;
-        let here = self.places[now];
-        let (mut place, mut speed) = (here, velocity);
-        if let Some((noise, latency)) = &mut self.noise {
-            let back = *latency / self.step;
-            let whole = (now as f64 - back).max(0.0);
-            let first = whole_of(whole).min(now);
-            let share = whole - first as f64;
-            let next = self.places[(first + 1).min(now)];
-            place = self.places[first] * (1.0 - share) + next * share;
-            place += Vector2::from(noise.draw());
-            speed = self.last.map_or(velocity, |last| (place - last) / interval);
-            self.last = Some(place);
-        }
-        BodyState {
-            position: place.into(),
-            velocity: speed.into(),
-            acceleration: [0.0; 2],
-            present: true,
-        }
+        let (noise, latency) = self.noise.as_mut()?;
+        let back = *latency / self.step;
+        let whole = (now as f64 - back).max(0.0);
+        let first = whole_of(whole).min(now);
+        let share = whole - first as f64;
+        let next = self.places[(first + 1).min(now)];
+        let place = self.places[first] * (1.0 - share) + next * share;
+        let place = place + Vector2::from(noise.draw());
+        let speed = self.last.map_or(velocity, |last| (place - last) / interval);
+        self.last = Some(place);
+        Some(state_at(place, speed))
+    }
+}
+
+/// Somebody who is there.
+fn state_at(place: Vector2<f64>, velocity: Vector2<f64>) -> BodyState {
+    BodyState {
+        position: place.into(),
+        velocity: velocity.into(),
+        acceleration: [0.0; 2],
+        present: true,
     }
 }
 
@@ -138,6 +147,10 @@ struct PursuitParts<'a> {
     robot: Box<dyn MotorDrive>,
     law: Box<dyn Steering>,
     tracked: Tracked,
+    sight: Sight,
+    known: Known,
+    /// Obstacles as the law knows them.
+    seen: Vec<Body>,
     reading: Reading,
     found: Encounter,
     rows: Option<&'a mut Pursued>,
@@ -166,15 +179,21 @@ pub fn pursue(
         let given = Given::Found("none".into());
         return Err(Failure::invalid("obstacles", rule, given));
     }
+    let robot = robot_under(scenario, built, Some(law))?;
     let clock = clock_of(scenario, built)?;
+    let reading = Reading::at(&built.start_in(scenario));
+    let sight = Sight::new(scenario, built, &bodies_at(scenario, 0.0))?;
     let parts = PursuitParts {
         scenario,
         pursuer,
         interval: clock.interval,
-        robot: robot_under(scenario, built, Some(law))?,
-        law: law.driven().steering(scenario)?,
+        robot,
+        law: law.driven().steering(sight.known(scenario))?,
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
-        reading: Reading::at(&built.start_in(scenario)),
+        sight,
+        known: Known::exactly(reading.robot),
+        seen: Vec::new(),
+        reading,
         found: Encounter {
             least_toward: f64::INFINITY,
             least_ahead: f64::INFINITY,
@@ -199,11 +218,11 @@ impl PursuitParts<'_> {
         self.tracked.here()
     }
 
-    /// Obstacles at the present motion step, the pursuer last.
-    fn bodies(&self, state: BodyState) -> Vec<Body> {
+    /// Obstacles as they are at the present motion step, the pursuer last.
+    fn bodies(&self) -> Vec<Body> {
         let mut bodies = bodies_at(self.scenario, self.time);
         if let Some(last) = bodies.last_mut() {
-            last.state = state;
+            last.state = state_at(self.place(), self.chased());
         }
         bodies
     }
@@ -217,13 +236,7 @@ impl PursuitParts<'_> {
     /// Takes down distances and speeds of the present motion step.
     fn look(&mut self) {
         let robot = self.reading.robot;
-        let state = BodyState {
-            position: self.place().into(),
-            velocity: [0.0; 2],
-            acceleration: [0.0; 2],
-            present: true,
-        };
-        let bodies = self.bodies(state);
+        let bodies = self.bodies();
         let moves = robot.velocity.norm() > CONTACT_SPEED;
         for (body, placed) in bodies.iter().zip(&self.scenario.obstacles) {
             if !body.state.present {
@@ -269,25 +282,18 @@ impl Parts for PursuitParts<'_> {
 
     fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
         self.keep();
-        let velocity = self.chased();
-        let state = self.tracked.measure(self.interval, velocity);
-        let bodies = self.bodies(state);
         let command = self.law.command(&Situation {
             time,
-            bodies: &bodies,
-            robot: self.reading.robot,
-            heading: self.robot.known_heading(),
+            bodies: &self.seen,
+            robot: self.known.robot,
+            heading: self.known.heading(&*self.robot),
             interval: self.interval,
             stop: Stop(interrupted),
         });
         if !command.force.norm().is_finite() {
             return Err(Failure::NonFinite { run: 0, time });
         }
-        self.robot.hold(&Order {
-            force: command.force,
-            fix: None,
-            clear: true,
-        });
+        self.robot.hold(&self.known.order(command.force));
         Ok(true)
     }
 
@@ -299,7 +305,10 @@ impl Parts for PursuitParts<'_> {
         self.look();
     }
 
-    fn look_around(&mut self, _clock: &Clock, _step: usize) {}
+    fn look_around(&mut self, clock: &Clock, step: usize) {
+        let bodies = self.bodies();
+        self.sight.show(clock.time(step), &self.reading, &bodies);
+    }
 
     fn check(&self, time: f64) -> Result<()> {
         let robot = self.reading.robot;
@@ -316,5 +325,21 @@ impl Parts for PursuitParts<'_> {
         self.over = true;
     }
 
-    fn sense(&mut self, _clock: &Clock, _step: usize) {}
+    fn sense(&mut self, clock: &Clock, step: usize) {
+        let (time, heading) = (clock.time(step), self.robot.known_heading());
+        let bodies = self.bodies();
+        let measured = self.tracked.measure(self.interval, self.chased());
+        let seen = self.sight.look(time, &self.reading, heading, &bodies);
+        self.seen.clear();
+        self.seen.extend_from_slice(seen.bodies);
+        // A measurement tells of the obstacles of the scenario before any sensor does.
+        let last = self.scenario.obstacles.len() - 1;
+        if let (Some(state), Some(body)) = (measured, self.seen.get_mut(last)) {
+            body.state = state;
+        }
+        self.known = Known::of(&Seen {
+            bodies: &self.seen,
+            ..seen
+        });
+    }
 }
