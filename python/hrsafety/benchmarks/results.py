@@ -10,7 +10,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from hrsafety._statistics import Share, wilson
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.outcomes import OUTCOMES
 
 __all__ = ["Result", "Row", "read_rows", "row_text"]
 
@@ -29,6 +30,8 @@ class Row:
         In s; NaN without arrival.
     contacts, at_fault : int
         People touched, and how many of them at fault.
+    apart : int
+        People who touched the robot when they appeared in a recording, counted apart from the others.
     clearance : float
         Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
     """
@@ -39,11 +42,12 @@ class Row:
     end_time: float
     contacts: int
     at_fault: int
+    apart: int
     clearance: float
 
 
 NAMES = tuple(each.name for each in fields(Row))
-_WHOLE = ("case", "contacts", "at_fault")
+_COUNTS = ("case", "contacts", "at_fault", "apart")
 
 
 def row_text(rows: Iterable[Row], *, head: bool) -> str:
@@ -66,23 +70,32 @@ def read_rows(path: Path) -> list[Row]:
         return []
     if tuple(lines[0]) != NAMES:
         raise InvalidParameterError("out", f"hold rows of this benchmark ({', '.join(NAMES)})", str(path))
-    rows = []
-    for line in lines[1:]:
-        if len(line) != len(NAMES):
-            continue
+    # Of two rows of an episode the first counts.
+    rows: dict[int, Row] = {}
+    for number, line in enumerate(lines[1:], start=2):
+        row = _row(line, f"{path}, line {number}")
+        rows.setdefault(row.case, row)
+    return list(rows.values())
+
+
+def _row(line: Sequence[str], where: str) -> Row:
+    """Return a row of a file, or say where it is damaged."""
+    try:
         value = dict(zip(NAMES, line, strict=True))
-        rows.append(
-            Row(
-                case=int(value["case"]),
-                outcome=value["outcome"],
-                arrival_time=float(value["arrival_time"]),
-                end_time=float(value["end_time"]),
-                contacts=int(value["contacts"]),
-                at_fault=int(value["at_fault"]),
-                clearance=float(value["clearance"]),
-            )
+        row = Row(
+            outcome=value["outcome"],
+            arrival_time=float(value["arrival_time"]),
+            end_time=float(value["end_time"]),
+            clearance=float(value["clearance"]),
+            **{name: int(value[name]) for name in _COUNTS},
         )
-    return rows
+    except ValueError:
+        row = None
+    if row is None or min(getattr(row, name) for name in _COUNTS) < 0 or row.outcome not in OUTCOMES:
+        rule = f"hold rows of this benchmark ({', '.join(NAMES)})"
+        remedy = "remove the line, and its episode is run again"
+        raise InvalidParameterError("out", rule, Shown(f"{','.join(line)[:80]!r} in {where}"), remedy)
+    return row
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from hrsafety._arguments import checked_seed, count, positive, sequence, thread_count, word
+from hrsafety._arguments import callback, checked_seed, count, positive, readable, sequence, thread_count, word
+from hrsafety._atomic import write_file
 from hrsafety.benchmarks.entries import Entry, entry
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
-from hrsafety.benchmarks.suites import CHUNK, SUITES, Case, Suite
+from hrsafety.benchmarks.suites import CHUNK, SUITES, Case, Suite, recordings
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["benchmark", "case_of"]
@@ -83,9 +85,10 @@ def benchmark(
     settings = {
         "person_speed": positive("person_speed", person_speed),
         "seed": first,
-        "data": None if data is None else Path(data),
+        "data": None if data is None or not kind.needs_data else Path(data),
         "threads": thread_count(threads),
     }
+    told = callback("progress", progress)
     place = None if out is None else Path(out)
     if place is not None:
         place.mkdir(parents=True, exist_ok=True)
@@ -94,8 +97,8 @@ def benchmark(
     for each in entries:
 
         def heard(own: int, before: int = done) -> None:
-            if progress is not None:
-                progress(before + own, len(entries) * runs)
+            if told is not None:
+                told(before + own, len(entries) * runs)
 
         rows[each.name] = _run(kind, each, runs, settings, place, heard)
         done += runs
@@ -110,7 +113,16 @@ def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -
 def _file(place: Path, suite: Suite, each: Entry, settings: Mapping[str, object]) -> Path:
     """Return where rows are kept; other settings have another file."""
     plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
-    return place / f"{suite.name}-{plain}-v{settings['person_speed']:g}-seed{settings['seed']}.csv"
+    data = f"-data{_content(settings['data'])}" if isinstance(settings["data"], Path) else ""
+    return place / f"{suite.name}-{plain}-v{settings['person_speed']!r}-seed{settings['seed']}{data}.csv"
+
+
+def _content(folder: Path) -> str:
+    """Return a word for what recordings hold: others have other rows."""
+    content = hashlib.sha256()
+    for file in recordings(folder):
+        content.update(readable("data", file).read_bytes())
+    return content.hexdigest()[:12]
 
 
 def _run(
@@ -125,8 +137,8 @@ def _run(
     rows = [] if path is None else read_rows(path)
     known = {row.case for row in rows}
     if path is not None:
-        # Without a line that was cut off.
-        path.write_text(row_text(rows, head=True), encoding="utf-8")
+        # Without a line that was cut off, and in one step: what is kept is never lost.
+        write_file(path, row_text(rows, head=True))
     missing = [case for case in range(runs) if case not in known]
     heard(runs - len(missing))
     for begin in range(0, len(missing), CHUNK):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,8 @@ LATENCY = 0.1
 """Age of measured positions there, in s."""
 PURSUED = 12.0
 """Length of an episode there, in s."""
+PERSON_SPEED = 1.6
+"""Largest speed of the person there, in m/s, whatever shields assume."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,6 +108,7 @@ def _rows(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
             end_time=float(table.end_time[index]),
             contacts=int(table.contacts_moving[index] + table.contacts_standing[index]),
             at_fault=int(table.contacts_at_fault[index]),
+            apart=0,
             clearance=float(table.min_clearance[index]),
         )
 
@@ -175,8 +179,8 @@ APPEARING = 0.2
 """Contacts within this time after somebody appears on the robot do not count, in s."""
 
 
-def _recordings(case: Case) -> list[Path]:
-    folder = case.data
+def recordings(folder: Path | None) -> list[Path]:
+    """Return the recordings in a folder, or the one that is named."""
     files = [] if folder is None else sorted(folder.glob("*.csv")) if folder.is_dir() else [folder]
     if not files:
         raise InvalidParameterError("data", "be a folder with recordings (.csv), or one of them", str(folder))
@@ -184,7 +188,7 @@ def _recordings(case: Case) -> list[Path]:
 
 
 def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
-    files = _recordings(case)
+    files = recordings(case.data)
     recording, run = divmod(index, RUNS)
     if recording >= len(files):
         raise InvalidParameterError("cases", f"be below {RUNS * len(files)}: {RUNS} of each recording", index)
@@ -209,12 +213,16 @@ def _appeared(run: nav.Trajectory) -> npt.NDArray[np.float64]:
     return np.where(seen[0] | ~seen.any(axis=0), -np.inf, first)
 
 
+def counted_contacts(run: nav.Trajectory) -> npt.NDArray[np.bool_]:
+    """Return who was touched, without those who appeared on the robot."""
+    return ~np.isnan(run.contact_time) & (run.contact_time > _appeared(run) + APPEARING)
+
+
 def _cross(case: Case) -> Iterator[Row]:
     for index in case.cases:
         place, law = _crossing(case, index)
         run = nav.simulate(place, law)
-        touched = ~np.isnan(run.contact_time)
-        counted = touched & (run.contact_time > _appeared(run) + APPEARING)
+        counted = counted_contacts(run)
         arrived = not np.isnan(run.arrival_time)
         yield Row(
             case=index,
@@ -223,6 +231,7 @@ def _cross(case: Case) -> Iterator[Row]:
             end_time=float(run.time[-1]),
             contacts=int(counted.sum()),
             at_fault=int((run.contact_at_fault & counted).sum()),
+            apart=int((~np.isnan(run.contact_time) & ~counted).sum()),
             clearance=float(run.min_clearance.min(initial=np.inf)),
         )
 
@@ -242,20 +251,30 @@ def _pursued(case: Case) -> tuple[nav.Scenario, nav.Law]:
 
 def _pursue(case: Case) -> Iterator[Row]:
     place, law = _pursued(case)
-    first = case.cases[0]
-    found = nav.metrics.falsify(
-        place, law, episodes=len(case.cases), seed=case.seed + first, person_speed=1.6, threads=case.threads
-    )
-    for index, margin in zip(case.cases, found.margin.tolist(), strict=True):
-        yield Row(
-            case=index,
-            outcome="collided" if margin < 0.0 else "arrived",
-            arrival_time=float("nan"),
-            end_time=PURSUED,
-            contacts=int(margin < 0.0),
-            at_fault=int(margin < 0.0),
-            clearance=margin,
+    # Persons are drawn block by block: they are the same wherever a run was stopped and resumed.
+    for block, group in groupby(case.cases, lambda index: index // CHUNK):
+        first, cases = CHUNK * block, list(group)
+        found = nav.metrics.falsify(
+            place,
+            law,
+            episodes=cases[-1] - first + 1,
+            seed=case.seed + first,
+            person_speed=PERSON_SPEED,
+            threads=case.threads,
         )
+        for index in cases:
+            at = index - first
+            touched, arrived = found.min_clearance[at] <= 0.0, not np.isnan(found.arrival_time[at])
+            yield Row(
+                case=index,
+                outcome="collided" if touched else "arrived" if arrived else "timed_out",
+                arrival_time=float(found.arrival_time[at]),
+                end_time=float(found.end_time[at]),
+                contacts=int(touched),
+                at_fault=int(found.margin[at] < 0.0),
+                apart=0,
+                clearance=float(found.margin[at]),
+            )
 
 
 _GUARDED = ("field", "field+shield+yielding", "orca", "orca+shield+yielding")

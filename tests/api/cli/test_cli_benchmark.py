@@ -9,6 +9,7 @@ import pytest
 
 from hrsafety.benchmarks import benchmark, entry
 from hrsafety.benchmarks.results import read_rows
+from hrsafety.benchmarks.runs import _file
 from hrsafety.benchmarks.suites import SUITES, Case
 from hrsafety.cli import main
 from hrsafety.cli.parsers import SUITE_NAMES
@@ -52,6 +53,53 @@ def test_rows_are_kept_and_resumed(tmp_path: Path) -> None:
     again = benchmark("s4", ["orca"], cases=5, out=tmp_path)
     assert [row.case for row in again.rows["orca"]] == [0, 1, 2, 3, 4]
     assert list(again.rows["orca"][:3]) == list(first.rows["orca"])
+
+
+def test_an_adversary_is_the_same_wherever_a_run_was_stopped(tmp_path: Path) -> None:
+    whole = benchmark("adversary", ["orca"], cases=53)
+    benchmark("adversary", ["orca"], cases=20, out=tmp_path)
+    resumed = benchmark("adversary", ["orca"], cases=53, out=tmp_path)
+    assert repr(list(resumed.rows["orca"])) == repr(list(whole.rows["orca"]))
+
+
+def test_an_adversary_who_is_not_touched_at_fault_may_be_touched_and_hinder_the_arrival() -> None:
+    rows = benchmark("adversary", ["field+shield"], cases=12).rows["field+shield"]
+    assert all(row.at_fault == 0 for row in rows)
+    assert any(row.contacts for row in rows)
+    for row in rows:
+        arrived = not np.isnan(row.arrival_time)
+        expected = "collided" if row.contacts else "arrived" if arrived else "timed_out"
+        assert row.outcome == expected
+
+
+def test_rows_of_other_recordings_or_speeds_are_not_taken_for_these(tmp_path: Path) -> None:
+    one, two, out = tmp_path / "one", tmp_path / "two", tmp_path / "out"
+    for folder, shift in ((one, 0.0), (two, 0.5)):
+        folder.mkdir()
+        (folder / "people.csv").write_text(f"0,1,{shift},0", encoding="utf-8")
+    settings = [(one, 1.6), (two, 1.6), (one, 1.6000000001)]
+    names = {
+        _file(out, SUITES["recordings"], entry("field"), {"person_speed": speed, "seed": 0, "data": folder})
+        for folder, speed in settings
+    }
+    assert len(names) == 3
+
+
+@pytest.mark.parametrize("line", ["x,arrived,1,1,0,0,0,1", "0,arrived,1,1,-1,0,0,1", "0,flown,1,1,0,0,0,1", "0,arrived"])
+def test_a_damaged_row_is_named(tmp_path: Path, line: str) -> None:
+    benchmark("s4", ["orca"], cases=1, out=tmp_path)
+    (file,) = tmp_path.glob("*.csv")
+    file.write_text(f"{file.read_text(encoding='utf-8')}{line}\n", encoding="utf-8")
+    with pytest.raises(InvalidParameterError, match="line 3"):
+        benchmark("s4", ["orca"], cases=2, out=tmp_path)
+
+
+def test_an_episode_that_two_runs_kept_counts_once(tmp_path: Path) -> None:
+    benchmark("s4", ["orca"], cases=2, out=tmp_path)
+    (file,) = tmp_path.glob("*.csv")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text + text.splitlines(keepends=True)[-1], encoding="utf-8")
+    assert [row.case for row in benchmark("s4", ["orca"], cases=2, out=tmp_path).rows["orca"]] == [0, 1]
 
 
 def test_shares_have_intervals() -> None:
