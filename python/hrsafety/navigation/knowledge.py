@@ -8,12 +8,14 @@ from typing import NamedTuple
 from hrsafety._arguments import instance
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
 
 REGION_BEYOND_RANGE = "region_beyond_range"
+BLIND_NEARBY = "blind_nearby"
 
 
 class Sensing(NamedTuple):
@@ -121,7 +123,7 @@ def echo_regions(scenario: Scenario, sonar: RobotSensor) -> EchoRegions:
 
 
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
-    """Warn of sensors that do not reach as far as the regions that they must see."""
+    """Warn of sensors that do not reach as far as the regions that they must see, or see nothing nearby."""
     for index, sensor in enumerate(built.sensors):
         regions = echo_regions(scenario, sensor)
         if regions.active_radius > regions.reach:
@@ -131,4 +133,12 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
                 f"sensors[{index}] reaches {regions.reach:.3g} m from the center of the robot, less than the active "
                 f"radius {regions.active_radius:.3g} m of what it reads: what moves at {sensor.max_speed:g} m/s is "
                 f"seen too late; give a larger {sensor.RANGE} or a smaller max_speed",
+            )
+        if isinstance(sensor, Lidar) and sensor.range_min > scenario.robot.radius:
+            yield ResultWarning(
+                BLIND_NEARBY,
+                f"sensors[{index}].range_min",
+                f"sensors[{index}] takes what is nearer than range_min, {sensor.range_min:.4g} m, to be that far away, "
+                f"but the robot has a radius of {scenario.robot.radius:.4g} m: it may touch what the law takes to be "
+                f"off; give a range_min of at most the radius",
             )

@@ -354,6 +354,22 @@ def test_a_range_below_the_active_region_is_a_warning() -> None:
     assert "range_max" in str(warning)
 
 
+def test_what_is_nearer_than_the_least_range_is_doubtful_beside_a_smaller_robot() -> None:
+    scenario = nav.Scenario(robot=nav.HolonomicRobot(radius=0.2), start=(0.0, 0.0), goal=(4.0, 0.0), obstacles=[])
+    for least, codes in ((0.2, []), (0.3, ["blind_nearby"])):
+        built = nav.robots.AsBuilt(sensors=[nav.Lidar(range_min=least)])
+        run = nav.simulate(scenario, nav.VirtualForceField(), built=built)
+        assert [each.code for each in run.warnings] == codes
+
+
+def test_a_world_that_a_file_numbers_twice_is_refused() -> None:
+    world = {"id": 6, "cyl_mm": [[0, 0]]}
+    with pytest.raises(InvalidParameterError, match="name every world once"):
+        nav.StaticMap.from_barn({"cylinder_radius_m": 0.1, "worlds": [world, world]}, 6)
+    with pytest.raises(InvalidParameterError, match="world"):
+        nav.StaticMap.from_barn({"cylinder_radius_m": 0.1, "worlds": [world | {"id": [1]}]}, 6)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

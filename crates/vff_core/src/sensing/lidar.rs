@@ -215,14 +215,15 @@ pub fn boundary_points_of(
         for point in points {
             let square = (point - position).norm_squared();
             let nearer = nearest.is_none_or(|(least, _)| square < least);
-            if square <= reach * reach && nearer && !beyond.hide(*point) {
+            // A point at the center of the robot is in no direction, and hides no other.
+            let within = square > 0.0 && square <= reach * reach;
+            if within && nearer && !beyond.hide(*point) {
                 nearest = Some((square, *point));
             }
         }
-        let Some((square, point)) = nearest.filter(|(square, _)| *square > 0.0) else {
+        let Some((_, point)) = nearest else {
             return;
         };
-        debug_assert!(square.is_finite());
         out.push(point.into());
         beyond.drop_behind(position, point, kappa);
     }
@@ -391,6 +392,17 @@ mod tests {
         for (seen, exact) in seen.iter().zip(&exact) {
             assert!((Vector2::from(*seen) - Vector2::from(*exact)).norm() < 5e-3);
         }
+    }
+
+    #[test]
+    fn a_reading_of_zero_hides_no_other_point() {
+        let place = Vector2::new(1.0, 0.0);
+        let points = [place, Vector2::new(1.5, 0.0)];
+        let mut seen = Vec::new();
+        boundary_points_of(&points, place, 1.0, 0.5, &mut seen);
+        assert_eq!(seen, [[1.5, 0.0]]);
+        boundary_points_of(&points[..1], place, 1.0, 0.5, &mut seen);
+        assert!(seen.is_empty());
     }
 
     #[test]

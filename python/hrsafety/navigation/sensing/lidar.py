@@ -38,7 +38,8 @@ class Lidar(RobotSensor):
     field_of_view : float
         Angle between the first and the last beam in rad, ahead in the middle; a whole turn is divided evenly.
     range_min, range_max : float
-        Least and largest range in m.
+        Least and largest range in m. What is nearer than the least one is taken to be at it: where that is
+        outside of the robot, results carry the warning ``"blind_nearby"``.
     range_noise : float
         Standard deviation of a range in m.
     sees_obstacles : bool
