@@ -38,9 +38,12 @@ def barn_discs(source: str | Path | Mapping[str, Any], world: int) -> list[tuple
     loaded = read_worlds(source)
     wanted = count("world", world, least=0)
     worlds = items("worlds", "be a list of worlds", loaded["worlds"])
-    known = {each.get("id"): each for each in worlds if isinstance(each, Mapping)}
+    found = [(each.get("id"), each) for each in worlds if isinstance(each, Mapping)]
+    known = {name: each for name, each in found if isinstance(name, int)}
+    if len(known) < sum(isinstance(name, int) for name, _ in found):
+        raise InvalidParameterError("source", "name every world once", Shown(f"{len(found)} worlds with fewer numbers"))
     if wanted not in known:
-        numbers = sorted(number for number in known if isinstance(number, int))
+        numbers = sorted(known)
         shown = f"the file has {len(numbers)} worlds" + (f" from {numbers[0]} to {numbers[-1]}" if numbers else "")
         raise InvalidParameterError("world", "be the number of a world in the file", wanted, shown)
     centers: Array = points(f"cyl_mm of world {wanted}", known[wanted].get("cyl_mm"))

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, Parameters, instance, number, numbers, pair, points, sequence
+from hrsafety._arguments import Array, Pair, Parameters, instance, number, pair, sequence
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.maps.parts import checked_place, checked_points
 from hrsafety.navigation.maps.static_map import StaticMap
 
 __all__ = ["Guide", "LocalGoal", "Plan"]
@@ -78,12 +79,8 @@ class Plan:
         InvalidParameterError
             If the points are no points.
         """
-        array = numbers("point", point)
-        several = points("point", array.reshape(1, -1) if array.ndim == 1 else array)
-        if not np.isfinite(several).all():
-            raise InvalidParameterError("point", "be finite", float(several[~np.isfinite(several)][0]))
-        found = self._native.cost(several)
-        return float(found[0]) if array.ndim == 1 else found
+        found = self._native.cost(checked_points(point))
+        return float(found[0]) if np.ndim(point) == 1 else found
 
     def local_goal(self, position: npt.ArrayLike) -> LocalGoal | None:
         """Return where a law should go from a position.
@@ -103,7 +100,7 @@ class Plan:
         InvalidParameterError
             If the position is no point.
         """
-        found = self._native.local_goal(_place("position", position))
+        found = self._native.local_goal(checked_place("position", position))
         if found is None:
             return None
         (x, y), cost_to_go, is_goal = found
@@ -127,7 +124,7 @@ class Plan:
         InvalidParameterError
             If the start is no point.
         """
-        return self._native.path(_place("start", start))
+        return self._native.path(checked_place("start", start))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -214,12 +211,5 @@ class Guide(Parameters):
         """
         native = instance("map", map, StaticMap)._native
         size = number("radius", radius)
-        ends = _place("start", start), _place("goal", goal)
+        ends = checked_place("start", start), checked_place("goal", goal)
         return Plan(ends[1], size, self._native.plan(native, size, *ends))
-
-
-def _place(name: str, given: object) -> Pair:
-    x, y = pair(name, given)
-    if not np.isfinite([x, y]).all():
-        raise InvalidParameterError(name, "be finite", (x, y))
-    return x, y
