@@ -203,6 +203,9 @@ class _TrajectoryFields(TypedDict):
     contact_time: _Array
     contact_speed: _Array
     contact_at_fault: npt.NDArray[np.bool_]
+    map_contact_time: float
+    map_contact_speed: float
+    map_clearance: float
     min_distance: _Array
 
 class _ScoreFields(TypedDict):

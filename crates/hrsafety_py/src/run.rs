@@ -98,6 +98,10 @@ pub fn trajectory_fields<'py>(
     let at_fault = |touch: &Option<Contact>| touch.is_some_and(|touch| touch.at_fault);
     let at_fault: Vec<bool> = summary.contact.iter().map(at_fault).collect();
     fields.vector("contact_at_fault", at_fault)?;
+    let wall = |value: fn(&Contact) -> f64| summary.map_contact.as_ref().map_or(f64::NAN, value);
+    fields.value("map_contact_time", wall(|touch| touch.time))?;
+    fields.value("map_contact_speed", wall(|touch| touch.speed))?;
+    fields.value("map_clearance", summary.map_clearance)?;
     fields.vector("min_distance", summary.min_distance)?;
     Ok(fields.finish())
 }

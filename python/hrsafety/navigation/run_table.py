@@ -78,15 +78,16 @@ class RunTable(Table):
         Least distance to each obstacle in m; infinite if it was never present, NaN beyond the
         obstacles of the row's scenario.
     min_clearance : ndarray, shape (n,)
-        Least distance of the surfaces over all obstacles, in m; infinite without any.
+        Least distance of the surfaces over all obstacles and the maps that law or sensors know, in m; infinite
+        without any.
     entered_active : ndarray of int, shape (n,)
         Number of obstacles whose active region the robot entered.
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
         Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
-        contact), and while it stood.
+        contact), and while it stood; the maps count as one.
     contacts_at_fault : ndarray of int, shape (n,)
         Number of obstacles toward which the robot moved, faster than 0.05 m/s, at some instant of a
-        contact with them.
+        contact with them; every contact with a map counts.
     performance_total : ndarray, shape (n,)
         H; 0 after a contact or without arrival.
     performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (n,)

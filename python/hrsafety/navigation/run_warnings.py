@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from hrsafety.navigation.knowledge import warnings_of
@@ -11,13 +11,10 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
-from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.shield_warnings import of_shield
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_run", "of_runs", "of_scenes"]
-
-MAP_CONTACTS_NOT_COUNTED = "map_contacts_not_counted"
 
 
 def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[ResultWarning, ...]:
@@ -42,21 +39,8 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
     about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
     of_scene = (each for each in scenario.warnings if each.code not in about_regions)
     of_sensors = () if built is None else warnings_of(scenario, built)
-    return (*of_scene, *of_sensors, *_about_parts(scenario, law, built))
-
-
-def _about_parts(scenario: Scenario, law: Law, built: AsBuilt | None) -> Iterator[ResultWarning]:
-    """Warn of a shield that assumes too little, and of walls: a run counts contacts with obstacles of its scenario."""
-    if isinstance(law, SafeNavigation) and law.shield is not None:
-        yield from of_shield(scenario, law.shield, built)
-    seen = isinstance(law, SafeNavigation) and law.map is not None
-    if seen or any(isinstance(sensor, Lidar) and sensor.map is not None for sensor in (built.sensors if built else ())):
-        yield ResultWarning(
-            MAP_CONTACTS_NOT_COUNTED,
-            "map",
-            "outcome, contacts and clearances are those of the obstacles alone: a run through a wall of the map would "
-            "count as free of contacts; look at map.clearance(run.position) less the radius of the robot",
-        )
+    shield = law.shield if isinstance(law, SafeNavigation) else None
+    return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built)))
 
 
 def of_runs(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any, Literal, Protocol
 
@@ -77,6 +78,11 @@ class Trajectory(Table):
     contact_at_fault : ndarray of bool, shape (m,)
         Whether the robot moved toward the obstacle, faster than 0.05 m/s, at some instant of a contact
         with it.
+    map_contact_time, map_contact_speed : float
+        First contact with a map that the law or a sensor knows, in s, and the robot's speed then in m/s; NaN
+        without. The robot is always at fault.
+    map_clearance : float
+        Least distance of the surfaces from the maps in m; infinite without any.
     path_length : float
         Length of the path in m.
     stabilizing : ndarray, shape (n, 2)
@@ -135,6 +141,9 @@ class Trajectory(Table):
     contact_speed: Array
     contact_at_fault: npt.NDArray[np.bool_]
     path_length: float
+    map_contact_time: float = math.nan
+    map_contact_speed: float = math.nan
+    map_clearance: float = math.inf
     stabilizing: Array | Any = None
     lyapunov: Array | Any = None
     wheel_speed: Array | None = None
@@ -153,13 +162,16 @@ class Trajectory(Table):
 
     @property
     def contacts_moving(self) -> int:
-        """Number of obstacles that the robot touched while it moved faster than 0.05 m/s."""
-        return int(np.sum(self.contact_speed > _hrsafety.CONTACT_SPEED))
+        """Number of obstacles that the robot touched while it moved faster than 0.05 m/s; maps count as one."""
+        return int(np.sum(self._contact_speeds() > _hrsafety.CONTACT_SPEED))
 
     @property
     def contacts_standing(self) -> int:
-        """Number of obstacles that touched the standing robot."""
-        return int(np.sum(self.contact_speed <= _hrsafety.CONTACT_SPEED))
+        """Number of obstacles that touched the standing robot; maps count as one."""
+        return int(np.sum(self._contact_speeds() <= _hrsafety.CONTACT_SPEED))
+
+    def _contact_speeds(self) -> Array:
+        return np.append(self.contact_speed, self.map_contact_speed)
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each instant.

@@ -88,9 +88,18 @@ def test_every_episode_has_its_clearance_and_arrival() -> None:
 
 
 def test_results_carry_the_warnings_of_a_run() -> None:
-    walls = StaticMap.from_polylines([[(1.0, 2.0), (3.0, 2.0)]])
-    found = falsify(SCENE, SafeNavigation(ORCA, map=walls), episodes=2)
-    assert "map_contacts_not_counted" in {each.code for each in found.warnings}
+    found = falsify(SCENE, SafeNavigation(ORCA, shield=Shield(person_speed=1.0)), episodes=2, person_speed=1.6)
+    assert "shield_assumes_less" in {each.code for each in found.warnings}
+
+
+def test_every_contact_with_a_map_is_at_fault() -> None:
+    def straight(situation: nav.Situation) -> object:
+        return 20.0 * (situation.goal - situation.position) - 8.0 * situation.velocity
+
+    walls = StaticMap.from_polylines([[(1.0, -1.0), (1.0, 1.0)]])
+    found = falsify(SCENE, SafeNavigation(straight, map=walls), episodes=2, threads=1)
+    assert (found.margin < 0.0).all()
+    assert (found.min_clearance <= found.margin).all()
 
 
 def test_a_margin_that_is_no_number_counts_for_nothing() -> None:

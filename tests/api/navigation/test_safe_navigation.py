@@ -326,14 +326,36 @@ def test_a_law_in_python_is_led_by_local_goals() -> None:
     assert goals[0] != (5.0, 0.0)
 
 
-def test_runs_past_a_map_say_that_its_walls_are_not_counted() -> None:
-    walls = StaticMap.from_polylines([[(1.0, 1.0), (3.0, 1.0)]])
+def test_a_run_through_a_wall_is_a_contact_at_fault() -> None:
+    walls = StaticMap.from_polylines([[(2.0, -1.0), (2.0, 1.0)]])
     scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0))
-    known = SafeNavigation(FIELD, map=walls)
-    codes = [each.code for each in nav.simulate(scene, known).warnings]
-    assert codes == ["map_contacts_not_counted"]
-    assert nav.simulate_many(scene, [known], seeds=2).warnings[0].code == "map_contacts_not_counted"
-    lidar = nav.robots.AsBuilt(sensors=[nav.sensing.Lidar(map=walls)])
-    assert "map_contacts_not_counted" in {each.code for each in nav.simulate(scene, FIELD, built=lidar).warnings}
-    assert not nav.simulate(scene, FIELD).warnings
-    assert not nav.simulate(scene, SafeNavigation(FIELD, shield=Shield())).warnings
+    through = SafeNavigation(straight, map=walls)
+    run = nav.simulate(scene, through)
+    assert run.outcome == "collided"
+    touching = walls.clearance(run.position) <= scene.robot.radius
+    assert run.map_contact_time == run.time[touching][0]
+    assert run.map_contact_speed > 0.5
+    # Motion steps are 7 mm long at most.
+    assert -0.2 <= run.map_clearance < -0.19
+    assert (run.contacts_moving, run.contacts_standing) == (1, 0)
+    assert nav.simulate(scene, through, stop_on_contact=True).time[-1] == run.map_contact_time
+    assert nav.evaluate(scene, through).total == 0.0
+    table = nav.simulate_many(scene, [through], seeds=2)
+    assert table.contacts_at_fault.tolist() == table.contacts_moving.tolist() == [1, 1]
+    assert table.min_clearance.tolist() == [run.map_clearance] * 2
+    # Whoever knows the map: a run that is stepped, robots as built, a lidar.
+    blind = nav.Lidar(map=walls, beams=1, field_of_view=0.1, range_max=0.01)
+    for law, built in ((through, nav.robots.AsBuilt()), (straight, nav.robots.AsBuilt(sensors=[blind]))):
+        other = nav.simulate(scene, law, built=built)
+        assert (other.outcome, other.map_contact_time) == ("collided", run.map_contact_time)
+
+
+def test_the_least_clearance_from_a_map_is_that_of_every_motion_step() -> None:
+    walls = StaticMap.from_polylines([[(1, 0.9), (3, 0.4), (3.5, 1.0)], [(1, -1.0), (2, -0.5), (4, -3.0)]])
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0))
+    for law in (SafeNavigation(straight, map=walls), SafeNavigation(nav.OptimalReciprocalCollisionAvoidance(), map=walls)):
+        run = nav.simulate(scene, law)
+        assert run.outcome == "arrived"
+        assert run.map_clearance == pytest.approx(walls.clearance(run.position).min() - scene.robot.radius, abs=1e-12)
+        assert np.isnan(run.map_contact_time)
+    assert nav.simulate(scene, FIELD).map_clearance == np.inf

@@ -31,6 +31,7 @@ use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
 use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
+use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
 /// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
@@ -176,6 +177,10 @@ pub trait LawFamily: Sync {
     /// Whether it steers a robot with two wheels by velocities, not by a point mass to follow.
     fn steers_by_velocity(&self) -> bool {
         false
+    }
+    /// What it knows to stand, beside the obstacles of a scenario: runs count contacts with it.
+    fn map(&self) -> Option<&StaticMap> {
+        None
     }
     /// Whether a robot feels obstacles in their active regions only, and is braked to a halt in
     /// their critical regions; a search then need not follow runs whose end is known.

@@ -14,6 +14,8 @@ use crate::run::outcome::{RunSummary, RunTotals};
 use crate::run::plan::{Instructions, MAX_GAINS, Plan, Width, key_of};
 use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 use crate::run::rollout::{Member, run_team};
+use crate::run::walls::Maps;
+use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
 /// Receives each run: its index, its totals, and its least distance to an obstacle.
@@ -117,6 +119,8 @@ pub(crate) trait Driven: Send + Sync {
     fn chooses_velocities(&self) -> bool;
     /// Whether it steers a robot with two wheels by velocities.
     fn steers_by_velocity(&self) -> bool;
+    /// What it knows to stand, beside the obstacles of a scenario.
+    fn map(&self) -> Option<&StaticMap>;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
     fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
         self.steering_with(&self.gains(), scenario, true)
@@ -271,6 +275,10 @@ impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
         self.0.steers_by_velocity()
     }
 
+    fn map(&self) -> Option<&StaticMap> {
+        self.0.map()
+    }
+
     fn steering_with(
         &self,
         gains: &[f64],
@@ -298,7 +306,10 @@ impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
         run_team(
             scenario,
             (&mut team, false),
-            &Plan::single(*options),
+            (
+                &Plan::single(*options),
+                &Maps::of_law(scenario, self.0.map()),
+            ),
             interrupted,
             |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
         )?;
@@ -463,7 +474,7 @@ impl<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::
         run_team(
             group.scenario,
             (&mut team, led),
-            group.plan,
+            (group.plan, &Maps::of_law(group.scenario, self.law.map())),
             group.interrupted,
             |index, runs, lane, recorder| {
                 if index < count {

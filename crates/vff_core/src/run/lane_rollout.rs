@@ -9,6 +9,7 @@ use crate::run::lane_scenes::{LaneObstacle, LaneScenes};
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::rollout::{rk4_held, semi_implicit_euler};
 use crate::run::runs::Runs;
+use crate::run::walls::Maps;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
@@ -90,7 +91,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         let scenes = LaneScenes::all_in(first);
         let (obstacles, bodies) = (0..count).map(|_| LaneObstacle::absent()).unzip();
         let bodies: Vec<Body<R>> = bodies;
-        let mut runs = Runs::new(scenes, clock, &bodies);
+        let mut runs = Runs::new(scenes, clock, &bodies, Maps::default());
         runs.running = R::Mask::none();
         Self {
             scenes,

@@ -11,10 +11,11 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 const MOST_LANES: usize = 16;
 
 /// Whether a scenario may share its lanes with others: its obstacles are discs, which are known
-/// exactly. Rectangles and measurements take the kernel of one scene.
+/// exactly, and nothing else is around. Rectangles, maps and measurements take the kernel of one scene.
 pub(crate) fn fits(scenario: &Scenario) -> bool {
     let disc = |placed: &PlacedObstacle| matches!(placed.obstacle.shape, Shape::Disc { .. });
-    scenario.measurement.is_none() && scenario.obstacles.iter().all(disc)
+    let alone = scenario.measurement.is_none() && scenario.map.is_none();
+    alone && scenario.obstacles.iter().all(disc)
 }
 
 /// Whether two scenarios may be side by side: everything but ways and obstacles is the same.

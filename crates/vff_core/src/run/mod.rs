@@ -21,6 +21,7 @@ mod scene;
 mod scene_batch;
 pub mod skirt;
 mod table;
+mod walls;
 
 pub use batch::{BatchOptions, run_batch};
 pub use episode::Episode;

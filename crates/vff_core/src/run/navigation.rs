@@ -21,6 +21,7 @@ use crate::run::options::Clock;
 use crate::run::outcome::{Outcome, RunSummary};
 use crate::run::runs::Runs;
 use crate::run::scene::{Scene, bodies_at};
+use crate::run::walls::Maps;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
@@ -144,7 +145,12 @@ impl<L: Listener> Episode<Navigation<L>> {
             interval: clock.interval,
             sight,
             known: Known::exactly(reading.robot),
-            runs: Runs::new(Arc::clone(&scenario), clock, bodies),
+            runs: Runs::new(
+                Arc::clone(&scenario),
+                clock,
+                bodies,
+                Maps::of(&scenario, law, &built.sensors),
+            ),
             reading,
             energy: 0.0,
             scene,

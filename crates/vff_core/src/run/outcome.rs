@@ -51,10 +51,13 @@ pub struct RunTotals {
     pub energy: f64,
     /// Length of the path in m.
     pub path_length: f64,
-    /// Obstacles touched while the robot was moving, and while it stood.
+    /// Obstacles touched while the robot was moving, and while it stood; the maps count as one.
     pub contacts: [u32; 2],
-    /// Obstacles toward which it moved, faster than [`CONTACT_SPEED`], at some instant of a contact.
+    /// Obstacles toward which it moved, faster than [`CONTACT_SPEED`], at some instant of a contact;
+    /// every contact with a map counts.
     pub at_fault: u32,
+    /// Least distance of the surfaces from the maps in m; infinite without any.
+    pub map_clearance: f64,
     /// Share of the control periods over which the Lyapunov function did not grow, if counted.
     pub descent_share: f64,
     /// Number of samples of the force.
@@ -89,6 +92,10 @@ pub struct RunSummary {
     pub min_distance: Vec<f64>,
     /// First contact with each obstacle.
     pub contact: Vec<Option<Contact>>,
+    /// First contact with a map.
+    pub map_contact: Option<Contact>,
+    /// Least distance of the surfaces from the maps in m; infinite without any.
+    pub map_clearance: f64,
     /// Share of the control periods over which the Lyapunov function did not grow, if counted.
     pub descent_share: f64,
     /// Number of samples of the force.
@@ -100,7 +107,7 @@ impl RunSummary {
     #[must_use]
     pub fn totals(&self) -> RunTotals {
         let (mut contacts, mut at_fault) = ([0, 0], 0);
-        for touch in self.contact.iter().flatten() {
+        for touch in self.contact.iter().chain([&self.map_contact]).flatten() {
             contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
             at_fault += u32::from(touch.at_fault);
         }
@@ -112,6 +119,7 @@ impl RunSummary {
             path_length: self.path_length,
             contacts,
             at_fault,
+            map_clearance: self.map_clearance,
             descent_share: self.descent_share,
             force_evaluations: self.force_evaluations,
         }

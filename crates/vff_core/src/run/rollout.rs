@@ -9,6 +9,7 @@ use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::Runs;
 use crate::run::scene::{Scene, World, bodies_at};
+use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
@@ -39,7 +40,7 @@ pub(crate) struct Member<L, C> {
 pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     scenario: &Scenario,
     (team, mut led): (&mut [Member<L, C>], bool),
-    plan: &Plan,
+    (plan, maps): (&Plan, &Maps),
     interrupted: Interrupted<'_>,
     mut keep: impl FnMut(usize, &Runs<&Scenario, R>, usize, &C),
 ) -> Result<()> {
@@ -55,7 +56,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let mut seen = scene.frames[0].clone();
     let mut groups: Vec<Runs<&Scenario, R>> = team
         .iter()
-        .map(|_| Runs::new(scenario, clock, &seen))
+        .map(|_| Runs::new(scenario, clock, &seen, maps.clone()))
         .collect();
     // Positions between two samples are wanted only for robots that are measured late.
     let late = groups.first().is_some_and(|runs| runs.past.is_some());

@@ -8,6 +8,7 @@ use crate::run::options::Clock;
 use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 use crate::run::record::Recorder;
 use crate::run::scene::{World, body_at};
+use crate::run::walls::{Maps, Walls};
 use crate::sensing::sampled::Past;
 use crate::world::geometry::Body;
 
@@ -69,20 +70,23 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     contact_speed: Vec<R>,
     /// One where the robot moved toward the obstacle at some instant of a contact.
     at_fault: Vec<R>,
+    /// What is counted of walls, where there are any.
+    walls: Option<Box<Walls<R>>>,
 }
 
 impl<W: World<R>, R: Real> Runs<W, R> {
-    pub fn new(scenario: W, clock: Clock, bodies: &[Body<W::Number>]) -> Self {
-        let mut runs = Self::at_start(scenario, clock, bodies.len());
+    pub fn new(scenario: W, clock: Clock, bodies: &[Body<W::Number>], maps: Maps) -> Self {
+        let mut runs = Self::at_start(scenario, clock, bodies.len(), maps);
         for (index, body) in bodies.iter().enumerate() {
             runs.watch(index, body, W::Number::zero(), runs.running);
         }
+        runs.watch_walls(W::Number::zero(), runs.running);
         runs.remember();
         runs
     }
 
     /// Robots at their starts, before the first look at the obstacles.
-    fn at_start(world: W, clock: Clock, count: usize) -> Self {
+    fn at_start(world: W, clock: Clock, count: usize, maps: Maps) -> Self {
         let scenario = world.common();
         let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
@@ -123,6 +127,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             contact_time: vec![unset; count],
             contact_speed: vec![unset; count],
             at_fault: vec![R::zero(); count],
+            walls: Walls::new(maps, scenario.robot.radius).map(Box::new),
             scenario: world,
         }
     }
@@ -218,6 +223,17 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             if self.watched[index] {
                 self.watch(index, body, time, self.running);
             }
+        }
+        if self.walls.is_some() {
+            self.watch_walls(time, self.running);
+        }
+    }
+
+    /// Least distance and contact of some lanes with the maps.
+    #[inline(never)]
+    fn watch_walls(&mut self, time: W::Number, lanes: R::Mask) {
+        if let Some(walls) = &mut self.walls {
+            self.touched |= walls.watch(self.position, self.speed, time.wide(), lanes);
         }
     }
 
@@ -321,6 +337,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
                 self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
             }
+            self.watch_walls(instant, only);
         }
         self.running = self.running & !arrived;
     }
@@ -394,6 +411,9 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         for contact in &self.contact_time {
             touched = touched | contact.le(time.wide());
         }
+        if let Some(walls) = &self.walls {
+            touched = touched | walls.contact_time.le(time.wide());
+        }
         let ended = self.running & touched;
         if ended.any() {
             self.end(ended, time);
@@ -453,6 +473,23 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         })
     }
 
+    /// First contact with a map; the robot is always at fault.
+    fn map_contact(&self, lane: usize) -> Option<Contact> {
+        let walls = self.walls.as_ref()?;
+        let time = walls.contact_time.lane(lane);
+        (!time.is_nan()).then_some(Contact {
+            time,
+            speed: walls.contact_speed.lane(lane),
+            at_fault: true,
+        })
+    }
+
+    /// Least distance of the surfaces from the maps in m; infinite without any.
+    fn map_clearance(&self, lane: usize) -> f64 {
+        let walls = self.walls.as_ref();
+        walls.map_or(f64::INFINITY, |walls| walls.least.lane(lane))
+    }
+
     /// What is left of the run of a lane, whatever the number of obstacles.
     pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
         let (mut contacts, mut at_fault) = ([0, 0], 0);
@@ -461,6 +498,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
                 contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
                 at_fault += u32::from(touch.at_fault);
             }
+        }
+        if let Some(touch) = self.map_contact(lane) {
+            contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
+            at_fault += 1;
         }
         let arrival_time = self.arrival_time.lane(lane);
         let outcome = if contacts != [0, 0] {
@@ -480,6 +521,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             path_length: self.path.lane(lane),
             contacts,
             at_fault,
+            map_clearance: self.map_clearance(lane),
             descent_share: recorder.descent_share(lane),
             force_evaluations: count_of(self.force_evaluations.lane(lane)),
         }
@@ -499,6 +541,8 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             path_length: totals.path_length,
             min_distance: obstacles.clone().map(distance).collect(),
             contact: obstacles.map(contact).collect(),
+            map_contact: self.map_contact(lane),
+            map_clearance: totals.map_clearance,
             descent_share: totals.descent_share,
             force_evaluations: totals.force_evaluations,
         }

@@ -25,6 +25,7 @@ impl Cell {
                 path_length: f64::NAN,
                 contacts: [0, 0],
                 at_fault: 0,
+                map_clearance: f64::INFINITY,
                 descent_share: f64::NAN,
                 force_evaluations: 0,
             },
@@ -78,7 +79,7 @@ pub struct BatchTable {
     pub min_distance: Vec<f64>,
     /// Number of obstacles in a row of `min_distance`.
     pub obstacles: usize,
-    /// Least distance of the surfaces over all obstacles in m; infinite without any.
+    /// Least distance of the surfaces over all obstacles and maps in m; infinite without any.
     pub min_clearance: Vec<f64>,
     /// Number of obstacles whose active region the robot entered.
     pub entered_active: Vec<i64>,
@@ -149,7 +150,7 @@ impl BatchTable {
             path_length: source.column(|cell| cell.run.path_length),
             min_distance: source.distances(obstacles),
             obstacles,
-            min_clearance: source.of_distances(min_clearance),
+            min_clearance: source.clearances(),
             entered_active: source.of_distances(entered_active),
             contacts_moving: source.column(|cell| i64::from(cell.run.contacts[0])),
             contacts_standing: source.column(|cell| i64::from(cell.run.contacts[1])),
@@ -190,6 +191,16 @@ impl<'a, P: Fn(usize) -> (&'a Cell, &'a [f64]) + Sync> Source<'a, P> {
             value(scenario, distances)
         };
         map(self.rows, of_row)
+    }
+
+    /// Least distances of the surfaces over all obstacles and maps.
+    fn clearances(&self) -> Vec<f64> {
+        let mut least = self.of_distances(min_clearance);
+        for (row, least) in least.iter_mut().enumerate() {
+            let (strip, set) = self.place(row);
+            *least = least.min(self.strips[strip].cells[set].run.map_clearance);
+        }
+        least
     }
 
     fn distances(&self, width: usize) -> Vec<f64> {

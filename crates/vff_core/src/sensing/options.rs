@@ -8,6 +8,7 @@ use crate::sensing::lidar::{Lidar, Scans};
 use crate::sensing::sensor::Sensor;
 use crate::sensing::ultrasonic::{Echoes, Ultrasonic};
 use crate::sensing::vision::Vision;
+use crate::world::map::StaticMap;
 use crate::world::obstacle::Regions;
 use crate::world::scenario::Scenario;
 
@@ -52,6 +53,14 @@ pub enum SensorOptions {
 }
 
 impl SensorOptions {
+    /// What stands around it beside the obstacles of a scenario.
+    pub(crate) fn map(&self) -> Option<&StaticMap> {
+        match self {
+            Self::Lidar(lidar) => Some(&lidar.map),
+            Self::RobotCamera(_) | Self::ObstacleCamera(_) | Self::Ultrasonic(_) => None,
+        }
+    }
+
     /// The sensor at work in a scenario, the one with an index among several; `mark` is the distance
     /// of the second mark of the robot from its center in m.
     ///

@@ -18,6 +18,7 @@ use crate::error::Result;
 use crate::lanes::{Real, Vector2};
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
+use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
 /// Robots side by side, each with a law and its parts.
@@ -79,6 +80,10 @@ impl LawFamily for SafeNavigation {
 
     fn chooses_velocities(&self) -> bool {
         self.law.driven().chooses_velocities()
+    }
+
+    fn map(&self) -> Option<&StaticMap> {
+        self.map.as_ref().or_else(|| self.law.driven().map())
     }
 
     fn steers_by_velocity(&self) -> bool {

@@ -24,6 +24,7 @@ use crate::run::navigation::Known;
 use crate::run::options::Clock;
 use crate::run::outcome::CONTACT_SPEED;
 use crate::run::scene::bodies_at;
+use crate::run::walls::Maps;
 use crate::sensing::measurement::Noise;
 use crate::world::geometry::Body;
 use crate::world::motion::BodyState;
@@ -32,12 +33,12 @@ use crate::world::scenario::Scenario;
 /// What came of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encounter {
-    /// Least distance of the surfaces in m while the robot moved toward somebody; infinite if it
-    /// never did.
+    /// Least distance of the surfaces in m while the robot moved toward somebody, or touched a map;
+    /// infinite if it never did.
     pub least_toward: f64,
     /// The same at any speed, however slow: the theorem of the shield holds there, too.
     pub least_ahead: f64,
-    /// Least distance of the surfaces in m.
+    /// Least distance of the surfaces in m, from maps too.
     pub least: f64,
     /// When the robot arrived, in s; NaN if it did not.
     pub arrival_time: f64,
@@ -147,6 +148,7 @@ struct PursuitParts<'a> {
     robot: Box<dyn MotorDrive>,
     law: Box<dyn Steering>,
     tracked: Tracked,
+    maps: Maps,
     sight: Sight,
     known: Known,
     /// Obstacles as the law knows them.
@@ -190,6 +192,7 @@ pub fn pursue(
         robot,
         law: law.driven().steering(sight.known(scenario))?,
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
+        maps: Maps::of(scenario, Some(law), &built.sensors),
         sight,
         known: Known::exactly(reading.robot),
         seen: Vec::new(),
@@ -233,11 +236,26 @@ impl PursuitParts<'_> {
             .velocity(self.time, self.place(), &self.reading.robot)
     }
 
+    /// Takes down the distance from the maps, each contact with which is the robot's own fault.
+    fn look_at_walls(&mut self, place: Vector2<f64>) {
+        if self.maps.is_empty() {
+            return;
+        }
+        let (radius, found) = (self.scenario.robot.radius, &mut self.found);
+        let most = found.least.max(0.0) + radius + 1.0;
+        let off = self.maps.clearance_up_to(place, most) - radius;
+        found.least = found.least.min(off);
+        if off <= 0.0 {
+            found.least_toward = found.least_toward.min(off);
+        }
+    }
+
     /// Takes down distances and speeds of the present motion step.
     fn look(&mut self) {
         let robot = self.reading.robot;
         let bodies = self.bodies();
         let moves = robot.velocity.norm() > CONTACT_SPEED;
+        self.look_at_walls(robot.position);
         for (body, placed) in bodies.iter().zip(&self.scenario.obstacles) {
             if !body.state.present {
                 continue;

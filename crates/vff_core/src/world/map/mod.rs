@@ -147,6 +147,11 @@ impl Default for StaticMap {
 }
 
 impl StaticMap {
+    /// Whether it is the same object as another one, which is quicker told than whether it is equal.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.parts, &other.parts)
+    }
+
     /// The segments in the order of the index.
     #[must_use]
     pub fn capsules(&self) -> &[Capsule] {

@@ -50,9 +50,7 @@ impl StaticMap {
             shape: shrunk(placed.shape),
             ..*placed
         };
-        let reach = corners
-            .iter()
-            .map(|corner| (corner - placed.center).norm());
+        let reach = corners.iter().map(|corner| (corner - placed.center).norm());
         let reach = reach.fold(radius, f64::max) + ROUNDING;
         let (mut held, mut cut) = (false, false);
         self.parts.index.visit(

@@ -1,0 +1,121 @@
+//! Contacts with maps: what stands counts whether or not it is an obstacle of the scenario.
+
+use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::run::group::AnyLaw;
+use crate::sensing::SensorOptions;
+use crate::world::map::StaticMap;
+use crate::world::scenario::Scenario;
+
+/// Clearances are looked up to this beyond the least one so far, in m: a robot that far off need not
+/// be looked at until it has gone that way.
+const AHEAD: f64 = 1.0;
+
+/// Room for rounding where a distance bound spares work, in m.
+const ROUNDING: f64 = 1e-9;
+
+/// The maps of a run: of the scenario, of its law and of its sensors.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Maps(Vec<StaticMap>);
+
+impl Maps {
+    /// Of a scenario and a law that knows a map.
+    pub fn of_law(scenario: &Scenario, known: Option<&StaticMap>) -> Self {
+        let mut maps = Self::default();
+        maps.add(scenario.map.as_ref());
+        maps.add(known);
+        maps
+    }
+
+    /// The same with what sensors find.
+    pub fn of(scenario: &Scenario, law: Option<&AnyLaw>, sensors: &[SensorOptions]) -> Self {
+        let mut maps = Self::of_law(scenario, law.and_then(|law| law.driven().map()));
+        for sensor in sensors {
+            maps.add(sensor.map());
+        }
+        maps
+    }
+
+    fn add(&mut self, map: Option<&StaticMap>) {
+        // A law and a lidar mostly share one.
+        let new = map.filter(|map| !self.0.iter().any(|own| own.is(map)));
+        self.0.extend(new.cloned());
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Distance of a point from the nearest map in m; all that is at least `most` away counts as that
+    /// far.
+    pub fn clearance_up_to(&self, point: Vector2<f64>, most: f64) -> f64 {
+        let nearer = |least: f64, map: &StaticMap| map.clearance_up_to(point, least);
+        self.0.iter().fold(most, nearer)
+    }
+}
+
+/// What is counted of the walls around the robots of one lane group.
+#[derive(Clone, Debug)]
+pub(crate) struct Walls<R> {
+    maps: Maps,
+    radius: f64,
+    /// Least distance of the surfaces in m, negative inside of a wall.
+    pub least: R,
+    /// First contact in s, NaN without.
+    pub contact_time: R,
+    /// Speed then, in m/s.
+    pub contact_speed: R,
+    /// Where each robot was looked at, and how far it may go from there without coming nearer than
+    /// ever, in m.
+    seen: Vector2<R>,
+    spare: R,
+}
+
+impl<R: Real> Walls<R> {
+    /// Around robots of a radius in m; `None` where there are no maps.
+    pub fn new(maps: Maps, radius: f64) -> Option<Self> {
+        let unset = R::splat(f64::NAN);
+        (!maps.is_empty()).then(|| Self {
+            maps,
+            radius,
+            least: R::splat(f64::INFINITY),
+            contact_time: unset,
+            contact_speed: unset,
+            seen: Vector2::zeros(),
+            spare: R::splat(-1.0),
+        })
+    }
+
+    /// Looks at the robots of some lanes after a motion step; returns whether one touches a wall for
+    /// the first time.
+    #[inline(always)]
+    pub fn watch(&mut self, place: Vector2<R>, speed: R, time: R, lanes: R::Mask) -> bool {
+        let moved = place - self.seen;
+        let off = moved.dot(&moved).lt(self.spare * self.spare) & R::zero().lt(self.spare);
+        (lanes & !off).any() && self.look(place, speed, time, lanes & !off)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look(&mut self, place: Vector2<R>, speed: R, time: R, lanes: R::Mask) -> bool {
+        let mut touched = false;
+        for lane in (0..R::WIDTH).filter(|lane| lanes.lane(*lane)) {
+            let point = Vector2::from(place.lane(lane));
+            let least = self.least.lane(lane);
+            let most = least.max(0.0) + self.radius + AHEAD;
+            let clearance = self.maps.clearance_up_to(point, most) - self.radius;
+            let nearest = least.min(clearance);
+            self.least = self.least.replace(lane, nearest);
+            let spare = clearance - nearest.max(0.0) - ROUNDING;
+            self.spare = self.spare.replace(lane, spare);
+            let [x, y] = point.into();
+            self.seen = Vector2::new(self.seen.x.replace(lane, x), self.seen.y.replace(lane, y));
+            if clearance <= 0.0 && self.contact_time.lane(lane).is_nan() {
+                self.contact_time = self.contact_time.replace(lane, time.lane(lane));
+                self.contact_speed = self.contact_speed.replace(lane, speed.lane(lane));
+                touched = true;
+            }
+        }
+        touched
+    }
+}
