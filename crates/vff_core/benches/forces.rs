@@ -42,6 +42,7 @@ fn width<R: Real>(
         bencher.iter(|| {
             let situation = Situation {
                 time: 0.0,
+                ages: &[],
                 heading: 0.0,
                 bodies: black_box(&bodies),
                 robot: black_box(robot),

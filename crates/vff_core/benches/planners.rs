@@ -106,6 +106,7 @@ fn measure<P: Planner>(
             step = (step + 1) % STEPS;
             planner.desired_velocity(black_box(&Situation {
                 time: 0.0,
+                ages: &[],
                 heading: 0.0,
                 bodies,
                 robot: RobotState {

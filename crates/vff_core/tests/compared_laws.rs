@@ -93,6 +93,7 @@ fn force(field: impl PairwiseField<f64>, velocity: [f64; 2], discs: &[Disc]) -> 
     let interval = 0.06;
     let situation = Situation {
         time: 0.0,
+        ages: &[],
         heading: 0.0,
         bodies: &bodies,
         robot,

@@ -294,6 +294,7 @@ fn what_is_no_wall_is_refused_with_its_rule() {
 fn alone(place: [f64; 2]) -> Situation<'static, f64> {
     Situation {
         time: 0.0,
+        ages: &[],
         bodies: &[],
         robot: RobotState {
             position: place.into(),

@@ -88,6 +88,7 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
     let interval = scenario.control_period();
     let situation = Situation {
         time: 0.0,
+        ages: &[],
         heading: 0.0,
         bodies: &bodies,
         robot,

@@ -64,7 +64,7 @@ def test_sensors_tell_of_the_person_as_in_a_run() -> None:
     law = SafeNavigation(ORCA, shield=Shield())
     blind = nav.robots.AsBuilt(sensors=[nav.sensing.Lidar(sees_obstacles=False)])
     assert falsify(SCENE, law, episodes=60, seed=2, built=blind).broken
-    camera = nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(latency=0.5))
+    camera = nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(delay=0.5))
     exact = falsify(SCENE, ORCA, episodes=20, seed=2)
     late = falsify(SCENE, ORCA, episodes=20, seed=2, built=camera)
     assert not np.array_equal(exact.margin, late.margin)

@@ -353,9 +353,26 @@ def test_a_run_through_a_wall_is_a_contact_at_fault() -> None:
 def test_the_least_clearance_from_a_map_is_that_of_every_motion_step() -> None:
     walls = StaticMap.from_polylines([[(1, 0.9), (3, 0.4), (3.5, 1.0)], [(1, -1.0), (2, -0.5), (4, -3.0)]])
     scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0))
-    for law in (SafeNavigation(straight, map=walls), SafeNavigation(nav.OptimalReciprocalCollisionAvoidance(), map=walls)):
+    for law in (
+        SafeNavigation(straight, map=walls),
+        SafeNavigation(nav.OptimalReciprocalCollisionAvoidance(), map=walls),
+    ):
         run = nav.simulate(scene, law)
-        assert run.outcome == "arrived"
         assert run.map_clearance == pytest.approx(walls.clearance(run.position).min() - scene.robot.radius, abs=1e-12)
         assert np.isnan(run.map_contact_time)
     assert nav.simulate(scene, FIELD).map_clearance == np.inf
+
+
+def test_the_shield_reckons_with_the_age_of_what_a_camera_tells() -> None:
+    person = nav.Human(start=(4.0, 0.05), velocity=(-1.0, 0.0), stop=(1.0, 0.05), max_speed=1.6)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), obstacles=(person,), time_limit=4.0)
+
+    def run(latency: float, delay: float) -> nav.Trajectory:
+        camera = nav.robots.AsBuilt(obstacle_vision=nav.sensing.Vision(period=0.06, delay=delay))
+        return nav.simulate(scene, SafeNavigation(straight, shield=Shield(latency=latency)), built=camera)
+
+    told, assumed, late = run(0.0, 0.3), run(0.3, 0.3), run(0.6, 0.3)
+    assert told.position == pytest.approx(assumed.position, abs=1e-6)
+    assert late.position[:, 0].max() < told.position[:, 0].max() - 0.01
+    # Frames come late: without an age the robot would be as near as if it were told at once.
+    assert told.position[:, 0].max() < run(0.0, 0.0).position[:, 0].max() - 0.01

@@ -67,6 +67,8 @@ pub struct Situation<'a, R, B: Real = f64> {
     pub time: B,
     /// Obstacles as measured.
     pub bodies: &'a [Body<B>],
+    /// How old what is known of each of them is, in s; all of it is of now where this is empty.
+    pub ages: &'a [f64],
     /// Robots as measured, one a lane.
     pub robot: RobotState<R>,
     /// Heading of the robots as measured, in rad.
@@ -85,6 +87,7 @@ impl<'a, R: Real> Situation<'a, R> {
         Situation {
             time: self.time,
             bodies: self.bodies,
+            ages: self.ages,
             robot: RobotState {
                 position: Vector2::splat(self.robot.position.lane(lane)),
                 velocity: Vector2::splat(self.robot.velocity.lane(lane)),

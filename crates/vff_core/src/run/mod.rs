@@ -81,6 +81,7 @@ fn at_state<T>(
     Ok(answer(&Situation {
         time,
         bodies: &bodies,
+        ages: &[],
         robot,
         heading: scenario.rules.heading,
         interval: scenario.rules.control_period,

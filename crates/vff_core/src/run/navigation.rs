@@ -274,6 +274,7 @@ impl<L: Listener> Navigation<L> {
         Situation {
             time,
             bodies: self.sight.bodies(&self.scene.frames[0]),
+            ages: self.sight.ages(),
             robot: self.known.robot,
             heading: self.known.heading(&*self.robot),
             interval: self.interval,

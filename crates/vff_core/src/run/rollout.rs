@@ -176,6 +176,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     let command = member.law.command(&Situation {
         time,
         bodies: known,
+        ages: &[],
         robot,
         heading: runs.scenario.rules.heading,
         interval: clock.interval,
@@ -296,6 +297,7 @@ fn rk4<R: Real, L: Law<R>>(
             &Situation {
                 time,
                 bodies,
+                ages: &[],
                 robot: state,
                 heading,
                 interval,

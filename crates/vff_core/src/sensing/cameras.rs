@@ -122,6 +122,12 @@ impl Sensor for ObstacleCamera {
             known.state = sensor.as_ref().map_or(body.state, seen);
         }
     }
+
+    fn date(&self, time: f64, ages: &mut [f64]) {
+        for (age, sensor) in ages.iter_mut().zip(&self.sensors) {
+            *age = sensor.as_ref().map_or(0.0, |sensor| sensor.age(time));
+        }
+    }
 }
 
 /// An obstacle as a camera knows it; absent before the first frame, its acceleration not known.

@@ -94,4 +94,7 @@ pub trait Sensor: Send {
     /// Tells of these obstacles at a sample, after all sensors have told of the robot; `known` is
     /// the robot as it knows itself.
     fn observe(&mut self, _truth: &Truth<'_>, _known: &Frame, _bodies: &mut [Body]) {}
+
+    /// Tells how old at a time in s what it told of these obstacles is; of now, unless it knows better.
+    fn date(&self, _time: f64, _ages: &mut [f64]) {}
 }

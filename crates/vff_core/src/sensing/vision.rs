@@ -301,10 +301,53 @@ impl VisionSensor {
         });
     }
 
+    /// How long ago the body was where it is known to be at a time, at least, in s: a position that is
+    /// moved on with the velocity may be off by as much again.
+    #[must_use]
+    pub fn age(&self, time: f64) -> f64 {
+        let age = |found: Estimate| (time - found.measured_at).max(0.0);
+        let moved = if self.vision.compensated { 2.0 } else { 1.0 };
+        moved * self.estimate(time).map_or(0.0, age)
+    }
+
     /// Drops what newer knowledge has replaced at a time.
     fn forget_before(&mut self, time: f64) {
         while self.known.get(1).is_some_and(|next| next.from <= time) {
             self.known.pop_front();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_is_as_old_as_its_frame() {
+        let exact = Vision {
+            period: 0.1,
+            delay: 0.25,
+            error: PositionError::Plane {
+                distribution: Distribution::Uniform,
+                scale: 0.0,
+            },
+            drop_probability: 0.0,
+            estimator: Estimator::Differences,
+            compensated: false,
+        };
+        for (compensated, share) in [(false, 1.0), (true, 2.0)] {
+            let vision = Vision {
+                compensated,
+                ..exact
+            };
+            let mut sensor = VisionSensor::new(&vision, 1, 1).unwrap();
+            sensor.sample(0.0, [0.0, 0.0]);
+            assert_eq!(sensor.age(0.0), 0.0);
+            sensor.sample(1.0, [1.0, 0.0]);
+            // The frame of 0.7 s is known from 0.95 s on.
+            assert!((sensor.age(1.0) - share * 0.3).abs() < 1e-9);
+            // No further frame: it stays where it was seen last, ever longer ago.
+            assert!((sensor.age(3.0) - share * 2.0).abs() < 1e-9);
         }
     }
 }

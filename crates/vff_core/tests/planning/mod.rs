@@ -38,6 +38,7 @@ pub fn body(shape: Shape, position: [f64; 2], velocity: [f64; 2]) -> Body {
 pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Situation<'_, f64> {
     Situation {
         time: 0.0,
+        ages: &[],
         heading: 0.0,
         bodies,
         robot: RobotState {

@@ -119,7 +119,8 @@ impl Surroundings {
         self.people.clear();
         self.passersby.clear();
         self.shapes.clear();
-        for (body, known) in situation.bodies.iter().zip(&self.known) {
+        let ages = situation.ages.iter().copied().chain(std::iter::repeat(0.0));
+        for ((body, known), age) in situation.bodies.iter().zip(&self.known).zip(ages) {
             let present = body.state.present && known.kind != Kind::Mapped;
             self.bodies.push(Body {
                 regions: known.regions,
@@ -141,10 +142,10 @@ impl Surroundings {
                 continue;
             }
             if let Some(guard) = guard {
-                self.people.push(known.person(placed, body, guard));
+                self.people.push(known.person(placed, body, guard, age));
             }
             let velocity = Vector2::from(body.state.velocity);
-            let offset = placed.center - robot + velocity * latency;
+            let offset = placed.center - robot + velocity * latency.max(age);
             if reach.is_some_and(|reach| offset.norm() - known.touch < reach) {
                 self.passersby.push(Passerby {
                     offset,
@@ -226,8 +227,9 @@ impl Known {
         }
     }
 
-    /// What the shield assumes of an obstacle.
-    fn person(&self, placed: PlacedShape, body: &Body, guard: &Guard) -> Person {
+    /// What the shield assumes of an obstacle that was measured so long ago, in s: the older, the
+    /// farther away it can be by now.
+    fn person(&self, placed: PlacedShape, body: &Body, guard: &Guard, age: f64) -> Person {
         let shield = &guard.shield;
         let velocity = Vector2::from(body.state.velocity);
         let known = |[error, acceleration]: [f64; 2]| KnownVelocity {
@@ -244,7 +246,7 @@ impl Known {
                 shield.position_error
             },
             max_speed: self.max_speed,
-            latency: shield.latency,
+            latency: shield.latency.max(age),
             known: shield
                 .velocity_bounds
                 .filter(|_| !self.stationary)

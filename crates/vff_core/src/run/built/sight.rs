@@ -41,6 +41,8 @@ pub(crate) struct Sight {
     /// The scenario as a law knows it, where that is not as it is.
     known: Option<Scenario>,
     seen: Vec<Body>,
+    /// How old it is, in s.
+    ages: Vec<f64>,
 }
 
 impl Sight {
@@ -54,7 +56,7 @@ impl Sight {
             told.push(first..obstacles.len());
         }
         let tells = sensors.iter().any(|sensor| sensor.obstacles().is_some());
-        let seen = obstacles.iter().map(hidden).collect();
+        let seen: Vec<Body> = obstacles.iter().map(hidden).collect();
         let known = tells.then(|| Scenario {
             obstacles,
             ..scenario.clone()
@@ -63,6 +65,7 @@ impl Sight {
             sensors,
             told,
             known,
+            ages: vec![0.0; seen.len()],
             seen,
         })
     }
@@ -89,6 +92,11 @@ impl Sight {
         }
     }
 
+    /// How old what is known of the obstacles is, in s; empty where all of it is of now.
+    pub fn ages(&self) -> &[f64] {
+        &self.ages
+    }
+
     /// What is known at a sample; `heading` in rad is what the robot itself takes it for.
     pub fn look<'a>(
         &'a mut self,
@@ -108,6 +116,7 @@ impl Sight {
         let known = Frame::at(robot.position.into(), measured.unwrap_or(heading));
         for (sensor, range) in self.sensors.iter_mut().zip(&self.told) {
             sensor.observe(&truth, &known, &mut self.seen[range.clone()]);
+            sensor.date(time, &mut self.ages[range.clone()]);
         }
         Seen {
             robot,
@@ -138,7 +147,7 @@ fn truth_of<'a>(time: f64, reading: &Reading, bodies: &'a [Body]) -> Truth<'a> {
 }
 
 /// An obstacle of which nothing has been told yet.
-fn hidden(placed: &PlacedObstacle) -> Body {
+pub(crate) fn hidden(placed: &PlacedObstacle) -> Body {
     Body {
         shape: placed.obstacle.shape,
         regions: placed.regions,

@@ -303,6 +303,7 @@ impl Parts for PursuitParts<'_> {
         let command = self.law.command(&Situation {
             time,
             bodies: &self.seen,
+            ages: self.sight.ages(),
             robot: self.known.robot,
             heading: self.known.heading(&*self.robot),
             interval: self.interval,
