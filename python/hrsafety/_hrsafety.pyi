@@ -1442,6 +1442,26 @@ class Run:
     def recorded(self, *, motors: bool) -> dict[str, Any]:
         """Return the fields of the trajectory so far."""
 
+@final
+class Controller:
+    """A law on a robot."""
+
+    def __new__(cls, scenario: Scenario, law: Law, lidar: Lidar | None) -> Self: ...
+    def update(
+        self,
+        time: float,
+        robot: tuple[_Pair, _Pair] | None,
+        heading: float,
+        *,
+        seen: list[tuple[int, _Pair, _Pair, float]],
+        gone: list[int],
+        scan: _Array | None,
+    ) -> dict[str, Any]:
+        """Return the fields of what the robot is to do."""
+
+    def present(self) -> list[bool]:
+        """Return who is there, as far as is known."""
+
 def built_simulate(
     scenario: Scenario,
     law: Law,

@@ -9,6 +9,7 @@ mod arrays;
 mod batch;
 mod built;
 mod contact;
+mod controller;
 mod differential;
 mod episode;
 mod errors;
@@ -60,6 +61,8 @@ mod _hrsafety {
         contact_names, contact_rows, contact_simulate, contact_speed, contact_thickness,
         contact_words,
     };
+    #[pymodule_export]
+    use crate::controller::Controller;
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 mod batch;
 pub mod built;
+pub mod controller;
 mod episode;
 pub mod follower;
 pub(crate) mod group;

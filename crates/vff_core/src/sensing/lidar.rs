@@ -283,6 +283,63 @@ impl Sensor for Scans {
         let actual = truth.frame();
         let options = &self.options;
         options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
+        self.tell(known, bodies);
+    }
+}
+
+impl Scans {
+    /// What a law can know of points.
+    pub fn points(&self) -> &[PlacedObstacle] {
+        &self.obstacles
+    }
+
+    /// Tells of a scan that was made elsewhere, in m.
+    ///
+    /// # Errors
+    /// It has not one range for each beam, or one that no beam reads.
+    pub fn read(&mut self, ranges: &[f64], known: &Frame, bodies: &mut [Body]) -> Result<()> {
+        if ranges.len() != self.options.beams {
+            let rule = format!("have a range for each of {} beams", self.options.beams);
+            let given = Given::Count(ranges.len() as u64);
+            return Err(Failure::invalid("scan", rule, given));
+        }
+        for (beam, range) in ranges.iter().enumerate() {
+            // A beam that hits nothing may read infinity.
+            if range.is_nan() || *range < 0.0 {
+                let rule = "be at least 0, and infinite where nothing is hit";
+                let name = format!("scan[{beam}]");
+                return Err(Failure::invalid(&name, rule, Given::Number(*range)));
+            }
+        }
+        self.ranges.clear();
+        self.ranges.extend_from_slice(ranges);
+        self.tell(known, bodies);
+        Ok(())
+    }
+
+    /// Whether the last scan saw a disc in m to be empty: beams go through it, and none ends in or
+    /// before it.
+    pub fn saw_empty(&self, pose: &Frame, center: Vector2<f64>, radius: f64) -> bool {
+        let disc = PlacedShape::disc(center.into(), radius);
+        let mut through = false;
+        for (beam, range) in self.ranges.iter().enumerate() {
+            let (sin, cos) = self.options.bearing(beam).sin_cos();
+            let along = pose.outward(Vector2::new(cos, sin));
+            let near = disc.cast(pose.position, along);
+            if !near.is_finite() {
+                continue;
+            }
+            let far = (center - pose.position).dot(&along) + radius;
+            if *range < far {
+                return false;
+            }
+            through = true;
+        }
+        through
+    }
+
+    fn tell(&mut self, known: &Frame, bodies: &mut [Body]) {
+        let options = &self.options;
         options.points(known, &self.ranges, &mut self.points);
         let (position, kappa) = (known.position, options.kappa);
         boundary_points_of(

@@ -1,0 +1,101 @@
+//! A law on a robot, told from Python what is seen.
+
+use std::sync::Mutex;
+
+use numeric::error::Failure;
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::lanes::Vector2;
+use vff_core::laws::Stop;
+use vff_core::laws::shield::Status;
+use vff_core::run::controller::{self, Observation, Order, Sighting};
+use vff_core::world::geometry::RobotState;
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, SimulationError};
+use crate::laws::Law;
+use crate::maps::Lidar;
+use crate::parameters::Scenario;
+use crate::watch::{Report, here};
+
+/// Number, position, velocity and instant of somebody who was measured.
+type Seen = (usize, [f64; 2], [f64; 2], f64);
+
+/// A law on a robot.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Controller(Mutex<controller::Controller>);
+
+fn busy() -> PyErr {
+    SimulationError::new_err("an update of this controller is under way; update it from one place")
+}
+
+#[pymethods]
+impl Controller {
+    #[new]
+    fn new(scenario: &Scenario, law: &Law, lidar: Option<PyRef<'_, Lidar>>) -> PyResult<Self> {
+        let lidar = lidar.as_ref().map(|lidar| &lidar.0);
+        let core = controller::Controller::new(scenario.0.clone(), &law.any, lidar);
+        Ok(Self(Mutex::new(core.map_err(CoreError::from)?)))
+    }
+
+    /// Fields of what the robot is to do; `robot`: position and velocity.
+    #[pyo3(signature = (time, robot, heading, *, seen, gone, scan))]
+    fn update<'py>(
+        &self,
+        py: Python<'py>,
+        time: f64,
+        robot: Option<([f64; 2], [f64; 2])>,
+        heading: f64,
+        seen: Vec<Seen>,
+        gone: Vec<usize>,
+        scan: Option<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let sighting = |(index, position, velocity, time)| Sighting {
+            index,
+            position,
+            velocity,
+            time,
+        };
+        let seen: Vec<Sighting> = seen.into_iter().map(sighting).collect();
+        let ranges = scan.as_ref().map(|scan| scan.as_slice()).transpose()?;
+        let told = Observation {
+            time,
+            robot: robot.map(|(position, velocity)| RobotState {
+                position: Vector2::from(position),
+                velocity: Vector2::from(velocity),
+            }),
+            heading,
+            seen: &seen,
+            gone: &gone,
+            scan: ranges,
+        };
+        let order = here(py, Report::none(), |control| {
+            let Ok(mut core) = self.0.try_lock() else {
+                return Ok(None);
+            };
+            let asked = || control.interrupted();
+            Ok::<_, Failure>(Some(core.update(&told, Stop(&asked))?))
+        })?;
+        fields_of(py, &order.ok_or_else(busy)?)
+    }
+
+    /// Who is there, as far as is known, in the order of the obstacles.
+    fn present(&self) -> PyResult<Vec<bool>> {
+        Ok(self.0.try_lock().map_err(|_| busy())?.present().collect())
+    }
+}
+
+fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    fields.value("force", (order.force.x, order.force.y))?;
+    fields.value("velocity", (order.velocity.x, order.velocity.y))?;
+    fields.value("speed", order.twist.map(|twist| twist.speed))?;
+    fields.value("turn_rate", order.twist.map(|twist| twist.turn_rate))?;
+    fields.value("status", order.status.map(Status::word))?;
+    fields.value("taken_over", order.taken_over)?;
+    fields.value("timing", order.timing.word())?;
+    fields.value("arrived", order.arrived)?;
+    fields.value("oldest", order.oldest)?;
+    Ok(fields.finish())
+}

@@ -1,0 +1,346 @@
+//! A law on a robot: observations come from outside, whenever they do, and commands go out.
+//!
+//! Told the same at the same instants, it commands the same as in a run, bit for bit. What comes late
+//! counts with its age, what comes out of order does not count, and what does not come leaves the last
+//! of it standing, ever older.
+
+use crate::error::{Failure, Given, Result, finite, finite_pair};
+use crate::lanes::Vector2;
+use crate::laws::shield::{Limits, Status, braking};
+use crate::laws::{Situation, Stop};
+use crate::robots::differential::Twist;
+use crate::robots::drives::twist_of;
+use crate::run::built::sight::hidden;
+use crate::run::group::{AnyLaw, Steering};
+use crate::sensing::lidar::{Lidar, Scans};
+use crate::world::frame::Frame;
+use crate::world::geometry::{Body, RobotState};
+use crate::world::motion::BodyState;
+use crate::world::scenario::Scenario;
+use crate::world::shape::Shape;
+
+/// Whoever was not seen for so long is forgotten once his place is seen to be empty, in s.
+const FORGOTTEN: f64 = 2.0;
+
+/// An update later than this share of a period after the last one is late.
+const LATE: f64 = 1.5;
+
+/// Where somebody was measured to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Which obstacle of the scenario.
+    pub index: usize,
+    /// Center in m.
+    pub position: [f64; 2],
+    /// Velocity in m/s.
+    pub velocity: [f64; 2],
+    /// When, in s.
+    pub time: f64,
+}
+
+/// What is told to a controller at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// When, in s.
+    pub time: f64,
+    /// The robot, `None` where it is not known.
+    pub robot: Option<RobotState<f64>>,
+    /// Its heading in rad.
+    pub heading: f64,
+    /// Whom a sensor has measured.
+    pub seen: &'a [Sighting],
+    /// Who is known to have left.
+    pub gone: &'a [usize],
+    /// Ranges of the beams of the lidar in m, if it has scanned.
+    pub scan: Option<&'a [f64]>,
+}
+
+/// What became of an update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// It came in time.
+    Regular,
+    /// It came later than a period after the last one: the robot has to have braked until then.
+    Late,
+    /// It is not later than the last one, and counts for nothing.
+    OutOfOrder,
+    /// The place of the robot is not known: it brakes.
+    Lost,
+}
+
+impl Timing {
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Late => "late",
+            Self::OutOfOrder => "out_of_order",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// What a robot is to do until the next update.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// Force in N.
+    pub force: Vector2<f64>,
+    /// Velocity at the next sample in m/s.
+    pub velocity: Vector2<f64>,
+    /// The same for two wheels.
+    pub twist: Option<Twist>,
+    /// What the shield has done, if there is one.
+    pub status: Option<Status>,
+    /// Whether the law was taken over from.
+    pub taken_over: bool,
+    /// What became of the update.
+    pub timing: Timing,
+    /// Whether the robot is within the arrival tolerance of the goal.
+    pub arrived: bool,
+    /// Age of the oldest measurement that counts, in s.
+    pub oldest: f64,
+}
+
+/// A law on a robot, with what it remembers.
+pub struct Controller {
+    scenario: Scenario,
+    law: Box<dyn Steering>,
+    scans: Option<Scans>,
+    /// Obstacles as last known, then points of the lidar.
+    bodies: Vec<Body>,
+    /// When each obstacle was measured, in s.
+    measured: Vec<f64>,
+    ages: Vec<f64>,
+    last: Option<(f64, Order)>,
+}
+
+impl Controller {
+    /// Of a law in a scenario, whose obstacles that can move are places for those who will be seen; a
+    /// lidar adds its points.
+    ///
+    /// # Errors
+    /// The law cannot work in the scenario, or does not steer a robot with two wheels.
+    pub fn new(scenario: Scenario, law: &AnyLaw, lidar: Option<&Lidar>) -> Result<Self> {
+        if scenario.differential.is_some() && !law.driven().steers_by_velocity() {
+            let rule = "have a shield, which steers a robot with two wheels by velocities";
+            let given = Given::Found("a law without".into());
+            return Err(Failure::invalid("law", rule, given));
+        }
+        let scans = lidar.map(|lidar| Scans::new(&scenario, lidar, 0));
+        let scans = scans.transpose()?;
+        let mut known = scenario.clone();
+        known
+            .obstacles
+            .extend_from_slice(scans.as_ref().map_or(&[], Scans::points));
+        let bodies = known.obstacles.iter().map(|placed| {
+            let mut body = hidden(placed);
+            body.state.present = placed.stationary;
+            body
+        });
+        Ok(Self {
+            law: law.driven().steering(&known)?,
+            measured: vec![f64::NEG_INFINITY; scenario.obstacles.len()],
+            ages: vec![0.0; known.obstacles.len()],
+            bodies: bodies.collect(),
+            scans,
+            scenario,
+            last: None,
+        })
+    }
+
+    /// What the robot is to do, from what is known by now.
+    ///
+    /// # Errors
+    /// A value is not finite, an obstacle does not exist or stands, a measurement is of a time to come, a
+    /// scan does not suit the lidar, or the law answers no finite force.
+    pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<Order> {
+        self.check(told)?;
+        if let Some((before, order)) = self.last
+            && told.time <= before
+        {
+            return Ok(Order {
+                timing: Timing::OutOfOrder,
+                ..order
+            });
+        }
+        self.learn(told);
+        let order = match told.robot {
+            Some(robot) => self.decide(told, robot, stop)?,
+            None => self.brake(),
+        };
+        self.last = Some((told.time, order));
+        Ok(order)
+    }
+
+    fn check(&self, told: &Observation<'_>) -> Result<()> {
+        finite("time", told.time)?;
+        finite("heading", told.heading)?;
+        if let Some(robot) = told.robot {
+            finite_pair("position", robot.position.into())?;
+            finite_pair("velocity", robot.velocity.into())?;
+        }
+        for (place, seen) in told.seen.iter().enumerate() {
+            finite_pair(&format!("people[{place}].position"), seen.position)?;
+            finite_pair(&format!("people[{place}].velocity"), seen.velocity)?;
+            finite(&format!("people[{place}].time"), seen.time)?;
+            if seen.time > told.time {
+                let rule = format!("not be later than the update, {} s", told.time);
+                let name = format!("people[{place}].time");
+                return Err(Failure::invalid(&name, rule, Given::Number(seen.time)));
+            }
+        }
+        let indices = told.seen.iter().map(|seen| seen.index);
+        for index in indices.chain(told.gone.iter().copied()) {
+            let placed = self.scenario.obstacles.get(index);
+            if placed.is_none_or(|placed| placed.stationary) {
+                let rule = "be the number of an obstacle that can move";
+                return Err(Failure::invalid("people", rule, Given::Count(index as u64)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes down what is new, and how old all of it is.
+    fn learn(&mut self, told: &Observation<'_>) {
+        for seen in told.seen {
+            // An older measurement of somebody who is there tells nothing.
+            let there = self.bodies[seen.index].state.present;
+            if there && seen.time < self.measured[seen.index] {
+                continue;
+            }
+            self.measured[seen.index] = seen.time;
+            self.bodies[seen.index].state = BodyState {
+                position: seen.position,
+                velocity: seen.velocity,
+                acceleration: [0.0; 2],
+                present: true,
+            };
+        }
+        for index in told.gone {
+            self.bodies[*index].state.present = false;
+        }
+        let people = self.ages.iter_mut().zip(&self.measured);
+        for ((age, measured), placed) in people.zip(&self.scenario.obstacles) {
+            *age = if placed.stationary {
+                0.0
+            } else {
+                (told.time - measured).max(0.0)
+            };
+        }
+    }
+
+    /// Who is there, as far as is known, in the order of the obstacles of the scenario.
+    pub fn present(&self) -> impl Iterator<Item = bool> + '_ {
+        let people = self.bodies.iter().take(self.measured.len());
+        people.map(|body| body.state.present)
+    }
+
+    /// Forgets who was lost where a scan sees nobody.
+    fn scan(&mut self, frame: &Frame, ranges: &[f64]) -> Result<()> {
+        let people = self.measured.len();
+        let Some(scans) = &mut self.scans else {
+            let rule = "be None for a controller without a lidar";
+            let given = Given::Found("ranges".into());
+            return Err(Failure::invalid("scan", rule, given));
+        };
+        scans.read(ranges, frame, &mut self.bodies[people..])?;
+        let bodies = self.bodies[..people].iter_mut();
+        for (body, age) in bodies.zip(&self.ages) {
+            let Shape::Disc { radius } = body.shape else {
+                continue;
+            };
+            let lost = body.state.present && *age > FORGOTTEN;
+            if lost && scans.saw_empty(frame, body.state.position.into(), radius) {
+                body.state.present = false;
+            }
+        }
+        Ok(())
+    }
+
+    fn decide(
+        &mut self,
+        told: &Observation<'_>,
+        robot: RobotState<f64>,
+        stop: Stop<'_>,
+    ) -> Result<Order> {
+        let frame = Frame::at(robot.position.into(), told.heading);
+        if let Some(ranges) = told.scan {
+            self.scan(&frame, ranges)?;
+        }
+        let period = self.scenario.rules.control_period;
+        let command = self.law.command(&Situation {
+            time: told.time,
+            bodies: &self.bodies,
+            ages: &self.ages,
+            robot,
+            heading: told.heading,
+            interval: period,
+            stop,
+        });
+        if !command.force.norm().is_finite() {
+            let time = told.time;
+            return Err(Failure::NonFinite { run: 0, time });
+        }
+        let point = &self.scenario.robot;
+        let reached = robot.velocity + point.acceleration(command.force) * period;
+        let (velocity, _) = point.limited_velocity::<f64>(reached);
+        let wheels = self.scenario.differential.is_some();
+        let trace = self.law.trace();
+        let late = self
+            .last
+            .is_some_and(|(before, _)| told.time - before > LATE * period);
+        let to_goal = Vector2::from(self.scenario.goal) - robot.position;
+        Ok(Order {
+            force: command.force,
+            velocity,
+            twist: wheels.then(|| {
+                let asked = robot.velocity + command.force * (period / point.mass);
+                twist_of(asked, told.heading, period)
+            }),
+            status: trace.map(|trace| trace.status),
+            taken_over: trace.is_some_and(|trace| trace.taken_over),
+            timing: if late { Timing::Late } else { Timing::Regular },
+            arrived: to_goal.norm() <= self.scenario.rules.arrival_tolerance,
+            oldest: self.oldest(),
+        })
+    }
+
+    /// The rest of the last plan, for a robot that does not know where it is.
+    fn brake(&self) -> Order {
+        let zero = Vector2::zeros();
+        let (velocity, arrived) = self
+            .last
+            .map_or((zero, false), |(_, order)| (order.velocity, order.arrived));
+        let (robot, period) = (&self.scenario.robot, self.scenario.rules.control_period);
+        let limits = Limits {
+            radius: robot.radius,
+            max_speed: robot.max_speed,
+            max_acceleration: robot.max_acceleration,
+            period,
+        };
+        let slower = braking(velocity, &limits);
+        let twist = self.last.and_then(|(_, order)| order.twist);
+        let share = slower.norm() / velocity.norm().max(f64::MIN_POSITIVE);
+        Order {
+            force: (slower - velocity) * (robot.mass / period),
+            velocity: slower,
+            // The curvature is kept while both fall together.
+            twist: twist.map(|twist| Twist {
+                speed: twist.speed * share,
+                turn_rate: twist.turn_rate * share,
+            }),
+            status: Some(Status::Braking),
+            taken_over: false,
+            timing: Timing::Lost,
+            arrived,
+            oldest: self.oldest(),
+        }
+    }
+
+    fn oldest(&self) -> f64 {
+        let people = self.bodies.iter().zip(&self.ages);
+        let present = people.filter(|(body, _)| body.state.present);
+        present.map(|(_, age)| *age).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,383 @@
+"""A law on a robot: observations come from outside, whenever they do, and commands go out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, count, instance, number, numbers, pair, positive
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown, SimulationError
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.obstacles import Human, Obstacle
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.lidar import Lidar
+
+__all__ = ["Command", "Controller", "Sighting"]
+
+MOST_PEOPLE = 10_000
+FAR = 1e6
+"""Where the scenario has those who were not seen yet, in m."""
+ROUNDING = 1e-9
+"""Of a number of periods."""
+
+
+class Sighting(NamedTuple):
+    """Where somebody was measured to be.
+
+    Attributes
+    ----------
+    x, y : float
+        Center in m.
+    vx, vy : float
+        Velocity in m/s.
+    time : float or None
+        When it was measured, in s; at the update that tells of it when ``None``.
+    """
+
+    x: float
+    y: float
+    vx: float = 0.0
+    vy: float = 0.0
+    time: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Command:
+    """What a robot is to do until the next update.
+
+    Attributes
+    ----------
+    force : (float, float)
+        In N, before the limits of the robot, as a law asks for it.
+    velocity : (float, float)
+        To have a control period from now, within the limits, in m/s.
+    speed, turn_rate : float or None
+        The same for a robot with two wheels, in m/s and rad/s.
+    status : {"kept", "changed", "braking"} or None
+        What the shield has done with the wanted velocity; ``None`` without parts around the law.
+    taken_over : bool
+        Whether the robot heads for its (local) goal by itself.
+    timing : {"regular", "late", "out_of_order", "lost"}
+        What became of the update: in time; more than one and a half control periods after the last one; not
+        after the last one, so that it counted for nothing and the last command stands; or without the
+        place of the robot, which then brakes as its last plan ends.
+    arrived : bool
+        Whether the robot is within the arrival tolerance of the goal.
+    oldest : float
+        Age of the oldest measurement of somebody that counts, in s.
+    before : (float, float)
+        Velocity at the update, in m/s.
+    period, max_acceleration : float
+        Control period in s, and the limit of the robot in m/s^2.
+    """
+
+    force: Pair
+    velocity: Pair
+    speed: float | None
+    turn_rate: float | None
+    status: Literal["kept", "changed", "braking"] | None
+    taken_over: bool
+    timing: Literal["regular", "late", "out_of_order", "lost"]
+    arrived: bool
+    oldest: float
+    before: Pair
+    period: float
+    max_acceleration: float
+
+    def velocity_after(self, seconds: float) -> Pair:
+        """Return the velocity to have some time after the update if no other update comes.
+
+        The plan that a shield verifies: the velocity is taken up evenly within a control period, and
+        then the robot brakes to rest. A robot that executes it keeps the guarantee of the shield when
+        updates are late or stop.
+
+        Parameters
+        ----------
+        seconds : float
+            Time since the update in s.
+
+        Returns
+        -------
+        (float, float)
+            In m/s.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the time is negative or not finite.
+        """
+        since = number("seconds", seconds)
+        if not 0.0 <= since < math.inf:
+            raise InvalidParameterError("seconds", "be finite and not negative", seconds)
+        (x, y), (u, v) = self.before, self.velocity
+        if since <= self.period:
+            share = since / self.period
+            return x + (u - x) * share, y + (v - y) * share
+        periods = math.ceil(math.hypot(u, v) / (self.max_acceleration * self.period) - ROUNDING)
+        if periods <= 0:
+            return 0.0, 0.0
+        left = max(0.0, 1.0 - (since - self.period) / (periods * self.period))
+        return u * left, v * left
+
+
+class Controller:
+    """A law on a robot: told what is seen, it returns what to do.
+
+    Told the same at the same instants, it commands the same as a run, bit for bit. It keeps what it was
+    told: whoever is not measured again stays where he was, with an age that grows, and the shield reckons
+    with wherever he can be by then. He is forgotten when ``gone`` names him, or after 2 s if a
+    scan sees his place to be empty. Measurements older than what is known of somebody count for nothing.
+
+    Parameters
+    ----------
+    law : law
+        What drives the robot; `SafeNavigation` for one that is to be safe.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot; one with two wheels needs a law with a shield.
+    goal : (float, float)
+        In m.
+    map : StaticMap or None
+        What stands and is known before; that of the law when ``None``.
+    start : (float, float) or None
+        From where plans are made; the first position that is told when ``None``, and then the first update
+        takes as long as planning does.
+    obstacles : sequence of Obstacle
+        What stands, beside the map.
+    people : int
+        How many can be there at once.
+    person_radius, person_speed : float
+        Their radius in m, and the speed in m/s that their regions are sized for.
+    lidar : Lidar or None
+        What ranges in updates come from.
+    control_period : float
+        Time between updates in s.
+    arrival_tolerance : float
+        The robot has arrived this close to the goal, in m.
+    seed : int
+        Of laws that draw.
+
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is not valid, or the law cannot work with it; without ``start`` the latter by the
+        first update.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(), yielding=nav.Yielding())
+    >>> controller = nav.Controller(law, nav.HolonomicRobot(), goal=(5.0, 0.0))
+    >>> command = controller.update(0.0, (0.0, 0.0), (0.0, 0.0), people={"Ada": (3.0, 0.1, -1.0, 0.0)})
+    >>> command.status, command.timing
+    ('changed', 'regular')
+    >>> controller.update(0.06, None, None).timing
+    'lost'
+    """
+
+    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_names", "_native", "_rules")
+
+    def __init__(
+        self,
+        law: AnyLaw,
+        robot: HolonomicRobot | DifferentialDriveRobot,
+        goal: npt.ArrayLike,
+        map: StaticMap | None = None,
+        *,
+        start: npt.ArrayLike | None = None,
+        obstacles: Sequence[Obstacle] = (),
+        people: int = 12,
+        person_radius: float = 0.4,
+        person_speed: float = 1.6,
+        lidar: Lidar | None = None,
+        control_period: float = 0.06,
+        arrival_tolerance: float = 0.12,
+        seed: int = 0,
+    ) -> None:
+        self._law = _with_map(as_law(law), map)
+        self._lidar = None if lidar is None else instance("lidar", lidar, Lidar)
+        self._capacity = count("people", people, least=0, most=MOST_PEOPLE)
+        size, speed = positive("person_radius", person_radius), positive("person_speed", person_speed)
+        places = [
+            Human(start=(FAR + 10.0 * index, FAR), velocity=(speed, 0.0), radius=size, max_speed=speed)
+            for index in range(self._capacity)
+        ]
+        self._rules: dict[str, Any] = {
+            "robot": instance("robot", robot, HolonomicRobot, DifferentialDriveRobot),
+            "goal": pair("goal", goal),
+            "obstacles": (*places, *obstacles),
+            "control_period": positive("control_period", control_period),
+            "arrival_tolerance": positive("arrival_tolerance", arrival_tolerance),
+            "seed": seed,
+        }
+        self._names: dict[Hashable, int] = {}
+        self._last: Command | None = None
+        self._native: _hrsafety.Controller | None = None
+        if start is not None:
+            self._native = self._made(pair("start", start))
+
+    def _made(self, start: Pair) -> _hrsafety.Controller:
+        scenario = Scenario(start=start, **self._rules)
+        lidar = None if self._lidar is None else self._lidar._lidar
+        return _hrsafety.Controller(scenario._native, self._law._native, lidar)
+
+    @property
+    def people(self) -> tuple[Hashable, ...]:
+        """Names of those who are there, as far as is known."""
+        if self._native is None:
+            return ()
+        present = self._native.present()
+        return tuple(name for name, index in self._names.items() if present[index])
+
+    def update(
+        self,
+        time: float,
+        position: npt.ArrayLike | None,
+        velocity: npt.ArrayLike | None,
+        *,
+        heading: float | None = None,
+        people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike | None = None,
+        gone: Iterable[Hashable] = (),
+        scan: npt.ArrayLike | None = None,
+    ) -> Command:
+        """Tell what is known by now, and return what the robot is to do.
+
+        Parameters
+        ----------
+        time : float
+            Now, in s; an update that is not after the last one counts for nothing.
+        position, velocity : array_like of shape (2,), or None
+            The robot, in m and m/s; ``None`` where its place is not known: it brakes.
+        heading : float or None
+            In rad, which a robot with two wheels needs.
+        people : mapping, array_like of shape (n, 4) or None
+            Who was measured: by names of your own, `Sighting` or ``(x, y, vx, vy)`` with the instant of the
+            measurement as a fifth number if it is older than ``time``; or rows of these numbers, named by
+            their index. Who is not in it was not measured.
+        gone : iterable
+            Names of those who are known to have left.
+        scan : array_like of shape (beams,), or None
+            Ranges of the lidar in m; infinite where nothing was hit.
+
+        Returns
+        -------
+        Command
+            What to do until the next update.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a value is not finite, there are more people than the controller has room for, or a measurement
+            is later than the update.
+        SimulationError
+            If the law answers no finite force.
+        """
+        now = number("time", time)
+        if (position is None) != (velocity is None):
+            missing = "position" if position is None else "velocity"
+            raise InvalidParameterError(missing, "be given together with the other of position and velocity", None)
+        robot = (
+            None if position is None or velocity is None else (pair("position", position), pair("velocity", velocity))
+        )
+        if heading is None and isinstance(self._rules["robot"], DifferentialDriveRobot) and robot is not None:
+            raise InvalidParameterError("heading", "be given for a DifferentialDriveRobot", None)
+        angle = 0.0 if heading is None else number("heading", heading)
+        if self._native is None:
+            if robot is None:
+                return self._told(_NOTHING, (0.0, 0.0))
+            self._native = self._made(robot[0])
+        seen = [] if people is None else self._seen(people, now)
+        ranges = None if scan is None else np.ascontiguousarray(numbers("scan", scan))
+        if ranges is not None and ranges.ndim != 1:
+            raise ShapeError("scan", "(beams,)", ranges.shape)
+        left = [self._names[name] for name in gone if name in self._names]
+        fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
+        if fields["timing"] == "out_of_order" and self._last is not None:
+            return self._told(fields, self._last.before)
+        before = self._last.velocity if robot is None and self._last is not None else (0.0, 0.0)
+        self._last = self._told(fields, before if robot is None else robot[1])
+        return self._last
+
+    def _told(self, fields: Mapping[str, Any], before: Pair) -> Command:
+        robot = self._rules["robot"]
+        return Command(
+            before=before, period=self._rules["control_period"], max_acceleration=robot.max_acceleration, **fields
+        )
+
+    def _seen(
+        self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike, now: float
+    ) -> list[tuple[int, Pair, Pair, float]]:
+        """Return who was measured, by the places of the core."""
+        if not isinstance(people, Mapping):
+            rows = numbers("people", people)
+            if rows.size and (rows.ndim != 2 or rows.shape[1] not in (4, 5)):
+                raise ShapeError("people", "(n, 4) or (n, 5)", rows.shape)
+            people = dict(enumerate(rows.reshape(-1, max(1, rows.shape[-1])).tolist() if rows.size else []))
+        found = []
+        for name, given in people.items():
+            if len(given) not in (4, 5):
+                raise ShapeError(f"people[{name!r}]", "(4,) or (5,)", (len(given),))
+            x, y, vx, vy = (number(f"people[{name!r}]", value) for value in given[:4])
+            instant = given[4] if len(given) == 5 else None
+            when = now if instant is None else number(f"people[{name!r}].time", instant)
+            found.append((self._place(name), (x, y), (vx, vy), when))
+        return found
+
+    def _place(self, name: Hashable) -> int:
+        """Return the place of somebody in the core, a free one for who is new."""
+        if name in self._names:
+            return self._names[name]
+        taken = set(self._names.values())
+        free = next((index for index in range(self._capacity) if index not in taken), None)
+        if free is None:
+            present = [] if self._native is None else self._native.present()
+            left = next((known for known, index in self._names.items() if not present[index]), None)
+            if left is None:
+                rule = f"name at most {self._capacity} who are there at once"
+                who = Shown(f"one more, {name!r}")
+                raise InvalidParameterError("people", rule, who, f"give the controller people={self._capacity + 1}")
+            free = self._names.pop(left)
+        self._names[name] = free
+        return free
+
+    def __repr__(self) -> str:
+        """Return law, goal and who is there."""
+        return f"Controller(law={self._law!r}, goal={self._rules['goal']}, people={self.people!r})"
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse: a law may remember anything, and its copy would not be independent."""
+        raise SimulationError("a Controller cannot be copied or pickled; make another with the same arguments")
+
+
+_NOTHING: Mapping[str, Any] = {
+    "force": (0.0, 0.0),
+    "velocity": (0.0, 0.0),
+    "speed": None,
+    "turn_rate": None,
+    "status": "braking",
+    "taken_over": False,
+    "timing": "lost",
+    "arrived": False,
+    "oldest": 0.0,
+}
+"""What a robot is told that does not know yet where it is."""
+
+
+def _with_map(law: Any, map: StaticMap | None) -> Any:
+    """Return the law with a map that it is to know."""
+    if map is None:
+        return law
+    instance("map", map, StaticMap)
+    if not isinstance(law, SafeNavigation):
+        return SafeNavigation(law, map=map)
+    if law.map is not None and law.map != map:
+        raise InvalidParameterError("map", "be None for a law that knows a map", map)
+    return law.replaced(map=map)

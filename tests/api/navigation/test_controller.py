@@ -1,0 +1,249 @@
+"""A law on a robot that is told from outside what is seen."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
+from hrsafety.navigation.controller import Command, Controller, Sighting
+from hrsafety.navigation.laws import SafeNavigation, Shield, Yielding
+from hrsafety.navigation.maps import Guide, StaticMap
+
+FIELD = nav.VirtualForceField()
+ORCA = nav.OptimalReciprocalCollisionAvoidance()
+WALLS = StaticMap.from_polylines([[(2.0, -2.0), (2.0, 0.5)]])
+ROBOT = nav.HolonomicRobot()
+
+
+def crowd(robot: nav.HolonomicRobot | nav.DifferentialDriveRobot = ROBOT) -> nav.Scenario:
+    people = [
+        nav.Human(start=(3.0, 0.4), velocity=(-0.8, 0.0), max_speed=1.6),
+        nav.Human(start=(4.0, -2.0), velocity=(-0.3, 0.7), max_speed=1.6),
+        nav.Human(start=(1.5, 2.5), velocity=(0.2, -0.9), max_speed=1.6),
+    ]
+    return nav.Scenario(robot=robot, start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=people, time_limit=15.0, seed=3)
+
+
+LAWS = [
+    FIELD,
+    ORCA,
+    nav.VelocityObstacle(),
+    SafeNavigation(FIELD, shield=Shield(), yielding=Yielding()),
+    SafeNavigation(ORCA, map=WALLS, guide=Guide(), shield=Shield(person_speed=1.0), yielding=Yielding()),
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.NAME)
+@pytest.mark.parametrize("start", [(0.0, 0.0), None])
+def test_told_the_same_it_commands_the_same_as_a_run(law: nav.Law, start: tuple[float, float] | None) -> None:
+    scene = crowd()
+    controller = Controller(law, ROBOT, scene.goal, start=start, people=3, seed=3)
+    run, forces = nav.Run(scene, law), []
+    while not run.finished:
+        seen = run.observe()
+        people = np.hstack([seen.obstacle_position, seen.obstacle_velocity])
+        forces.append(controller.update(seen.time, seen.position, seen.velocity, people=people).force)
+        run.step()
+    told = run.trajectory
+    every = round(scene.control_period / 0.01)
+    assert len(forces) > 20
+    assert np.array_equal(np.array(forces), told.force[:-1][::every][: len(forces)])
+
+
+def test_a_lidar_tells_the_same_as_in_a_run() -> None:
+    room = StaticMap.from_polylines([[(-1, -0.7), (5, -0.7)], [(-1, 0.7), (5, 0.7)]])
+    lidar = nav.Lidar(map=room, beams=180)
+    scene = nav.Scenario(start=(0.0, 0.2), goal=(4.0, 0.0))
+    controller = Controller(FIELD, ROBOT, scene.goal, lidar=lidar, people=0)
+    run, forces = nav.Run(scene, FIELD, nav.robots.AsBuilt(sensors=[lidar])), []
+    while not run.finished:
+        seen = run.observe()
+        scan = lidar.scan(seen.position)
+        forces.append(controller.update(seen.time, seen.position, seen.velocity, scan=scan).force)
+        run.step()
+    assert np.array_equal(np.array(forces), run.trajectory.force[:-1][::6][: len(forces)])
+
+
+def test_two_wheels_are_told_speed_and_turn_rate() -> None:
+    robot = nav.DifferentialDriveRobot()
+    with pytest.raises(InvalidParameterError, match="shield"):
+        Controller(FIELD, robot, (5.0, 0.0), start=(0.0, 0.0))
+    law = SafeNavigation(FIELD, shield=Shield())
+    controller = Controller(law, robot, (5.0, 3.0))
+    with pytest.raises(InvalidParameterError, match="heading"):
+        controller.update(0.0, (0.0, 0.0), (0.0, 0.0))
+    run = nav.Run(crowd(robot), law)
+    controller = Controller(law, robot, (5.0, 0.0), people=3, seed=3)
+    told = []
+    for _ in range(60):
+        seen = run.observe()
+        people = np.hstack([seen.obstacle_position, seen.obstacle_velocity])
+        command = controller.update(seen.time, seen.position, seen.velocity, heading=seen.heading, people=people)
+        told.append(command.force)
+        assert command.speed is not None
+        assert command.turn_rate is not None
+        run.step()
+    assert np.array_equal(np.array(told), run.trajectory.force[:-1][::6][:60])
+
+
+class Ahead:
+    """Wants to go ahead, whoever is there."""
+
+    def velocity(self, situation: nav.Situation) -> tuple[float, float]:
+        return 0.6, 0.0
+
+
+def shielded(**shield: float) -> Controller:
+    law = SafeNavigation(Ahead(), shield=Shield(**shield))
+    return Controller(law, ROBOT, (20.0, 0.0), start=(0.0, 0.0))
+
+
+def still(controller: Controller, time: float, **told: object) -> Command:
+    return controller.update(time, (0.0, 0.0), (0.0, 0.0), **told)  # type: ignore[arg-type]
+
+
+def test_who_is_not_measured_again_can_be_ever_nearer() -> None:
+    controller = shielded()
+    assert still(controller, 0.0, people={"a": (4.0, 0.0, 0.0, 0.0)}).status == "kept"
+    # 3.4 m between the surfaces: at 1.6 m/s he can have come after 2.1 s.
+    speeds = [math.hypot(*still(controller, 0.06 * k).velocity) for k in range(1, 45)]
+    assert speeds[0] > 0.5
+    assert speeds[-1] < 0.05
+    assert all(later <= before + 1e-9 for before, later in itertools.pairwise(speeds))
+    assert still(controller, 2.7).oldest == pytest.approx(2.7)
+    assert controller.people == ("a",)
+    assert still(controller, 2.76, gone=["a"]).status == "kept"
+    assert controller.people == ()
+
+
+def test_a_late_measurement_counts_with_its_age() -> None:
+    person = (1.2, 0.0, 0.0, 0.0)
+    now = still(shielded(latency=0.3), 1.0, people={"a": person})
+    late = still(shielded(), 1.0, people={"a": (*person, 0.7)})
+    fresh = still(shielded(), 1.0, people={"a": person})
+    assert now.velocity == pytest.approx(late.velocity, abs=1e-12)
+    assert late.velocity[0] < fresh.velocity[0]
+    assert late.oldest == pytest.approx(0.3)
+
+
+def test_an_older_measurement_of_somebody_counts_for_nothing() -> None:
+    one, two = shielded(), shielded()
+    for controller in (one, two):
+        still(controller, 1.0, people={"a": (1.5, 0.0, 0.0, 0.0)})
+    stale = still(one, 1.06, people={"a": Sighting(9.0, 9.0, time=0.5)})
+    assert stale.force == still(two, 1.06).force
+    newer = still(one, 1.12, people={"a": Sighting(9.0, 9.0, time=1.1)})
+    assert newer.status == "kept"
+    assert newer.oldest == pytest.approx(0.02)
+
+
+def test_an_update_out_of_order_counts_for_nothing() -> None:
+    one, two = shielded(), shielded()
+    first = still(one, 1.0)
+    still(two, 1.0)
+    for time in (1.0, 0.4):
+        again = one.update(time, (3.0, 3.0), (0.5, 0.0), people={"a": (1.0, 0.0, 0.0, 0.0)})
+        assert again.timing == "out_of_order"
+        assert (again.force, again.before) == (first.force, first.before)
+    assert one.people == ()
+    assert still(one, 1.06) == still(two, 1.06)
+
+
+def test_a_late_update_says_so() -> None:
+    controller = shielded()
+    assert [still(controller, time).timing for time in (0.0, 0.06, 0.149, 0.25)] == [
+        "regular",
+        "regular",
+        "regular",
+        "late",
+    ]
+
+
+def test_a_robot_that_does_not_know_its_place_brakes_as_its_plan_ends() -> None:
+    slow = nav.HolonomicRobot(max_acceleration=1.0)
+    controller = Controller(SafeNavigation(FIELD, shield=Shield()), slow, (20.0, 0.0), start=(0.0, 0.0))
+    command = controller.update(0.0, (0.0, 0.0), (0.6, 0.0))
+    for step in range(1, 14):
+        planned = command.velocity_after(0.06 * (step + 1))
+        lost = controller.update(0.06 * step, None, None)
+        assert (lost.timing, lost.status) == ("lost", "braking")
+        assert lost.velocity == pytest.approx(planned, abs=1e-12)
+    assert lost.velocity == (0.0, 0.0)
+    found = controller.update(0.84, (0.5, 0.0), (0.0, 0.0))
+    assert found.timing == "regular"
+    assert Controller(FIELD, ROBOT, (5.0, 0.0)).update(0.0, None, None).velocity == (0.0, 0.0)
+
+
+def test_the_plan_of_a_command_starts_at_the_velocity_and_ends_at_rest() -> None:
+    command = shielded().update(0.0, (0.0, 0.0), (0.3, 0.1))
+    assert command.velocity_after(0.0) == (0.3, 0.1)
+    assert command.velocity_after(command.period) == pytest.approx(command.velocity)
+    assert command.velocity_after(5.0) == (0.0, 0.0)
+    steps = np.array([command.velocity_after(t) for t in np.linspace(0.0, 1.0, 2001)])
+    rates = np.hypot(*np.diff(steps, axis=0).T) / 0.0005
+    assert rates.max() <= command.max_acceleration * (1.0 + 1e-6)
+
+
+def test_a_scan_that_sees_the_place_empty_forgets_after_two_seconds() -> None:
+    lidar = nav.Lidar(beams=360)
+    law = SafeNavigation(FIELD, shield=Shield())
+
+    def told(reading: float, until: float) -> tuple[object, ...]:
+        controller = Controller(law, ROBOT, (20.0, 0.0), start=(0.0, 0.0), lidar=lidar)
+        still(controller, 0.0, people={"a": (3.0, 0.0, 0.0, 0.0)})
+        still(controller, until, scan=np.full(360, reading))
+        return controller.people
+
+    assert told(math.inf, 1.9) == ("a",)
+    assert told(math.inf, 2.1) == ()
+    # Something hides the place.
+    assert told(2.0, 2.1) == ("a",)
+
+
+def test_places_of_those_who_left_are_given_to_others() -> None:
+    controller = Controller(FIELD, ROBOT, (20.0, 0.0), people=2)
+    still(controller, 0.0, people={"a": (3.0, 0.0, 0.0, 0.0), "b": (4.0, 0.0, 0.0, 0.0)})
+    with pytest.raises(InvalidParameterError, match="people=3"):
+        still(controller, 0.1, people={"c": (5.0, 0.0, 0.0, 0.0)})
+    still(controller, 0.2, gone=["a"])
+    still(controller, 0.3, people={"c": (5.0, 0.0, 0.0, 0.0)})
+    assert set(controller.people) == {"b", "c"}
+
+
+@pytest.mark.parametrize(
+    ("told", "message"),
+    [
+        ({"people": {"a": (math.nan, 0.0, 0.0, 0.0)}}, "finite"),
+        ({"people": {"a": (1.0, 0.0, 0.0, 0.0, 9.0)}}, "later than the update"),
+        ({"scan": [1.0, 2.0]}, "lidar"),
+        ({"heading": math.inf}, "finite"),
+    ],
+)
+def test_bad_observations_are_named(told: dict[str, object], message: str) -> None:
+    with pytest.raises(InvalidParameterError, match=message):
+        still(shielded(), 1.0, **told)
+
+
+def test_bad_arguments_are_named() -> None:
+    controller = shielded()
+    with pytest.raises(ShapeError):
+        still(controller, 1.0, people={"a": (1.0, 2.0)})
+    with pytest.raises(InvalidParameterError, match="velocity"):
+        controller.update(1.0, (0.0, 0.0), None)
+    with pytest.raises(InvalidParameterError, match="time"):
+        still(controller, math.nan)
+    lidar = nav.Lidar(beams=4)
+    scanning = Controller(FIELD, ROBOT, (5.0, 0.0), lidar=lidar)
+    for scan, message in (([1.0] * 3, "each of 4 beams"), ([1.0, -1.0, 1.0, 1.0], r"scan\[1\]")):
+        with pytest.raises(InvalidParameterError, match=message):
+            still(scanning, 1.0, scan=scan)
+    with pytest.raises(InvalidParameterError, match="map"):
+        Controller(SafeNavigation(FIELD, map=WALLS), ROBOT, (5.0, 0.0), StaticMap.from_polylines([[(0, 1), (1, 1)]]))
+    with pytest.raises(SimulationError, match="copied"):
+        pickle.dumps(controller)
