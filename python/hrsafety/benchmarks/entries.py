@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 
 from hrsafety import navigation as nav
@@ -13,7 +13,7 @@ from hrsafety.navigation.laws.declared import LAWS
 
 __all__ = ["PARTS", "Entry", "entry"]
 
-PARTS = ("shield", "yielding")
+PARTS = ("guide", "shield", "yielding")
 """Parts that a word may add to a law."""
 _OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField()})
 
@@ -43,6 +43,10 @@ class Entry:
         preferred_speed: float | None = None,
         latency: float = 0.0,
         position_error: float = 0.0,
+        map: nav.StaticMap | None = None,
+        guide: nav.maps.Guide | None = None,
+        yielding: nav.laws.Yielding | None = None,
+        takeover: bool | None = None,
     ) -> nav.Law:
         """Return the law with its parts.
 
@@ -54,20 +58,29 @@ class Entry:
             Limit of the wanted velocity in m/s.
         latency, position_error : float
             What the shield assumes of measurements, in s and m.
+        map : StaticMap or None
+            What the law knows to stand.
+        guide, yielding : Guide, Yielding or None
+            Those of the protocol, for entries that have these parts.
+        takeover : bool or None
+            As of `SafeNavigation`.
 
         Returns
         -------
         Law
-            The law itself without parts.
+            The law itself without parts and map.
         """
-        if not self.parts:
+        if not self.parts and map is None:
             return self.law
         shield = nav.laws.Shield(person_speed=person_speed, latency=latency, position_error=position_error)
         return nav.laws.SafeNavigation(
             self.law,
+            map=map,
+            guide=(guide or nav.maps.Guide()) if "guide" in self.parts else None,
             shield=shield if "shield" in self.parts else None,
-            yielding=nav.laws.Yielding() if "yielding" in self.parts else None,
+            yielding=(yielding or nav.laws.Yielding()) if "yielding" in self.parts else None,
             preferred_speed=preferred_speed,
+            takeover=takeover if self.parts else None,
         )
 
 
@@ -77,8 +90,8 @@ def entry(word: str) -> Entry:
     Parameters
     ----------
     word : str
-        A law by its long or short name (``field`` is the virtual force field), then ``+shield`` and
-        ``+yielding`` as wanted.
+        A law by its long or short name (``field`` is the virtual force field), its gains in brackets where they
+        are others than usual, then ``+guide``, ``+shield`` and ``+yielding`` as wanted.
 
     Returns
     -------
@@ -88,19 +101,42 @@ def entry(word: str) -> Entry:
     Raises
     ------
     InvalidParameterError
-        If the law or a part is unknown.
+        If the law, a gain or a part is unknown.
 
     Examples
     --------
     >>> from hrsafety.benchmarks import entry
     >>> entry("orca+shield").parts
     ('shield',)
+    >>> entry("field(attractive_gain=13)").law.attractive_gain
+    13.0
     """
     name, *parts = word.strip().lower().split("+")
     for part in parts:
         if part not in PARTS:
             raise InvalidParameterError("laws", f"add {' or '.join(PARTS)} to a law", word, meant(part, PARTS))
-    return Entry(name=word, law=_law(name, word), parts=tuple(each for each in PARTS if each in parts))
+    return Entry(name=word, law=_with_gains(name, word), parts=tuple(each for each in PARTS if each in parts))
+
+
+def _with_gains(name: str, word: str) -> nav.Law:
+    """Return the law of a word with the gains that stand in brackets."""
+    plain, bracket, rest = name.partition("(")
+    law = _law(plain, word)
+    if not bracket:
+        return law
+    if not rest.endswith(")"):
+        raise InvalidParameterError("laws", "close the bracket of the gains, as field(attractive_gain=13)", word)
+    gains: dict[str, float] = {}
+    for part in rest[:-1].split(","):
+        gain, _, value = part.partition("=")
+        known = [each.name for each in fields(law) if each.init and isinstance(getattr(law, each.name), float)]
+        if gain not in known or gain in gains:
+            raise InvalidParameterError("laws", f"give one of {', '.join(known)} once", word, meant(gain, known))
+        try:
+            gains[gain] = float(value)
+        except ValueError:
+            raise InvalidParameterError("laws", f"give {gain} a number", word) from None
+    return law.replaced(**gains)
 
 
 def _law(name: str, word: str) -> nav.Law:

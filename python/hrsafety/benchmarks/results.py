@@ -6,7 +6,7 @@ import csv
 import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from hrsafety._statistics import Share, wilson
@@ -34,6 +34,8 @@ class Row:
         People who touched the robot when they appeared in a recording, counted apart from the others.
     clearance : float
         Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
+    score : float
+        Of BARN and DynaBARN: ``success OT / clip(AT, 2 OT, 8 OT)``, at best 0.5; NaN elsewhere.
     """
 
     case: int
@@ -44,6 +46,7 @@ class Row:
     at_fault: int
     apart: int
     clearance: float
+    score: float = math.nan
 
 
 NAMES = tuple(each.name for each in fields(Row))
@@ -87,6 +90,7 @@ def _row(line: Sequence[str], where: str) -> Row:
             arrival_time=float(value["arrival_time"]),
             end_time=float(value["end_time"]),
             clearance=float(value["clearance"]),
+            score=float(value["score"]),
             **{name: int(value[name]) for name in _COUNTS},
         )
     except ValueError:
@@ -108,10 +112,13 @@ class Result:
         The suite.
     rows : mapping of str to sequence of Row
         Episodes of every entry.
+    accepted : mapping of str to str
+        What is asked of an entry: success, contact and fault in percent.
     """
 
     suite: str
     rows: Mapping[str, Sequence[Row]]
+    accepted: Mapping[str, str] = field(default_factory=dict)
 
     def success(self, name: str) -> Share:
         """Return the share of episodes that arrived without a contact, with its 95 % Wilson interval."""
@@ -133,6 +140,14 @@ class Result:
         times = [row.arrival_time for row in self.rows[name] if not math.isnan(row.arrival_time)]
         return math.fsum(times) / len(times) if times else math.nan
 
+    def mean_score(self, name: str) -> float:
+        """Return the mean score of BARN; NaN for suites without one."""
+        scores = [row.score for row in self.rows[name]]
+        return math.fsum(scores) / len(scores) if scores else math.nan
+
+    def _means(self, name: str) -> tuple[tuple[float, str], ...]:
+        return (self.mean_arrival(name), ".2f"), (self.mean_score(name), ".4f")
+
     def failures(self, name: str, most: int = 3) -> list[int]:
         """Return the first episodes that did not succeed."""
         return [row.case for row in self.rows[name] if row.outcome != "arrived"][:most]
@@ -144,13 +159,14 @@ class Result:
                 name,
                 str(len(self.rows[name])),
                 *(_percent(share(name)) for share in (self.success, self.contact, self.at_fault)),
-                "" if math.isnan(self.mean_arrival(name)) else f"{self.mean_arrival(name):.2f}",
+                *("" if math.isnan(mean) else f"{mean:{form}}" for mean, form in self._means(name)),
+                self.accepted.get(name, ""),
             )
             for name in self.rows
         ]
 
 
-HEAD = ("law", "episodes", "success %", "contact %", "at fault %", "arrival s")
+HEAD = ("law", "episodes", "success %", "contact %", "at fault %", "arrival s", "score", "asked for")
 """Titles of the table."""
 
 

@@ -10,8 +10,9 @@ from pathlib import Path
 from hrsafety._arguments import callback, checked_seed, count, positive, readable, sequence, thread_count, word
 from hrsafety._atomic import write_file
 from hrsafety.benchmarks.entries import Entry, entry
+from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
-from hrsafety.benchmarks.suites import CHUNK, SUITES, Case, Suite, recordings
+from hrsafety.benchmarks.suites import CHUNK, SUITES
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["benchmark", "case_of"]
@@ -35,7 +36,7 @@ def benchmark(
 
     Parameters
     ----------
-    suite : {"s4", "s5", "crowd", "recordings", "adversary"}
+    suite : {"s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"}
         The protocol.
     laws : sequence of str or None
         Entries such as ``"field+shield+yielding"``; those of the suite when ``None``.
@@ -46,7 +47,8 @@ def benchmark(
     seed : int or None
         Seed of the draw; that of the protocol when ``None``.
     data : path or None
-        Folder with recordings, for suites that read one.
+        Folder with the files of suites that read some: recordings (``*.csv``), BARN worlds (``barn_*.json``), or
+        trajectories and worlds of DynaBARN (``dynabarn*.json``).
     out : path or None
         Folder in which rows are kept as they come; the same call resumes there.
     threads : int or None
@@ -78,14 +80,17 @@ def benchmark(
     ]
     if not entries:
         raise InvalidParameterError("laws", "name at least one law", laws)
-    runs = count("cases", kind.cases if cases is None else cases, most=kind.most)
     first = kind.seed if seed is None else checked_seed("seed", seed)
-    if kind.needs_data and data is None:
-        raise InvalidParameterError("data", "name the folder with the recordings", None)
+    if kind.files is not None and data is None:
+        raise InvalidParameterError("data", f"name the folder with the files of {kind.name}", None)
+    folder = None if data is None or kind.files is None else Path(data)
+    most = kind.most if kind.available is None else kind.available(folder)
+    usual = min(kind.cases, most) if kind.available else kind.cases
+    runs = count("cases", usual if cases is None else cases, most=most)
     settings = {
         "person_speed": positive("person_speed", person_speed),
         "seed": first,
-        "data": None if data is None or not kind.needs_data else Path(data),
+        "data": folder,
         "threads": thread_count(threads),
     }
     told = callback("progress", progress)
@@ -102,7 +107,13 @@ def benchmark(
 
         rows[each.name] = _run(kind, each, runs, settings, place, heard)
         done += runs
-    return Result(suite=kind.name, rows=rows)
+    asked = {
+        name: kind.accepted[name, speed]
+        for name in rows
+        for speed in (None, person_speed)
+        if (name, speed) in kind.accepted
+    }
+    return Result(suite=kind.name, rows=rows, accepted=asked)
 
 
 def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -> Case:
@@ -113,14 +124,14 @@ def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -
 def _file(place: Path, suite: Suite, each: Entry, settings: Mapping[str, object]) -> Path:
     """Return where rows are kept; other settings have another file."""
     plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
-    data = f"-data{_content(settings['data'])}" if isinstance(settings["data"], Path) else ""
+    data = f"-data{_content(suite, settings['data'])}" if isinstance(settings["data"], Path) else ""
     return place / f"{suite.name}-{plain}-v{settings['person_speed']!r}-seed{settings['seed']}{data}.csv"
 
 
-def _content(folder: Path) -> str:
-    """Return a word for what recordings hold: others have other rows."""
+def _content(suite: Suite, folder: Path) -> str:
+    """Return a word for what the files of a suite hold: others have other rows."""
     content = hashlib.sha256()
-    for file in recordings(folder):
+    for file in [] if suite.files is None else suite.files(folder):
         content.update(readable("data", file).read_bytes())
     return content.hexdigest()[:12]
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
@@ -12,11 +12,13 @@ import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
+from hrsafety.benchmarks import barn
 from hrsafety.benchmarks.entries import Entry
+from hrsafety.benchmarks.protocol import Case, Suite, rows_of
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["SUITES", "Case", "Suite"]
+__all__ = ["SUITES"]
 
 CHUNK = 50
 """Episodes that are run, and kept, together."""
@@ -32,85 +34,6 @@ PURSUED = 12.0
 """Length of an episode there, in s."""
 PERSON_SPEED = 1.6
 """Largest speed of the person there, in m/s, whatever shields assume."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Case:
-    """What an entry is run in.
-
-    Parameters
-    ----------
-    cases : sequence of int
-        Numbers of the episodes.
-    entry : Entry
-        What is run.
-    person_speed : float
-        What the shield assumes of people, in m/s.
-    data : Path or None
-        Folder with the data of the suite.
-    seed : int
-        Seed of the draw.
-    threads : int or None
-        Number of threads.
-    """
-
-    cases: Sequence[int]
-    entry: Entry
-    person_speed: float
-    data: Path | None
-    seed: int
-    threads: int | None
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Suite:
-    """A protocol.
-
-    Parameters
-    ----------
-    name : str
-        Its name.
-    summary : str
-        What it is, in a sentence.
-    laws : tuple of str
-        Entries that are run without others.
-    cases : int
-        Episodes without another number.
-    seed : int
-        Seed of the draw without another one.
-    most : int
-        Most episodes.
-    needs_data : bool
-        Whether it reads a folder.
-    scene : callable
-        Scenario of an episode, to show it again.
-    run : callable
-        Rows of some episodes.
-    """
-
-    name: str
-    summary: str
-    laws: tuple[str, ...]
-    cases: int
-    seed: int
-    most: int
-    needs_data: bool = False
-    scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
-    run: Callable[[Case], Iterator[Row]]
-
-
-def _rows(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
-    for index, case in enumerate(cases):
-        yield Row(
-            case=case,
-            outcome=str(table.outcome[index]),
-            arrival_time=float(table.arrival_time[index]),
-            end_time=float(table.end_time[index]),
-            contacts=int(table.contacts_moving[index] + table.contacts_standing[index]),
-            at_fault=int(table.contacts_at_fault[index]),
-            apart=0,
-            clearance=float(table.min_clearance[index]),
-        )
 
 
 # ---- discs that drift: S4 and S5 ------------------------------------------------------------
@@ -160,7 +83,7 @@ def _many(scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]]) -> Callabl
         table = nav.simulate_many(
             [place for place, _ in pairs], pairs[0][1], stop_on_contact=True, threads=case.threads
         )
-        yield from _rows(table, case.cases)
+        yield from rows_of(table, case.cases)
 
     return run
 
@@ -289,6 +212,7 @@ SUITES: dict[str, Suite] = {
             cases=DRAWN,
             seed=1,
             most=DRAWN,
+            accepted={(_GUARDED[1], 1.0): "99.5 / 0 / 0"},
             scene=_drifting(3),
             run=_many(_drifting(3)),
         ),
@@ -299,6 +223,11 @@ SUITES: dict[str, Suite] = {
             cases=DRAWN,
             seed=1,
             most=DRAWN,
+            accepted={
+                (_GUARDED[1], 1.0): "98 / 0.5 / 0",
+                (_GUARDED[1], 1.6): "95 / 0.5 / 0",
+                (_GUARDED[3], None): "95 / 0.5 / 0",
+            },
             scene=_drifting(12),
             run=_many(_drifting(12)),
         ),
@@ -309,6 +238,11 @@ SUITES: dict[str, Suite] = {
             cases=1000,
             seed=0,
             most=1_000_000,
+            accepted={
+                (_GUARDED[1], 1.0): "99.3 / 0.5 / 0",
+                (_GUARDED[1], 1.6): "99.3 / 0.5 / 0",
+                **{(f"orca+{parts}", None): "- / - / 0" for parts in ("shield", "shield+yielding")},
+            },
             scene=_crowd,
             run=_many(_crowd),
         ),
@@ -319,7 +253,8 @@ SUITES: dict[str, Suite] = {
             cases=RUNS,
             seed=0,
             most=1_000_000,
-            needs_data=True,
+            files=recordings,
+            accepted={(_GUARDED[1], 1.6): "- / - / 0"},
             scene=_crossing,
             run=_cross,
         ),
@@ -330,7 +265,37 @@ SUITES: dict[str, Suite] = {
             cases=1000,
             seed=0,
             most=10_000_000,
+            accepted={(f"{law}+shield", None): "- / - / 0" for law in ("field", "orca", "velocity_obstacle")},
             run=_pursue,
+        ),
+        Suite(
+            name="barn",
+            summary="300 fields of cylinders that the map shows",
+            laws=barn.LAWS,
+            cases=300,
+            seed=0,
+            most=barn.MOST_WORLDS,
+            files=barn.world_files,
+            available=barn.worlds_in,
+            accepted=barn.ACCEPTED,
+            scene=barn.world_scene,
+            run=barn.run_worlds,
+        ),
+        *(
+            Suite(
+                name=name,
+                summary=f"60 worlds of cylinders that move, in 10 phases, a robot of {most:g} m/s^2",
+                laws=barn.DYNAMIC_LAWS,
+                cases=600,
+                seed=0,
+                most=600,
+                files=barn.dynamic_files,
+                step=0.025,
+                accepted={(barn.DYNAMIC_LAWS[0], None): f"{asked} / - / -"},
+                scene=barn.dynamic_scene(most),
+                run=barn.run_dynamic(most),
+            )
+            for name, most, asked in (("dynabarn", 10.0, 97), ("dynabarn3", 3.0, 94))
         ),
     )
 }

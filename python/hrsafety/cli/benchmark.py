@@ -90,7 +90,7 @@ def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
     for name in result.rows:
         for case in result.failures(name):
             place, law = suite.scene(case_of(settings, entry(name), [case]), case)
-            run = nav.simulate(place, law, stop_on_contact=result.suite != "recordings")
+            run = nav.simulate(place, law, stop_on_contact=result.suite != "recordings", step=suite.step)
             yield Picture(
                 name=f"{name}-{case}".replace("+", "_"),
                 caption=f"{name}, episode {case}: {run.outcome}",

@@ -74,7 +74,7 @@ _BENCHMARK_EXAMPLE = """examples:
 Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
 """
-SUITE_NAMES = ("s4", "s5", "crowd", "recordings", "adversary")
+SUITE_NAMES = ("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3")
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 
 _ARM_EXAMPLE = """examples:
@@ -359,6 +359,6 @@ def _add_benchmark(commands: Any) -> None:
         help="speed of people that shields assume, in m/s [%(default)s]",
     )
     parser.add_argument("--seed", type=_count, metavar="N", help="seed of the draw [of the protocol]")
-    parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), for recordings")
+    parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), BARN or DynaBARN worlds (.json)")
     parser.add_argument("--out", metavar="DIR", help="folder for rows, tables (CSV) and a page; resumed from there")
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")

@@ -1,0 +1,102 @@
+"""What a suite is, and what it is run in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hrsafety import navigation as nav
+from hrsafety.benchmarks.entries import Entry
+from hrsafety.benchmarks.results import Row
+
+__all__ = ["Case", "Suite", "rows_of"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """What an entry is run in.
+
+    Parameters
+    ----------
+    cases : sequence of int
+        Numbers of the episodes.
+    entry : Entry
+        What is run.
+    person_speed : float
+        What the shield assumes of people, in m/s.
+    data : Path or None
+        Folder with the data of the suite.
+    seed : int
+        Seed of the draw.
+    threads : int or None
+        Number of threads.
+    """
+
+    cases: Sequence[int]
+    entry: Entry
+    person_speed: float
+    data: Path | None
+    seed: int
+    threads: int | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Suite:
+    """A protocol.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    summary : str
+        What it is, in a sentence.
+    laws : tuple of str
+        Entries that are run without others.
+    cases : int
+        Episodes without another number.
+    seed : int
+        Seed of the draw without another one.
+    most : int
+        Most episodes.
+    files : callable or None
+        Files that it reads, from what the user names; ``None`` without any.
+    available : callable or None
+        How many episodes these hold; ``None``: ``most``, and ``cases`` are the episodes of the protocol.
+    accepted : mapping
+        What is asked of an entry, by its name and the speed of people that its shield assumes.
+    step : float
+        Motion step in s.
+    scene : callable
+        Scenario of an episode, to show it again.
+    run : callable
+        Rows of some episodes.
+    """
+
+    name: str
+    summary: str
+    laws: tuple[str, ...]
+    cases: int
+    seed: int
+    most: int
+    files: Callable[[Path | None], list[Path]] | None = None
+    available: Callable[[Path | None], int] | None = None
+    accepted: Mapping[tuple[str, float | None], str] = field(default_factory=dict)
+    step: float = 0.01
+    scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
+    run: Callable[[Case], Iterator[Row]]
+
+
+def rows_of(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
+    """Yield the rows of many runs, an episode each."""
+    for index, case in enumerate(cases):
+        yield Row(
+            case=case,
+            outcome=str(table.outcome[index]),
+            arrival_time=float(table.arrival_time[index]),
+            end_time=float(table.end_time[index]),
+            contacts=int(table.contacts_moving[index] + table.contacts_standing[index]),
+            at_fault=int(table.contacts_at_fault[index]),
+            apart=0,
+            clearance=float(table.min_clearance[index]),
+        )
