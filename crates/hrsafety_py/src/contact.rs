@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use impact_core::allowed::{
-    Columns, Distribution, Drive, Given, Kind, Law, NAMES, Outline, RegionKind, Row, Setup,
-    SpeedStatus, ThicknessStatus, collide_rows, differential_mass, exceedance, holonomic_mass,
-    speed_rows, thickness_rows,
+    BOTTOMED, Columns, Distribution, Drive, Given, Kind, LOADS, Law, NAMES, Outline, RISING,
+    RegionKind, Row, Setup, SpeedStatus, ThicknessStatus, collide_rows, differential_mass,
+    exceedance, holonomic_mass, speed_rows, thickness_rows,
 };
-use impact_core::collision::{Outcome, Status, Wanted};
+use impact_core::collision::{Status, Wanted};
 use impact_core::columns::Column;
 use impact_core::covering::Table;
 use numeric::error::{Failure, Given as Shown};
+use numeric::parallel::Work;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -28,7 +29,6 @@ pub struct Shared {
     stress: Vec<f64>,
     outline: Option<String>,
     region: String,
-    material_varies: bool,
     tolerance: f64,
 }
 
@@ -69,7 +69,6 @@ impl Shared {
                 covering: law.zip(outline),
                 region,
             },
-            material_varies: self.material_varies,
             tolerance: self.tolerance,
         })
     }
@@ -129,12 +128,15 @@ pub fn contact_rows<'py>(
         injury: gravity,
     };
     let work = |control: &Control<'_>| -> Result<Columns, Failure> {
-        let interrupted = || control.interrupted();
-        let count = |more| control.count(more);
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|more| control.count(more),
+        };
         match kind {
-            "collide" => collide_rows(&setup, &given, wanted, threads, &interrupted, &count),
-            "speed" => speed_rows(&setup, &given, threads, &interrupted, &count),
-            "thickness" => thickness_rows(&setup, &given, threads, &interrupted, &count),
+            "collide" => collide_rows(&setup, &given, wanted, work),
+            "speed" => speed_rows(&setup, &given, work),
+            "thickness" => thickness_rows(&setup, &given, work),
             other => Err(Failure::invalid(
                 "kind",
                 "be a known word",
@@ -148,7 +150,14 @@ pub fn contact_rows<'py>(
         fields.vector(name, values)?;
     }
     fields.vector("status_code", found.status)?;
-    fields.vector("word_code", found.word)?;
+    let has = |bit: u8| found.word.iter().map(move |word| word & bit != 0).collect();
+    fields.vector::<bool>("rising", has(RISING))?;
+    if kind == "collide" {
+        fields.vector::<bool>("bottomed", has(BOTTOMED))?;
+    } else {
+        let governs = found.word.iter().map(|word| word & !RISING).collect();
+        fields.vector::<u8>("governs_code", governs)?;
+    }
     Ok(fields.finish())
 }
 
@@ -175,30 +184,15 @@ pub fn contact_simulate(
         nodes: true,
         injury: gravity,
     };
-    let found = watched(py, Report::none(), |_| -> Result<Outcome, Failure> {
-        let fixed = setup.fixed_material(&row)?;
-        setup.collide(&row, fixed.as_ref(), wanted)
+    let found = watched(py, Report::none(), |control: &Control<'_>| {
+        setup.collide(&row, None, wanted, &|| control.interrupted())
     })?;
     let fields = Fields::new(py);
     fields.value("status", found.status.word())?;
-    for (name, value) in [
-        ("release_time", found.release_time),
-        ("peak_force", found.peak_force),
-        ("peak_force_time", found.peak_force_time),
-        ("peak_total_compression", found.peak_total_compression),
-        ("peak_body_deflection", found.peak_body_deflection),
-        ("peak_covering_compression", found.peak_covering_compression),
-        ("peak_strain", found.peak_strain),
-        ("peak_pressure", found.peak_pressure),
-        ("rebound_speed", found.rebound_speed),
-        ("peak_body_acceleration", found.peak_body_acceleration),
-        ("body_speed_end", found.body_speed_end),
-        ("hic15", found.injury[0]),
-        ("hic36", found.injury[1]),
-        ("end_force", found.end_force),
-    ] {
+    for (name, value) in LOADS.into_iter().zip(found.loads()) {
         fields.value(name, value)?;
     }
+    fields.value("rising", found.rising)?;
     fields.value("bottomed", found.bottomed)?;
     // Every step is there with both of its ends.
     let last = found.nodes.len().saturating_sub(1);
@@ -230,9 +224,8 @@ pub fn contact_speed(
 ) -> PyResult<Bound<'_, PyDict>> {
     let setup = shared.setup()?;
     let row = single(numbers)?;
-    let (found, bare) = watched(py, Report::none(), |_| {
-        let fixed = setup.fixed_material(&row)?;
-        setup.allowed(&row, fixed.as_ref())
+    let (found, bare) = watched(py, Report::none(), |control: &Control<'_>| {
+        setup.allowed(&row, None, &|| control.interrupted())
     })?;
     let fields = Fields::new(py);
     fields.value("speed", found.speed)?;
@@ -241,6 +234,8 @@ pub fn contact_speed(
     fields.value("speeds", found.speeds)?;
     fields.value("bare_speed_force", bare)?;
     fields.value("further", found.further)?;
+    fields.value("covering_compression", found.compression)?;
+    fields.value("rising", found.rising)?;
     Ok(fields.finish())
 }
 
@@ -249,10 +244,7 @@ pub fn contact_speed(
 pub fn contact_thickness(shared: Shared, numbers: Vec<f64>) -> PyResult<(f64, &'static str)> {
     let setup = shared.setup()?;
     let row = single(numbers)?;
-    let fixed = setup.fixed_material(&row).map_err(CoreError::from)?;
-    let found = setup
-        .thickness(&row, fixed.as_ref())
-        .map_err(CoreError::from)?;
+    let found = setup.thickness(&row, None).map_err(CoreError::from)?;
     Ok((found.thickness, found.status.word()))
 }
 
@@ -265,8 +257,7 @@ pub fn contact_column(
 ) -> PyResult<(f64, f64, f64, Option<[f64; 2]>)> {
     let setup = shared.setup()?;
     let row = single(numbers)?;
-    let fixed = setup.fixed_material(&row).map_err(CoreError::from)?;
-    let pad = setup.pad(&row, fixed.as_ref()).map_err(CoreError::from)?;
+    let pad = setup.pad(&row, None).map_err(CoreError::from)?;
     let missing = || {
         CoreError::from(Failure::invalid(
             "covering",
@@ -305,13 +296,12 @@ pub fn contact_exceedance(
     seed: u64,
     threads: Option<usize>,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let mut setup = shared.setup()?;
+    let setup = shared.setup()?;
     let row = single(numbers)?;
     let mut uncertain = Vec::with_capacity(inputs.len());
     for (name, kind, values) in &inputs {
         let place = NAMES.iter().position(|known| known == name);
         let place = place.ok_or_else(|| unknown("inputs", name))?;
-        setup.material_varies |= name.starts_with("material_");
         uncertain.push((place, distribution(name, kind, values)?));
     }
     let found = watched(py, Report::none(), |control: &Control<'_>| {

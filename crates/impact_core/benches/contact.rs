@@ -8,6 +8,7 @@ use impact_core::allowed::{
 };
 use impact_core::collision::Wanted;
 use impact_core::columns::Column;
+use numeric::parallel::Work;
 
 const ROWS: usize = 200_000;
 const SHARED: [(&str, f64); 22] = [
@@ -59,7 +60,6 @@ fn setup(law: Law, region: RegionKind) -> Setup {
             covering: Some((law, Outline::Flat)),
             region,
         },
-        material_varies: false,
         tolerance: 1e-6,
     }
 }
@@ -76,6 +76,11 @@ fn shown(name: &str, count: usize, mut work: impl FnMut()) {
 
 fn main() {
     let (never, nobody) = (|| false, |_: usize| ());
+    let alone = Work {
+        threads: Some(1),
+        interrupted: &never,
+        progress: &nobody,
+    };
     let spread: Vec<f64> = (0..ROWS)
         .map(|index| 0.1 + 0.5 * index as f64 / ROWS as f64)
         .collect();
@@ -97,7 +102,7 @@ fn main() {
         given.columns[place("robot_mass")] = Column::Array(&masses);
         let speeds = setup(law.clone(), RegionKind::Spring);
         shown(&format!("closed form, {name}"), ROWS, || {
-            drop(speed_rows(&speeds, &given, Some(1), &never, &nobody));
+            drop(speed_rows(&speeds, &given, alone));
         });
         given.columns[place("robot_mass")] = Column::Value(8.0);
         given.columns[place("closing_speed")] = Column::Array(&spread);
@@ -112,14 +117,7 @@ fn main() {
                     &format!("collisions, {name}, {region:?}, n {rate}"),
                     some.len(),
                     || {
-                        drop(collide_rows(
-                            &moving,
-                            &given,
-                            Wanted::default(),
-                            Some(1),
-                            &never,
-                            &nobody,
-                        ));
+                        drop(collide_rows(&moving, &given, Wanted::default(), alone));
                     },
                 );
             }

@@ -12,6 +12,7 @@
 mod base;
 mod numeric;
 mod probability;
+mod row;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -22,10 +23,8 @@ pub use numeric::{SCANNED, numeric_speed};
 pub use probability::{
     Distribution, Interval, Probability, clopper_pearson, exceedance, normal_probability,
 };
-pub use rows::{
-    Columns, Given, Kind, Law, NAMES, Outline, RegionKind, Row, Setup, collide_rows, speed_rows,
-    thickness_rows,
-};
+pub use row::{Kind, Law, NAMES, Outline, RegionKind, Row, Setup};
+pub use rows::{BOTTOMED, Columns, Given, LOADS, RISING, collide_rows, speed_rows, thickness_rows};
 pub use thickness::{Thickness, ThicknessStatus, least_thickness};
 
 use crate::collision::{Region, reduced_mass};
@@ -134,6 +133,10 @@ pub struct Allowed {
     pub status: SpeedStatus,
     /// Further crossings, in m/s.
     pub further: Vec<f64>,
+    /// Compression of the covering at the speed, in m; NaN if bare, or where nothing limits the speed.
+    pub compression: f64,
+    /// Whether loads of a simulation still rose at its horizon: beyond it they may exceed their limits.
+    pub rising: bool,
 }
 
 /// A contact at rest: what stores energy, and what is limited.
@@ -262,7 +265,15 @@ impl Contact<'_> {
         } else {
             SpeedStatus::ClosedForm
         };
-        governed(speeds, status)
+        let mut found = governed(speeds, status);
+        let place = Governs::ALL.iter().position(|each| *each == found.governs);
+        if self.pad.is_some()
+            && mass.is_finite()
+            && let Some((_, compression)) = place.and_then(|place| *limits.get(place)?)
+        {
+            found.compression = compression;
+        }
+        found
     }
 }
 
@@ -284,5 +295,7 @@ pub fn governed(speeds: [f64; 3], status: SpeedStatus) -> Allowed {
             status
         },
         further: Vec::new(),
+        compression: f64::NAN,
+        rising: false,
     }
 }

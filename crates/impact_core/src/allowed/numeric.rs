@@ -2,8 +2,10 @@
 
 use std::cell::Cell;
 
+use numeric::threads::Interrupted;
+
 use super::{Allowed, Governs, Limits, SpeedStatus};
-use crate::collision::{Body, Collision, Region, Status, Wanted, rest_of, simulate};
+use crate::collision::{Body, Collision, Outcome, Region, Status, Wanted, rest_of, simulate};
 use crate::covering::Shape;
 
 /// Speeds that are looked at where loads might fall with the speed, in m/s.
@@ -16,12 +18,11 @@ const WELL_INSIDE: f64 = 0.99;
 const LOWEST: f64 = 1e-12;
 
 /// Loads over their limits.
-fn shares(collision: &Collision<'_>, limits: &Limits, area: Option<f64>, speed: f64) -> [f64; 3] {
-    let moving = Collision {
-        closing_speed: speed,
-        ..collision.clone()
-    };
-    let outcome = simulate(&moving, Wanted::default());
+fn shares(
+    collision: &Collision<'_>,
+    (limits, area): (&Limits, Option<f64>),
+    outcome: &Outcome,
+) -> [f64; 3] {
     match outcome.status {
         // More than the covering's law describes.
         Status::BeyondData => return [f64::NAN, f64::NAN, f64::INFINITY],
@@ -49,8 +50,7 @@ fn shares(collision: &Collision<'_>, limits: &Limits, area: Option<f64>, speed: 
 /// region can store more, whatever damper and rate take.
 fn bounds(
     collision: &Collision<'_>,
-    limits: &Limits,
-    area: Option<f64>,
+    (limits, area): (&Limits, Option<f64>),
     speed: f64,
 ) -> Option<[f64; 3]> {
     let pad = collision.pad?;
@@ -99,19 +99,31 @@ fn is_monotone(collision: &Collision<'_>) -> bool {
 #[must_use]
 pub fn numeric_speed(
     collision: &Collision<'_>,
-    limits: &Limits,
-    area: Option<f64>,
+    limited: (&Limits, Option<f64>),
     guess: f64,
+    interrupted: Interrupted<'_>,
 ) -> Allowed {
-    let unfinished = Cell::new(false);
+    let (limits, area) = limited;
+    let (unfinished, rising) = (Cell::new(false), Cell::new(false));
+    let collide = |speed: f64| {
+        let moving = Collision {
+            closing_speed: speed,
+            ..collision.clone()
+        };
+        simulate(&moving, Wanted::default(), interrupted)
+    };
     let of = |speed: f64| {
-        if let Some(bounds) = bounds(collision, limits, area, speed)
+        if let Some(bounds) = bounds(collision, limited, speed)
             && worst(bounds) < WELL_INSIDE
         {
             return bounds;
         }
-        let found = shares(collision, limits, area, speed);
+        let outcome = collide(speed);
+        let found = shares(collision, limited, &outcome);
         unfinished.set(unfinished.get() || worst(found).is_nan());
+        // Loads above their limits at the horizon are above them whatever comes later.
+        let doubted = outcome.rising && worst(found) <= 1.0 + super::TIE;
+        rising.set(rising.get() || doubted);
         found
     };
     let mut found = Allowed {
@@ -120,6 +132,8 @@ pub fn numeric_speed(
         speeds: [f64::NAN; 3],
         status: SpeedStatus::Monotone,
         further: Vec::new(),
+        compression: f64::NAN,
+        rising: false,
     };
     let strained = collision
         .pad
@@ -137,6 +151,7 @@ pub fn numeric_speed(
     } else {
         scanned(&of)
     };
+    found.rising = rising.get();
     if unfinished.get() {
         found.status = SpeedStatus::Unfinished;
         return found;
@@ -155,6 +170,7 @@ pub fn numeric_speed(
     if let Some(index) = place {
         found.speeds[index] = *first;
     }
+    found.compression = collide(*first).peak_covering_compression;
     found.further = rest.to_vec();
     if !rest.is_empty() {
         found.status = SpeedStatus::SeveralCrossings;

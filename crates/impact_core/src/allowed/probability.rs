@@ -3,7 +3,8 @@
 use numeric::random::Stream;
 use numeric::threads::{Interrupted, map, on_threads};
 
-use super::rows::{Row, Setup};
+use super::Governs;
+use super::row::{Row, Setup, is_of_law};
 use crate::error::{Failure, Given, Result, at_most, finite, positive};
 
 /// Draws of one stream.
@@ -133,11 +134,18 @@ pub struct Probability {
     pub draws: usize,
 }
 
+/// Without a limit every speed would count as allowed.
+fn nothing_checked() -> Failure {
+    let given = Given::Found("none that is checked".into());
+    Failure::invalid("limits", "name a limit to keep", given)
+        .mended_by("a pressure is checked with the area of the contact")
+}
+
 /// Chance that a speed is not allowed. A block of draws has a stream of its own, so that no number of
 /// threads changes a bit.
 ///
 /// # Errors
-/// A draw is out of range, there are too many, or the caller asked to stop.
+/// A draw is out of range, no limit is checked, there are too many draws, or the caller asked to stop.
 pub fn exceedance(
     setup: &Setup,
     row: &Row,
@@ -154,15 +162,21 @@ pub fn exceedance(
         let mut stream = Stream::new(seed, index as u64);
         let mut spare = None;
         let mut row = *row;
-        let fixed = setup.fixed_material(&row)?;
+        let fixed = if inputs.iter().any(|(place, _)| is_of_law(*place)) {
+            None
+        } else {
+            setup.material(&row)?
+        };
         (0..BLOCK.min(draws - index * BLOCK))
             .map(|_| {
                 for (place, distribution) in inputs {
                     row.0[*place] = distribution.draw(&mut stream, &mut spare);
                 }
-                setup
-                    .closed_form(&row, fixed.as_ref())
-                    .map(|found| found.speed)
+                let found = setup.closed_form(&row, fixed.as_ref())?;
+                if found.governs == Governs::Nothing {
+                    return Err(nothing_checked());
+                }
+                Ok(found.speed)
             })
             .collect()
     };

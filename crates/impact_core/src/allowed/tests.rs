@@ -64,7 +64,7 @@ fn golden_speeds_by_simulation() {
     for case in cases()["allowed_speed_numeric"].as_array().unwrap() {
         let pad = pad(&case["input"]["covering"]).unwrap();
         let collision = collision(&case["input"], Some(&pad), 1e-10);
-        let found = numeric_speed(&collision, &limits(&case["input"]), None, 1.0);
+        let found = numeric_speed(&collision, (&limits(&case["input"]), None), 1.0, &|| false);
         close(found.speed, &case["speed"], 1e-7, case);
         assert_eq!(found.status.word(), "monotone");
     }
@@ -119,7 +119,7 @@ fn a_speed_that_is_allowed_reaches_its_limit() {
         let found = contact(&case["input"], Some(&pad)).closed_form();
         let mut collision = collision(&case["input"], Some(&pad), 1e-10);
         (collision.closing_speed, collision.horizon) = (found.speed, 10.0);
-        let outcome = simulate(&collision, Wanted::default());
+        let outcome = simulate(&collision, Wanted::default(), &|| false);
         let limits = limits(&case["input"]);
         let loads = [
             ("force", outcome.peak_force, limits.force),

@@ -11,7 +11,7 @@ pub enum Status {
     NoImpact,
     /// The measured points of the law do not reach as far as the covering was compressed.
     BeyondData,
-    /// Too many steps.
+    /// Too many steps, or too short ones.
     Unfinished,
 }
 
@@ -96,6 +96,8 @@ pub struct Outcome {
     pub end_force: f64,
     /// Whether the backing was reached.
     pub bottomed: bool,
+    /// Whether a load was largest at the horizon: its peak may come after it.
+    pub rising: bool,
     /// The motion, if it was asked for.
     pub nodes: Vec<Node>,
     /// Evaluations of the forces.
@@ -122,8 +124,30 @@ impl Outcome {
             injury: [f64::NAN; 2],
             end_force: f64::NAN,
             bottomed: false,
+            rising: false,
             nodes: Vec::new(),
             evaluations: 0,
         }
+    }
+
+    /// Loads in the order of `allowed::LOADS`.
+    #[must_use]
+    pub fn loads(&self) -> [f64; 14] {
+        [
+            self.release_time,
+            self.peak_force,
+            self.peak_force_time,
+            self.peak_total_compression,
+            self.peak_body_deflection,
+            self.peak_covering_compression,
+            self.peak_strain,
+            self.peak_pressure,
+            self.rebound_speed,
+            self.peak_body_acceleration,
+            self.body_speed_end,
+            self.injury[0],
+            self.injury[1],
+            self.end_force,
+        ]
     }
 }

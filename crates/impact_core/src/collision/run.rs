@@ -1,16 +1,23 @@
 //! The motion from the first touch to the release.
 
-use super::events::{Event, Marks, Sizes, Start, first_event, located};
+mod loads;
+
+use numeric::threads::Interrupted;
+
+use super::events::{Event, Marks, Sizes, Start, first_event};
 use super::injury::injury_of;
 use super::mechanics::{BODY_SPEED, Carried, Local, Mechanics, PART, Past, SPEED, State, TOTAL};
 use super::outcome::{Node, Outcome, Status};
 use super::statics::rest_of;
 use super::step::{Step, step};
 use super::{Collision, Region};
-use crate::covering::{Pad, Shape};
+use crate::covering::Pad;
+use loads::{Best, PEAKS};
 
 /// Most steps of a collision.
 const MOST_STEPS: usize = 200_000;
+/// Steps between two questions whether to stop: some tens of microseconds.
+const STEPS_OF_A_LOOK: usize = 64;
 /// Compression, over the largest, at which a motion starts that would rest at none.
 const FIRST: f64 = 1e-7;
 /// Compression, over the largest, that no tolerance sees.
@@ -27,18 +34,22 @@ pub struct Wanted {
     pub injury: Option<f64>,
 }
 
-/// Loads of a collision that has been checked.
+/// Loads of a collision that has been checked; one that was interrupted is unfinished.
 #[must_use]
-pub fn simulate(collision: &Collision<'_>, wanted: Wanted) -> Outcome {
+pub fn simulate(
+    collision: &Collision<'_>,
+    wanted: Wanted,
+    interrupted: Interrupted<'_>,
+) -> Outcome {
     if collision.closing_speed <= 0.0 {
         return Outcome::nothing(Status::NoImpact);
     }
     let held =
         collision.robot.is_held() || (collision.body.is_held() && collision.body.mass.is_finite());
     if held {
-        Run::<5>::new(collision, wanted).finish(wanted)
+        Run::<5>::new(collision, wanted).finish(wanted, interrupted)
     } else {
-        Run::<3>::new(collision, wanted).finish(wanted)
+        Run::<3>::new(collision, wanted).finish(wanted, interrupted)
     }
 }
 
@@ -68,29 +79,6 @@ fn relaxed(collision: &Collision<'_>, largest: f64, most: f64) -> Option<[f64; 2
         [most, 0.0]
     })
 }
-
-/// A value with its time.
-#[derive(Clone, Copy)]
-struct Best {
-    value: f64,
-    time: f64,
-}
-
-impl Best {
-    const NONE: Self = Self {
-        value: f64::NEG_INFINITY,
-        time: 0.0,
-    };
-
-    fn offer(&mut self, value: f64, time: f64) {
-        if value > self.value {
-            *self = Self { value, time };
-        }
-    }
-}
-
-/// Peaks: force, `eps`, `delta`, `d`, apex pressure, acceleration of the body.
-const PEAKS: usize = 6;
 
 struct Run<'a, const N: usize> {
     mechanics: Mechanics<'a, N>,
@@ -173,8 +161,8 @@ impl<'a, const N: usize> Run<'a, N> {
         }
     }
 
-    fn finish(mut self, wanted: Wanted) -> Outcome {
-        let status = self.travel();
+    fn finish(mut self, wanted: Wanted, interrupted: Interrupted<'_>) -> Outcome {
+        let status = self.travel(interrupted);
         let mut outcome = self.outcome(status);
         if let Some(nodes) = self.nodes {
             if let Some(gravity) = wanted.injury
@@ -203,14 +191,17 @@ impl<'a, const N: usize> Run<'a, N> {
         breaks
     }
 
-    fn travel(&mut self) -> Status {
+    fn travel(&mut self, interrupted: Interrupted<'_>) -> Status {
         let breaks = self.breaks();
         let mut next = breaks.iter().copied();
         let Some((mut until, mut changes)) = next.next() else {
             return Status::Horizon;
         };
         let mut length = 0.05 * self.sizes.length / self.sizes.speed;
-        for _ in 0..MOST_STEPS {
+        for index in 0..MOST_STEPS {
+            if index % STEPS_OF_A_LOOK == 0 && interrupted() {
+                return Status::Unfinished;
+            }
             while self.time >= until {
                 if !changes {
                     return Status::Horizon;
@@ -400,115 +391,5 @@ impl<'a, const N: usize> Run<'a, N> {
     fn refresh(&mut self) {
         self.local = self.mechanics.local(self.time, &self.state, &self.past);
         self.rates = self.mechanics.rates(&self.state, &self.local);
-    }
-
-    /// Values that may peak, with their rates.
-    fn rising(&self, state: &State<N>, local: &Local) -> [[f64; 2]; PEAKS] {
-        [
-            [local.force, local.force_rate],
-            [state[TOTAL], state[SPEED]],
-            [local.deflection, local.deflection_rate],
-            [local.compression, local.compression_rate],
-            self.mechanics.apex(state, local, &self.past),
-            [
-                local.body_acceleration,
-                self.mechanics.body_jerk(state, local),
-            ],
-        ]
-    }
-
-    fn peaks_within(&mut self, taken: &Step<N>, used: f64, end: f64) {
-        let before = self.rising(&self.state, &self.local);
-        let after = self.rising(&taken.state, &taken.local);
-        for index in 0..PEAKS {
-            let [value, rate] = after[index];
-            self.peaks[index].offer(before[index][0], self.time);
-            self.peaks[index].offer(value, end);
-            let [first, first_rate] = before[index];
-            // `eps` peaks at an event.
-            let alike = index == 1 || (self.mechanics.is_in_step() && (N < 5 || index != 5));
-            if alike || !(first_rate > 0.0 && rate < 0.0) {
-                continue;
-            }
-            let size = 1e-6 * self.sizes.sharpness.max(1e-13) * (first.abs() + value.abs()) / used;
-            let start = Start {
-                time: self.time,
-                state: &self.state,
-                rates: &self.rates,
-                local: &self.local,
-            };
-            let (found, at) = located(
-                &self.mechanics,
-                &self.past,
-                &start,
-                (*taken, used),
-                [first_rate, (rate - first_rate) / used],
-                size.max(1e-9 * first_rate.abs().max(rate.abs()) * self.sizes.sharpness.sqrt()),
-                |tried| {
-                    let rate = self.rising(&tried.state, &tried.local)[index][1];
-                    // No second derivative is at hand: an infinite one asks for the straight line.
-                    [rate, f64::INFINITY]
-                },
-            );
-            let value = self.rising(&found.state, &found.local)[index][0];
-            self.peaks[index].offer(value, self.time + at);
-        }
-    }
-
-    fn outcome(&self, status: Status) -> Outcome {
-        let collision = self.mechanics.collision;
-        if matches!(status, Status::BeyondData | Status::Unfinished) {
-            return Outcome {
-                evaluations: self.evaluations,
-                ..Outcome::nothing(status)
-            };
-        }
-        let [force, total, deflection, compression, apex, acceleration] =
-            self.peaks.map(|best| best.value);
-        let free = |value: f64| {
-            if collision.body.mass.is_finite() {
-                value
-            } else {
-                f64::NAN
-            }
-        };
-        let mut outcome = Outcome {
-            status,
-            release_time: self.time,
-            peak_force: force,
-            peak_force_time: self.peaks[0].time,
-            peak_total_compression: total,
-            peak_body_deflection: if collision.region == Region::Rigid {
-                0.0
-            } else {
-                deflection
-            },
-            rebound_speed: if status == Status::Released {
-                -self.state[SPEED]
-            } else {
-                f64::NAN
-            },
-            peak_body_acceleration: free(acceleration),
-            body_speed_end: free(self.mechanics.body_speed(&self.state)),
-            end_force: self.local.force,
-            evaluations: self.evaluations,
-            ..Outcome::nothing(status)
-        };
-        if let Some(pad) = collision.pad {
-            outcome.peak_covering_compression = compression;
-            outcome.peak_strain = compression / pad.covering.thickness;
-            outcome.bottomed = compression > pad.bottom();
-            outcome.peak_pressure = match pad.covering.shape {
-                Shape::Flat { area } => force / area,
-                Shape::Curved { .. } | Shape::Cylinder { .. } => apex,
-            };
-            let level = matches!(pad.covering.shape, Shape::Flat { .. })
-                && self.mechanics.is_in_step()
-                && pad.force(compression)[1] == 0.0;
-            if level {
-                outcome.peak_force_time = f64::NAN;
-            }
-        }
-        outcome
     }
 }

@@ -1,7 +1,7 @@
 use serde_json::Value;
 
 use super::reading::{collision, pad};
-use super::{Outcome, Status, Wanted, simulate};
+use super::{Body, Collision, Outcome, Region, Status, Wanted, simulate};
 
 fn cases() -> Value {
     serde_json::from_str(include_str!("../../../../tests/golden/contact_cases.json")).unwrap()
@@ -54,7 +54,7 @@ fn golden_impacts_to_their_tolerance() {
             injury: Some(GRAVITY),
             ..Wanted::default()
         };
-        let outcome = simulate(&collision, wanted);
+        let outcome = simulate(&collision, wanted, &|| false);
         let expected = case["output"].as_object().unwrap();
         let mut compared = 0;
         for (name, value) in expected {
@@ -98,7 +98,44 @@ fn no_closing_speed_is_no_impact() {
     let mut collision = collision(input, None, 1e-8);
     collision.closing_speed = 0.0;
     assert_eq!(
-        simulate(&collision, Wanted::default()).status,
+        simulate(&collision, Wanted::default(), &|| false).status,
         Status::NoImpact
     );
+}
+
+/// A heavy robot on a soft region: a quarter of the period takes half a second.
+fn slow(horizon: f64) -> Collision<'static> {
+    Collision {
+        robot: Body::free(100.0),
+        body: Body::free(f64::INFINITY),
+        region: Region::Spring {
+            stiffness: 1e3,
+            cubic: 0.0,
+        },
+        pad: None,
+        closing_speed: 0.5,
+        stop: None,
+        horizon,
+        tolerance: 1e-8,
+    }
+}
+
+#[test]
+fn loads_that_rise_at_the_horizon_say_so() {
+    let whole = 0.5 * (100.0_f64 * 1e3).sqrt();
+    let short = simulate(&slow(0.2), Wanted::default(), &|| false);
+    assert_eq!(short.status, Status::Horizon);
+    assert!(short.rising && short.peak_force < 0.6 * whole);
+    let past_the_peak = simulate(&slow(0.6), Wanted::default(), &|| false);
+    assert_eq!(past_the_peak.status, Status::Horizon);
+    assert!(!past_the_peak.rising && (past_the_peak.peak_force / whole - 1.0).abs() < 1e-6);
+    let long = simulate(&slow(2.0), Wanted::default(), &|| false);
+    assert!(!long.rising && long.status == Status::Released);
+}
+
+#[test]
+fn an_interrupted_collision_is_unfinished() {
+    let found = simulate(&slow(2.0), Wanted::default(), &|| true);
+    assert_eq!(found.status, Status::Unfinished);
+    assert!(found.peak_force.is_nan() && found.evaluations <= 1);
 }
