@@ -9,6 +9,7 @@ from __future__ import annotations
 __all__ = [
     "MOST_BODIES",
     "MOST_CELLS",
+    "MOST_CONTACTS",
     "MOST_COUNT",
     "MOST_DRAWN",
     "MOST_DRAWS",
@@ -103,3 +104,5 @@ MOST_TASKS = 10**5
 MOST_MASSES = 10**8
 # Positions, mobilities and extremes of one call: 250 bytes each.
 MOST_POINT_STATES = 10**7
+# Collisions, allowed speeds or thicknesses of one call: a quarter of a kilobyte each while they are made.
+MOST_CONTACTS = 10**7

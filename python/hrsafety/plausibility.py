@@ -171,6 +171,15 @@ RANGES: dict[str, Range] = {
     "drop_step": Range(1e-7, 0.02, "s", "a bounce takes some 20 ms", "milliseconds given for seconds"),
     "static_force": Range(-1e5, 1e5, "N", "presses for foam", "mN given for N"),
     "gravity": Range(1.6, 25.0, "m/s^2", "Moon to Jupiter", "g or mm/s^2 given for m/s^2"),
+    # ---- contact ----------------------------------------------------------------------------
+    "effective_mass": Range(0.05, 10000.0, "kg", "one finger to a heavy industrial truck", "g or t given for kg"),
+    "body_mass": Range(0.05, 300.0, "kg", "a finger to a heavy person; ISO/TS 15066 has 0.6 to 75", "g given for kg"),
+    "region_stiffness": Range(500.0, 1e7, "N/m", "ISO/TS 15066 has 10,000 to 150,000", "N/mm or kN/m given for N/m"),
+    "contact_area": Range(1e-6, 1.0, "m^2", "1 mm^2 to a whole side of a robot", "mm^2 or cm^2 given for m^2"),
+    "contact_radius": Range(1e-4, 100.0, "m", "an edge to nearly flat", "mm or cm given for m"),
+    "covering_stress": Range(300.0, 1e10, "Pa", "the softest foams to hard plastics", "kPa or MPa given for Pa"),
+    "force_limit": Range(5.0, 5000.0, "N", "ISO/TS 15066 has 65 to 440", "kN given for N"),
+    "pressure_limit": Range(1e4, 1e8, "Pa", "ISO/TS 15066 has 1.1 to 6 MPa", "N/cm^2 or N/mm^2 given for Pa"),
     "damping_ratio": Range(
         0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"
     ),

@@ -36,6 +36,8 @@ Columns = dict[str, Column]
 SHOWN_ROWS = 5
 """Rows that a table shows when it is printed."""
 _SHOWN_COLUMNS = 8
+SHOWN_WARNINGS = 4
+"""Warnings that a table shows when it is printed."""
 
 
 class Table:
@@ -64,19 +66,26 @@ class Table:
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        """Return the first rows, and how much more there is."""
+        """Return the first rows, how much more there is, and the warnings."""
         header, cells, title = self._shown()
         lines = [header, *cells]
         widths = [max(len(line[index]) for line in lines) for index in range(len(header))]
         rows = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)) for line in lines]
-        return "\n".join([title, *rows])
+        return "\n".join([title, *rows, *self._doubts()])
 
     def _repr_html_(self) -> str:
         """Return the first rows as a notebook shows them."""
         header, cells, title = self._shown()
         head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
         body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in cells)
-        return f"<p>{html.escape(title)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        doubts = "".join(f"<p>{html.escape(line)}</p>" for line in self._doubts())
+        return f"<p>{html.escape(title)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{doubts}"
+
+    def _doubts(self) -> list[str]:
+        """Return the lines of the warnings that the result carries; of many the others are counted."""
+        found = [str(each) for each in getattr(self, "warnings", ())]
+        more = len(found) - SHOWN_WARNINGS
+        return found if more <= 0 else [*found[:SHOWN_WARNINGS], f"and {more} more: see .warnings"]
 
     def _head(self) -> tuple[Columns, int]:
         """Return the columns of the first rows, and the number of all rows."""
