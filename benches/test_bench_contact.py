@@ -89,7 +89,7 @@ def plain(speed: float, covering: contact.Covering) -> float:
 
     def force(total: float, closing: float) -> float:
         e = max(total, 0.0) / covering.thickness
-        f = covering.area * (law.a * e**law.p + law.b * e**law.q)  # type: ignore[operator]
+        f = covering.area * (law.a * e**law.p + law.b * e**law.q)  # type: ignore[operator]  # numbers of the law
         return f * (1.0 + closing / unit) ** (base + slope * e) if closing > 0.0 else f
 
     def motion(_: float, y: Any) -> list[float]:
@@ -98,7 +98,7 @@ def plain(speed: float, covering: contact.Covering) -> float:
     def parted(t: float, y: Any) -> float:
         return float(y[0]) if t > 1e-4 else 1.0
 
-    parted.terminal = True  # type: ignore[attr-defined]
+    parted.terminal = True  # type: ignore[attr-defined]  # as solve_ivp asks for
     found = solve_ivp(motion, (0.0, 0.2), [0.0, speed], rtol=1e-6, atol=1e-9, events=parted, dense_output=True)
     times = np.linspace(0.0, found.t[-1], 400)
     return max(force(*y) for y in found.sol(times).T)

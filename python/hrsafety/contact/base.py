@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, not_negative, number, pair, positive
+from hrsafety._arguments import Array, Pair, not_negative, pair, positive
 from hrsafety.contact.covering import Covering
-from hrsafety.contact.speed import AllowedSpeed, allowed_speed
+from hrsafety.contact.doubts import Doubts
+from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
-from hrsafety.tables import Columns, Table
+from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = [
     "ContactMargins",
@@ -231,22 +232,24 @@ def _region_speed(
 ) -> RegionSpeed:
     if not limit.permitted:
         return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
-    for name in ("spring_constant", "body_mass"):
-        if getattr(limit, name) is None:
-            raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
-    found = allowed_speed(
-        robot_mass=mass,
-        body_mass=limit.body_mass,
-        region=limit.spring_constant,
-        limits={"force": limit.force, "pressure": limit.pressure},
-        covering=covering,
-        area=area,
-    )
+    found = allowed_speed(robot_mass=mass, covering=covering, area=area, **_bounds(limit))
     speed = math.nan if found.speed is None else found.speed
     return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+def _bounds(limit: Any) -> dict[str, Any]:
+    """Return what a region may bear, and how it yields."""
+    for name in ("spring_constant", "body_mass"):
+        if getattr(limit, name) is None:
+            raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
+    return {
+        "body_mass": limit.body_mass,
+        "region": limit.spring_constant,
+        "limits": {"force": limit.force, "pressure": limit.pressure},
+    }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ContactMargins(Table):
     """What a contact at each instant of a run would mean: n instants, m obstacles.
 
@@ -260,11 +263,15 @@ class ContactMargins(Table):
     margin : ndarray, shape (n, m)
         Allowed less closing speed in m/s; NaN where nothing limits it.
     verdict : ndarray of str, shape (n, m)
-        ``"within_limits"``, ``"exceeds"``, ``"not_permitted"``, ``"not_checked"``, ``"absent"``.
+        ``"within_limits"``, also where both move apart; ``"exceeds"``; ``"not_permitted"``; ``"not_checked"``
+        where a limit of some region was not checked, or its speed or the velocity of the person is not known,
+        and no other limit is exceeded; ``"absent"``.
     touching : ndarray of bool, shape (n, m)
         Whether there is contact.
     region, contact : str
         The region and class with the lowest speed, to which the margins belong.
+    warnings : tuple of ResultWarning
+        Of the allowed speeds, by region.
     """
 
     time: Array
@@ -275,6 +282,7 @@ class ContactMargins(Table):
     touching: npt.NDArray[np.bool_]
     region: str
     contact: str
+    warnings: Doubts
 
     def columns(self) -> Columns:
         """Return one row for each instant and obstacle.
@@ -285,9 +293,10 @@ class ContactMargins(Table):
             Columns by name.
         """
         rows, obstacles = self.closing_speed.shape
-        names = ("closing_speed", "robot_share", "margin", "verdict", "touching")
-        index = {"time": np.repeat(self.time, obstacles), "obstacle": np.tile(np.arange(obstacles), rows)}
-        return index | {name: getattr(self, name).ravel() for name in names}
+        speeds = ("closing_speed", "robot_share", "margin")
+        found: Columns = {"t_s": np.repeat(self.time, obstacles), "obstacle": np.tile(np.arange(obstacles), rows)}
+        found |= {f"{name}{unit_suffix('m/s')}": getattr(self, name).ravel() for name in speeds}
+        return found | {"verdict": self.verdict.ravel(), "touching": self.touching.ravel()}
 
 
 def contact_margins(
@@ -307,7 +316,8 @@ def contact_margins(
     trajectory : navigation.Trajectory
         The run: its ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``.
     base, covering, regions, area
-        As for `contact_speed_limit`. The lowest speed of all regions and classes counts.
+        As for `contact_speed_limit`. The lowest speed of all regions and classes counts, for no region is told
+        by the height of the robot: leave out those that it cannot reach.
     robot_radius, person_radius : float
         Radii in m, for the point of contact and for ``touching``.
 
@@ -345,50 +355,78 @@ def contact_margins(
     distance = np.linalg.norm(away, axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         normal = away / distance[:, :, None]
-    walking = np.gradient(trajectory.obstacle_position, trajectory.time, axis=0)
     share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
-    closing = share - np.einsum("nmk,nmk->nm", walking, normal)
-    limit, which = _limits(trajectory, base, covering, regions, normal, reach, area)
-    permitted = all(each.permitted for each in regions)
+    closing = share - np.einsum("nmk,nmk->nm", _velocities(trajectory.time, trajectory.obstacle_position), normal)
+    limits = [_limit_at(trajectory, base, covering, each, normal, reach, area) for each in regions]
+    limit = np.min([each.speed for each in limits], axis=0)
+    known = np.all([each.known for each in limits], axis=0)
+    lowest = min(limits, key=lambda each: float(np.min(each.speed, initial=np.inf))).limit
     margin = limit - closing
-    verdict = np.where(margin >= 0.0, "within_limits", "exceeds")
-    verdict = np.where(np.isnan(limit), "not_checked", verdict)
-    verdict = np.where(closing <= 0.0, "within_limits", verdict if permitted else "not_permitted")
-    verdict = np.where(np.isnan(closing), "absent", verdict)
+    verdict = np.where(margin >= 0.0, np.where(known, "within_limits", "not_checked"), "exceeds")
+    if not all(each.permitted for each in regions):
+        verdict = np.full(closing.shape, "not_permitted")
+    verdict = np.where(closing <= 0.0, "within_limits", verdict)
+    verdict = np.where(np.isnan(closing), "not_checked", verdict)
+    verdict = np.where(np.isnan(distance), "absent", verdict)
     return ContactMargins(
         time=np.asarray(trajectory.time),
         closing_speed=closing,
         robot_share=share,
-        margin=margin,
+        margin=np.where(np.isinf(margin), np.nan, margin),
         verdict=verdict,
         touching=distance <= near,
-        region=which.region,
-        contact=which.contact,
+        region=lowest.region,
+        contact=lowest.contact,
+        warnings=tuple(dict.fromkeys(doubt for each in limits for doubt in each.warnings)),
     )
 
 
-def _limits(
-    trajectory: Any, base: Base, covering: Any, regions: Sequence[Any], normal: Array, reach: float, area: float | None
-) -> tuple[Array, Any]:
-    """Return the lowest allowed speed at each instant and obstacle, and the region that it belongs to."""
+def _velocities(time: Array, position: Array) -> Array:
+    """Return velocities of obstacles; beside an absence of one from the side where it is there."""
+    if len(time) < 2:
+        return np.full_like(position, np.nan)
+    found = np.gradient(position, time, axis=0)
+    steps = np.diff(position, axis=0) / np.diff(time)[:, None, None]
+    unknown = np.full_like(position[:1], np.nan)
+    for side in (np.concatenate([steps, unknown]), np.concatenate([unknown, steps])):
+        found = np.where(np.isnan(found), side, found)
+    return found
+
+
+class _Limits(NamedTuple):
+    """Allowed speed of a region at each instant and obstacle, inf where nothing limits it."""
+
+    limit: Any
+    speed: Array
+    known: npt.NDArray[np.bool_]
+    warnings: Doubts
+
+
+def _limit_at(
+    trajectory: Any, base: Base, covering: Any, limit: Any, normal: Array, reach: float, area: float | None
+) -> _Limits:
+    shape = normal.shape[:2]
+    if not limit.permitted:
+        return _Limits(limit, np.zeros(shape), np.ones(shape, dtype=bool), ())
     if isinstance(base, HolonomicBase):
         # The line to the person leads through the center: no direction differs from another.
-        found = contact_speed_limit(base, covering, (reach, 0.0), (1.0, 0.0), regions, area=area)
-        return np.broadcast_to(_lowest(found).speed, normal.shape[:2]), _lowest(found)
-    turned = np.asarray(trajectory.heading)[:, None]
-    angle = np.arctan2(normal[:, :, 1], normal[:, :, 0]) - turned
-    limit = np.full(normal.shape[:2], np.nan)
-    which: Any = None
-    for place in np.argwhere(np.isfinite(angle)):
-        direction = (math.cos(angle[tuple(place)]), math.sin(angle[tuple(place)]))
-        point = (reach * direction[0], reach * direction[1])
-        lowest = _lowest(contact_speed_limit(base, covering, point, direction, regions, area=area))
-        limit[tuple(place)] = lowest.speed
-        if which is None or lowest.speed < which.speed:
-            which = lowest
-    return limit, regions[0] if which is None else which
+        masses = np.array(base.effective_mass((reach, 0.0), (1.0, 0.0)))
+    else:
+        turned = np.arctan2(normal[:, :, 1], normal[:, :, 0]) - np.asarray(trajectory.heading)[:, None]
+        masses = np.full(shape, base.mass)
+        for place in map(tuple, np.argwhere(np.isfinite(turned)).tolist()):
+            along = (math.cos(turned[place]), math.sin(turned[place]))
+            masses[place] = base.effective_mass((reach * along[0], reach * along[1]), along)
+    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, **_bounds(limit))
+    unlimited = found.status == "unlimited_up_to_20"
+    known = np.isfinite(found.speed) | unlimited
+    known &= ~found.rising & (not found.not_checked)
+    speed = np.where(np.isnan(found.speed), np.inf, found.speed)
+    return _Limits(limit, np.broadcast_to(speed, shape), np.broadcast_to(known, shape), tuple(_named(limit, found)))
 
 
-def _lowest(found: Sequence[RegionSpeed]) -> RegionSpeed:
-    """Return the lowest speed; one that nothing limits counts last."""
-    return min(found, key=lambda each: number("speed", math.inf if math.isnan(each.speed) else each.speed))
+def _named(limit: Any, found: AllowedSpeeds) -> Iterator[Any]:
+    """Yield the warnings of a speed with the region that they belong to."""
+    name = f"{limit.region}, {limit.contact}"
+    for each in found.warnings:
+        yield replace(each, subject=f"regions[{name}].{each.subject}", message=f"{name}: {each.message}")

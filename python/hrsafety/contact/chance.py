@@ -8,7 +8,9 @@ from typing import NamedTuple
 from hrsafety import _hrsafety
 from hrsafety._arguments import checked_seed, count, number, positive, thread_count, word
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.rows import NAMES, contact_row, in_order, limits_of
+from hrsafety.contact.doubts import Doubts, implausible_numbers, not_checked
+from hrsafety.contact.rows import TOLERANCE, applying, contact_row, in_order, limits_of, row_name, spring_of
+from hrsafety.contact.speed import missing_limits
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["Exceedance", "probability"]
@@ -30,6 +32,10 @@ class Exceedance(NamedTuple):
         Allowed speeds that 5, 50 and 95 % of the draws stay below, in m/s.
     exceeded, draws : int
         Counts.
+    not_checked : tuple of str
+        Limits that were not checked; they never count as kept.
+    warnings : tuple of ResultWarning
+        That they were not, and implausible numbers.
     """
 
     probability: float
@@ -37,6 +43,8 @@ class Exceedance(NamedTuple):
     quantiles: tuple[float, float, float]
     exceeded: int
     draws: int
+    not_checked: tuple[str, ...]
+    warnings: Doubts
 
 
 def _distribution(name: str, given: Mapping[str, object]) -> tuple[str, list[float]]:
@@ -96,7 +104,8 @@ def probability(
     Raises
     ------
     InvalidParameterError
-        If a number or a distribution is out of range, or the covering has a damper or a rate.
+        If a number or a distribution is out of range, a number has no effect, no limit is checked, or the
+        covering has a damper or a rate.
 
     Examples
     --------
@@ -111,33 +120,31 @@ def probability(
     pad = covering_of(covering)
     if pad is not None and (pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0)):
         raise InvalidParameterError("covering", "have neither damping nor rate for chances", pad)
-    names = {name: name for name in NAMES if not name.startswith("material_")}
-    if pad is not None:
-        names |= {name: f"material_{place}" for place, name in enumerate(pad.material.keys.values())}
     given = {"robot_mass": robot_mass, **uncertain}
     if body_mass is not None:
         given["body_mass"] = body_mass
-    spring = region
-    if spring is None and "stiffness" in uncertain:
-        spring = 1.0
     shared, values = contact_row(
         robot_mass=1.0,
         body_mass=None,
-        region=spring,
+        region=spring_of(region, uncertain),
         covering=pad,
-        tolerance=1e-8,
+        tolerance=TOLERANCE,
         area=area,
         max_strain=max_strain,
     )
     values |= limits_of(limits)
+    names = applying("chance", shared["region"], pad)
     inputs = []
     for name, value in given.items():
-        if name not in names:
-            raise InvalidParameterError("uncertain", f"be among {', '.join(names)}", name)
+        place = row_name("uncertain", name, names)
         if isinstance(value, Mapping):
-            inputs.append((names[name], *_distribution(name, value)))
+            kind, parts = _distribution(name, value)
+            inputs.append((place, kind, parts))
+            # The middle one of three, else the first: only its size matters, for what is implausible.
+            values[place] = parts[1] if kind == "triangular" else parts[0]
         else:
-            values[names[name]] = positive(name, value)
+            values[place] = positive(name, value)
+    missing = missing_limits(values, bare=pad is None)
     found = _hrsafety.contact_exceedance(
         shared,
         in_order(values),
@@ -147,4 +154,6 @@ def probability(
         seed=checked_seed("seed", seed),
         threads=thread_count(threads),
     )
-    return Exceedance(**{**found, "interval": tuple(found["interval"]), "quantiles": tuple(found["quantiles"])})
+    found |= {name: tuple(found[name]) for name in ("interval", "quantiles")}
+    doubts = (*not_checked(missing), *implausible_numbers(pad, str(shared["region"]), values))
+    return Exceedance(**found, not_checked=missing, warnings=doubts)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import not_negative, number, positive, word
@@ -13,7 +15,7 @@ from hrsafety._words import meant
 from hrsafety.contact.materials import Material, StressTable, material
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["Column", "Covering", "Region", "covering_of", "region_of"]
+__all__ = ["Column", "Covering", "Region", "covering_of", "region_of", "shape_flags"]
 
 SHAPES = ("flat", "curved", "sphere", "cylinder")
 _NEEDED = {"flat": ("area",), "curved": ("radius",), "sphere": ("radius",), "cylinder": ("radius", "length")}
@@ -149,16 +151,10 @@ class Covering:
         row = [from_row.get(name, math.nan) for name in _hrsafety.contact_names()]
         depth = number("compression", compression)
         force, energy, pressure, widths = _hrsafety.contact_column(self.shared() | {"region": "rigid"}, row, depth)
-        status = []
-        radii = [each for each in (self.radius, self.second_radius) if each is not None]
-        if radii and depth > 0.5 * min(radii):
-            status.append("outside_paraboloid")
-        if widths is not None and self.half_width is not None and max(widths) > self.half_width:
-            status.append("beyond_pad")
-        if radii and min(radii) < _LEAST_RADIUS * self.thickness:
-            status.append("edge")
+        radii = [from_row["radius"], from_row["second_radius"]]
+        flags = shape_flags(depth, radii=radii, thickness=self.thickness, half_width=self.half_width)
         pair = None if widths is None else (widths[0], widths[1])
-        return Column(force, energy, pressure, pair, tuple(status))
+        return Column(force, energy, pressure, pair, tuple(name for name, flag in flags.items() if flag))
 
     def shared(self) -> dict[str, object]:
         """Return what is no number, as the core reads it."""
@@ -166,28 +162,35 @@ class Covering:
         points = isinstance(law, StressTable)
         return {
             "law": law.law,
-            "strain": list(law.strain) if points else [],  # type: ignore[union-attr, arg-type]
-            "stress": list(law.stress) if points else [],  # type: ignore[union-attr, arg-type]
+            "strain": list(law.strain) if points else [],  # type: ignore[union-attr, arg-type]  # arrays of a table
+            "stress": list(law.stress) if points else [],  # type: ignore[union-attr, arg-type]  # arrays of a table
             "outline": "curved" if self.shape == "sphere" else self.shape,
-            "material_varies": False,
             "tolerance": 1e-8,
         }
 
     def numbers(self) -> dict[str, float]:
         """Return the numbers of a row by name."""
-        radius = math.nan if self.radius is None else self.radius
-        values = {
-            "thickness": self.thickness,
-            "area": math.nan if self.area is None else self.area,
-            "radius": radius,
-            "second_radius": radius if self.second_radius is None else self.second_radius,
-            "length": math.nan if self.length is None else self.length,
-            "damping": self.damping,
-        }
+        values = {"thickness": self.thickness, "damping": self.damping}
+        for name in ("area", "radius", "second_radius", "length"):
+            given = getattr(self, name)
+            # Without a second radius the core takes the first one for both.
+            values[name] = math.nan if given is None else given
         values |= dict(zip(("rate_base", "rate_slope", "rate_reference"), self.rate, strict=True))
         values |= dict(zip(("unloading_retained", "unloading_exponent"), self.unloading, strict=True))
         values |= dict(zip(("bottoming_strain", "backing_stiffness"), self.bottom, strict=True))
         return values | {f"material_{place}": value for place, value in enumerate(self.material.numbers)}
+
+
+def shape_flags(depth: Any, *, radii: Sequence[Any], thickness: Any, half_width: float | None) -> dict[str, Any]:
+    """Return where the columns under a curved contact do not describe it; every number may be an array."""
+    with np.errstate(invalid="ignore"):
+        least, largest = np.fmin(*radii), np.fmax(*radii)
+        widest = math.inf if half_width is None else half_width
+        return {
+            "outside_paraboloid": np.asarray(depth) > 0.5 * least,
+            "beyond_pad": np.sqrt(2.0 * largest * np.maximum(depth, 0.0)) > widest,
+            "edge": least < _LEAST_RADIUS * np.asarray(thickness),
+        }
 
 
 def _tuple(name: str, given: object, count: int) -> Numbers:
@@ -244,7 +247,7 @@ def covering_of(given: Covering | Mapping[str, object] | None) -> Covering | Non
     """Return the covering that is described, ``None`` if bare."""
     if given is None or isinstance(given, Covering):
         return given
-    return Covering(**_known("covering", given, [each.name for each in fields(Covering)]))  # type: ignore[arg-type]
+    return Covering(**_known("covering", given, [each.name for each in fields(Covering)]))  # type: ignore[arg-type]  # the class checks its numbers
 
 
 def region_of(given: Region | Mapping[str, object] | float | None) -> Region | None:
@@ -252,7 +255,7 @@ def region_of(given: Region | Mapping[str, object] | float | None) -> Region | N
     if given is None or isinstance(given, Region):
         return given
     if isinstance(given, Mapping):
-        return Region(**_known("region", given, ["k", "k3", "n"])) if given else None  # type: ignore[arg-type]
+        return Region(**_known("region", given, ["k", "k3", "n"])) if given else None  # type: ignore[arg-type]  # likewise
     return Region(k=number("region", given))
 
 

@@ -4,23 +4,44 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, not_negative, number, numbers, positive
+from hrsafety._bounds import MOST_CONTACTS
 from hrsafety._words import meant
 from hrsafety.contact.covering import Covering, Region, covering_of, region_of
 from hrsafety.errors import InvalidParameterError, ShapeError
 
-__all__ = ["HORIZON", "Rows", "contact_row", "limits_of"]
+__all__ = [
+    "HORIZON",
+    "TOLERANCE",
+    "applying",
+    "columns_of",
+    "contact_row",
+    "in_order",
+    "limits_of",
+    "row_name",
+    "spring_of",
+]
 
 NAMES: tuple[str, ...] = tuple(_hrsafety.contact_names())
 HORIZON = 0.2
 """Time after which a collision is left alone, in s."""
+TOLERANCE = 1e-8
+"""Relative tolerance of simulations: peak forces are within about 1e-6."""
 _SUPPORTS = ("robot_damping", "robot_stiffness", "body_damping", "body_stiffness")
-Rows = tuple[dict[str, object], dict[str, Any]]
+_SIMULATED = (*_SUPPORTS, "horizon", "stop_time", "stop_deceleration")
+_STORED = ("thickness", "bottoming_strain", "backing_stiffness")
+_LOST = ("damping", "rate_base", "rate_slope", "rate_reference", "unloading_retained", "unloading_exponent")
+_SHAPES = {
+    "flat": ("area",),
+    "curved": ("radius", "second_radius"),
+    "sphere": ("radius",),
+    "cylinder": ("radius", "length"),
+}
+_REGIONS = {"rigid": (), "spring": ("stiffness", "region_cubic"), "power": ("stiffness", "region_exponent")}
 
 
 def limits_of(given: object) -> dict[str, float]:
@@ -66,7 +87,7 @@ def contact_row(
 ) -> tuple[dict[str, object], dict[str, float]]:
     """Return what is no number, and the numbers by name."""
     spring, pad = region_of(region), covering_of(covering)
-    shared: dict[str, object] = {"law": None, "strain": [], "stress": [], "outline": None, "material_varies": False}
+    shared: dict[str, object] = {"law": None, "strain": [], "stress": [], "outline": None}
     values = dict.fromkeys(NAMES, math.nan)
     values |= {"robot_mass": _mass("robot_mass", robot_mass), "body_mass": _mass("body_mass", body_mass)}
     values |= dict.fromkeys(_SUPPORTS, 0.0) | {"horizon": HORIZON}
@@ -82,6 +103,8 @@ def contact_row(
     if more.get("horizon") is not None:
         values["horizon"] = positive("horizon", more["horizon"])
     if more.get("max_strain") is not None:
+        if pad is None:
+            raise InvalidParameterError("max_strain", "be None without a covering", more["max_strain"])
         values["max_strain"] = positive("max_strain", more["max_strain"])
     if more.get("area") is not None:
         if pad is not None:
@@ -101,36 +124,65 @@ def in_order(values: Mapping[str, float]) -> list[float]:
     return [values[name] for name in NAMES]
 
 
+def spring_of(
+    region: Region | Mapping[str, object] | float | None, given: Mapping[str, object]
+) -> Region | Mapping[str, object] | float | None:
+    """Return the region, a spring where its stiffness is given by name."""
+    return 1.0 if region is None and "stiffness" in given else region
+
+
+def applying(kind: str, region: object, covering: Covering | None) -> dict[str, str]:
+    """Return which numbers have an effect, with their names in a row: all others are refused, not ignored.
+
+    ``kind`` is ``"collide"``, ``"speed"`` or ``"chance"``, an allowed speed from the stored energy.
+    """
+    names = ["robot_mass", "body_mass", *_REGIONS[str(region)]]
+    names += ["closing_speed"] if kind == "collide" else ["force_limit", "pressure_limit"]
+    if kind != "chance":
+        names += _SIMULATED
+    if covering is None:
+        return {name: name for name in (names if kind == "collide" else [*names, "area"])}
+    names += [*_STORED, *_SHAPES[covering.shape]]
+    if kind != "chance":
+        names += _LOST
+    if kind != "collide":
+        names += ["max_strain"]
+    law = {name: f"material_{place}" for place, name in enumerate(covering.material.keys.values())}
+    return {name: name for name in names} | law | {f"material.{name}": place for name, place in law.items()}
+
+
+def row_name(argument: str, name: str, names: Mapping[str, str]) -> str:
+    """Return the name of a number in a row, or say which names have an effect."""
+    if name not in names:
+        remedy = "it has no effect on this contact" if name in NAMES else meant(name, names)
+        raise InvalidParameterError(argument, f"be among {', '.join(names)}", name, remedy)
+    return names[name]
+
+
 def columns_of(
-    shared: dict[str, object], values: dict[str, float], arrays: Mapping[str, object], covering: Covering | None
+    values: Mapping[str, float], arrays: Mapping[str, object], names: Mapping[str, str]
 ) -> tuple[list[Array | float], tuple[int, ...]]:
     """Return columns with arrays in the place of numbers, and the shape that they broadcast to."""
-    names = {name: name for name in NAMES if not name.startswith("material_")}
-    if covering is not None:
-        law = covering.material
-        names |= {name: f"material_{place}" for place, name in enumerate(law.keys.values())}
-        names |= {f"material.{name}": f"material_{place}" for place, name in enumerate(law.keys.values())}
     given: dict[str, Array] = {}
     shape: tuple[int, ...] = ()
     for name, value in arrays.items():
-        if name not in names:
-            shown = ", ".join(names)
-            raise InvalidParameterError("arrays", f"be among {shown}", name, meant(name, names))
+        place = row_name("arrays", name, names)
         array = numbers(name, value)
         try:
             shape = np.broadcast_shapes(shape, array.shape)
         except ValueError:
             raise ShapeError(name, f"that broadcasts with {shape}", array.shape) from None
-        given[names[name]] = array
-    shared["material_varies"] = any(name.startswith("material_") for name in given)
-    if "radius" in given and "second_radius" not in given and values["second_radius"] == values["radius"]:
-        given["second_radius"] = given["radius"]
+        given[place] = array
+    rows = math.prod(shape)
+    if rows > MOST_CONTACTS:
+        raise InvalidParameterError(" and ".join(arrays), f"ask for at most {MOST_CONTACTS} contacts", rows)
     columns: list[Array | float] = []
     for name in NAMES:
         if name not in given:
             columns.append(values[name])
-        elif given[name].size == 1:
-            columns.append(float(given[name].reshape(())) if given[name].ndim == 0 else float(given[name].flat[0]))
+        # One number for all rows; no number at all is one of a row, which is invalid then.
+        elif given[name].size == 1 and not np.isnan(given[name]).any():
+            columns.append(float(given[name].flat[0]))
         else:
             columns.append(np.ascontiguousarray(np.broadcast_to(given[name], shape)).reshape(-1))
     return columns, shape

@@ -10,34 +10,63 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, number, positive, thread_count
+from hrsafety._arguments import Array, number, positive
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.rows import NAMES, columns_of, contact_row, in_order
+from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers
+from hrsafety.contact.many import many
+from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, spring_of
 from hrsafety.errors import InvalidParameterError
-from hrsafety.tables import Columns, Table
+from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["ContactBatch", "ContactImpact", "batch", "simulate"]
 
 GRAVITY = 9.80665
 HEAD_MASS = 10.0
 """Bodies below this mass, in kg, may be a head, and get a head injury criterion unless told otherwise."""
-_WORDS, _SPEED_WORDS, _THICKNESS_WORDS = _hrsafety.contact_words()
 _FOUND = (
     *("release_time", "peak_force", "peak_force_time", "peak_total_compression", "peak_body_deflection"),
     *("peak_covering_compression", "peak_strain", "peak_pressure", "rebound_speed", "body_speed_end"),
     *("hic15", "hic36", "end_force"),
 )
+UNITS = {
+    "release_time": "s",
+    "peak_force": "N",
+    "peak_force_time": "s",
+    "peak_total_compression": "m",
+    "peak_body_deflection": "m",
+    "peak_covering_compression": "m",
+    "peak_pressure": "Pa",
+    "rebound_speed": "m/s",
+    "body_speed_end": "m/s",
+    "end_force": "N",
+    "time": "s",
+    "force": "N",
+    "total_compression": "m",
+    "covering_compression": "m",
+    "body_deflection": "m",
+    "body_acceleration": "m/s^2",
+}
+"""Units of the loads and of the motion; what has none is not here, and `_g` is a unit of its own."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+def arrays_of(result: Any) -> Columns:
+    """Return the arrays of a result flattened, under their names with units."""
+    named = {each.name: getattr(result, each.name) for each in fields(result)}
+    return {
+        f"{'t' if name == 'time' else name}{unit_suffix(UNITS.get(name, ''))}": values.ravel()
+        for name, values in named.items()
+        if isinstance(values, np.ndarray)
+    }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ContactImpact(Table):
     """Loads of a collision and its motion; a number that does not exist is ``None``.
 
     Attributes
     ----------
-    status : {"released", "horizon", "no_impact", "beyond_data", "unfinished"}
-        How it ended; after ``"beyond_data"``, a law that does not reach as far as it was compressed, no
-        load is known.
+    status : {"released", "horizon", "no_impact", "unfinished"}
+        How it ended; after ``"unfinished"`` no load is known, and after ``"horizon"`` loads may still rise.
     release_time : float or None
         End in s.
     peak_force : float or None
@@ -62,6 +91,11 @@ class ContactImpact(Table):
         Force at the end, in N.
     bottomed : bool
         Whether the backing was reached.
+    rising : bool
+        Whether a load was largest at the horizon, so that its peak may come later and be larger.
+    warnings : tuple of ResultWarning
+        Why the loads may not be what they seem: loads that rise at the horizon, a covering outside its model,
+        implausible numbers.
     time, force, total_compression, covering_compression, body_deflection, body_acceleration : ndarray
         The motion at the steps of the solution, SI units.
     """
@@ -82,6 +116,8 @@ class ContactImpact(Table):
     hic36: float | None
     end_force: float | None
     bottomed: bool
+    rising: bool
+    warnings: Doubts
     time: Array
     force: Array
     total_compression: Array
@@ -97,8 +133,16 @@ class ContactImpact(Table):
         dict of str to ndarray
             One row for each step.
         """
-        names = [each.name for each in fields(self) if isinstance(getattr(self, each.name), np.ndarray)]
-        return {name: getattr(self, name) for name in names}
+        return arrays_of(self)
+
+    def __repr__(self) -> str:
+        """Return how it ended with the loads, then the first steps and the warnings."""
+        loads = {name: getattr(self, name) for name in (*_FOUND, "peak_body_acceleration_g")}
+        shown = [
+            f"{name} {value:.6g} {UNITS.get(name, '')}".strip() for name, value in loads.items() if value is not None
+        ]
+        words = [self.status, *(name for name in ("bottomed", "rising") if getattr(self, name))]
+        return "\n".join([f"ContactImpact: {', '.join(words)}", *(f"  {line}" for line in shown), Table.__repr__(self)])
 
 
 def _gravity(head: bool | None, body_mass: object) -> float | None:
@@ -119,9 +163,9 @@ def simulate(
     body_damping: float = 0.0,
     body_stiffness: float = 0.0,
     stop: tuple[float, float] | None = None,
-    horizon: float = 0.2,
+    horizon: float = HORIZON,
     head: bool | None = None,
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
 ) -> ContactImpact:
     """Return the loads of a collision, from the first touch to the first loss of contact.
 
@@ -156,7 +200,8 @@ def simulate(
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range; the message names it.
+        If a number is out of its range, or the covering is compressed by more than its table holds
+        (``beyond_data``); the message names it.
 
     Examples
     --------
@@ -165,11 +210,12 @@ def simulate(
     >>> hit.status, round(hit.peak_force, 2)
     ('released', 96.82)
     """
+    pad = covering_of(covering)
     shared, values = contact_row(
         robot_mass=robot_mass,
         body_mass=body_mass,
         region=region,
-        covering=covering,
+        covering=pad,
         tolerance=tolerance,
         robot_damping=robot_damping,
         robot_stiffness=robot_stiffness,
@@ -180,6 +226,11 @@ def simulate(
         stop=stop,
     )
     found = _hrsafety.contact_simulate(shared, in_order(values), gravity=_gravity(head, body_mass))
+    if pad is not None and found["status"] == "beyond_data":
+        rule = f"not compress the covering by more than was measured (beyond_data, at {float(found['time'][-1]):.6g} s)"
+        raise InvalidParameterError("closing_speed", rule, closing_speed, "measure the covering to larger strains")
+    flags = {"unfinished": found["status"] == "unfinished", "rising": found["rising"]}
+    flags |= covering_flags(pad, found["peak_covering_compression"], values)
     loads: dict[str, Any] = {name: known(found[name]) for name in _FOUND}
     acceleration = known(found["peak_body_acceleration"])
     motion = ("force", "total_compression", "covering_compression", "body_deflection", "body_acceleration")
@@ -188,6 +239,8 @@ def simulate(
         **loads,
         peak_body_acceleration_g=None if acceleration is None else acceleration / GRAVITY,
         bottomed=found["bottomed"],
+        rising=found["rising"],
+        warnings=(*flagged(flags), *implausible_numbers(pad, str(shared["region"]), values)),
         time=found["time"],
         **{name: found[name] for name in motion},
     )
@@ -198,20 +251,25 @@ def known(value: float) -> float | None:
     return None if np.isnan(value) else float(value)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ContactBatch(Table):
     """Loads of many collisions as arrays of the broadcast shape, NaN where a number does not exist.
 
     Attributes
     ----------
     status : ndarray of str
-        As `ContactImpact.status`, and ``"invalid_"`` with a name for rows with a bad number.
+        As `ContactImpact.status`, ``"beyond_data"`` where the covering was compressed by more than its table
+        holds, so that no load is known, and ``"invalid_"`` with a name for rows with a bad number.
     release_time, peak_force, peak_force_time, peak_total_compression, peak_body_deflection,
     peak_covering_compression, peak_strain, peak_pressure, rebound_speed, peak_body_acceleration_g,
     body_speed_end, hic15, hic36, end_force : ndarray
         As in `ContactImpact`.
-    bottomed : ndarray of bool
-        Whether the backing was reached.
+    bottomed, rising : ndarray of bool
+        As in `ContactImpact`.
+    outside_paraboloid, beyond_pad, edge : ndarray of bool
+        Where the model of the covering does not hold, as in `Column`.
+    warnings : tuple of ResultWarning
+        For how many rows that holds, how many are invalid, and implausible numbers.
     """
 
     status: npt.NDArray[np.str_]
@@ -230,6 +288,11 @@ class ContactBatch(Table):
     hic36: Array
     end_force: Array
     bottomed: npt.NDArray[np.bool_]
+    rising: npt.NDArray[np.bool_]
+    outside_paraboloid: npt.NDArray[np.bool_]
+    beyond_pad: npt.NDArray[np.bool_]
+    edge: npt.NDArray[np.bool_]
+    warnings: Doubts
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name.
@@ -239,7 +302,7 @@ class ContactBatch(Table):
         dict of str to ndarray
             Every field flattened.
         """
-        return {each.name: getattr(self, each.name).ravel() for each in fields(self)}
+        return arrays_of(self)
 
 
 def batch(
@@ -250,9 +313,9 @@ def batch(
     body_mass: npt.ArrayLike | None = None,
     covering: Covering | Mapping[str, object] | None = None,
     stop: tuple[float, float] | None = None,
-    horizon: float = 0.2,
+    horizon: float = HORIZON,
     head: bool = False,
-    tolerance: float = 1e-6,
+    tolerance: float = TOLERANCE,
     threads: int | None = None,
     progress: Callable[[int, int], object] | None = None,
     **arrays: npt.ArrayLike,
@@ -276,7 +339,8 @@ def batch(
     **arrays : array_like
         Numbers of region and covering that differ from row to row: ``stiffness`` (of the region),
         ``thickness``, ``area``, ``radius``, ``damping``, supports such as ``robot_stiffness``, and the
-        numbers of the law (``modulus``, ``plateau``, ...).
+        numbers of the law (``modulus``, ``plateau``, ...). One without effect, such as a thickness of no
+        covering, is an error.
 
     Returns
     -------
@@ -301,15 +365,15 @@ def batch(
     >>> found.peak_force.round(1).tolist()
     [[106.9, 213.8], [96.1, 192.2]]
     """
-    callback("progress", progress)
+    pad = covering_of(covering)
     varying = {"robot_mass": robot_mass, "closing_speed": closing_speed, **arrays}
     if body_mass is not None:
         varying["body_mass"] = body_mass
-    shared, values = contact_row(
+    row = contact_row(
         robot_mass=1.0,
         body_mass=None,
-        region=region,
-        covering=covering,
+        region=spring_of(region, arrays),
+        covering=pad,
         tolerance=tolerance,
         horizon=positive("horizon", horizon),
         stop=stop,
@@ -317,39 +381,14 @@ def batch(
     if not isinstance(head, (bool, np.bool_)):
         raise InvalidParameterError("head", "be True or False", head)
     gravity = GRAVITY if head else None
-    found, status, word, shape = many("collide", shared, values, varying, covering, gravity, threads, progress, _WORDS)
-    loads = {name: found[name].reshape(shape) for name in _FOUND}
+    found = many("collide", row, varying, pad, gravity=gravity, threads=threads, progress=progress)
+    empty = np.zeros(found.status.shape, dtype=bool)
+    loads = {name: found.numbers[name] for name in _FOUND}
     return ContactBatch(
-        status=status,
+        status=found.status,
         **loads,
-        peak_body_acceleration_g=(found["peak_body_acceleration"] / GRAVITY).reshape(shape),
-        bottomed=word == 1,
+        peak_body_acceleration_g=found.numbers["peak_body_acceleration"] / GRAVITY,
+        bottomed=found.numbers["bottomed"],
+        **{name: found.flags.get(name, empty) for name in ("rising", "outside_paraboloid", "beyond_pad", "edge")},
+        warnings=found.warnings,
     )
-
-
-def many(
-    kind: str,
-    shared: dict[str, object],
-    values: dict[str, float],
-    varying: Mapping[str, object],
-    covering: Covering | Mapping[str, object] | None,
-    gravity: float | None,
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
-    words: list[str],
-) -> tuple[dict[str, Array], npt.NDArray[np.str_], npt.NDArray[np.uint8], tuple[int, ...]]:
-    """Return columns of the core, the status of each row, a second code and the shape."""
-    pad = covering_of(covering)
-    columns, shape = columns_of(shared, values, varying, pad)
-    rows = int(np.prod(shape, dtype=np.int64))
-    found = _hrsafety.contact_rows(
-        kind, shared, columns, rows, gravity=gravity, threads=thread_count(threads), progress=progress
-    )
-    names = list(NAMES)
-    if pad is not None:
-        for place, name in enumerate(pad.material.keys.values()):
-            names[names.index(f"material_{place}")] = name
-    codes = found.pop("status_code")
-    all_words = np.asarray([*words, *(f"invalid_{name}" for name in names), "invalid_covering"])
-    status = all_words[np.minimum(codes, len(all_words) - 1)].reshape(shape)
-    return found, status, found.pop("word_code").reshape(shape), shape

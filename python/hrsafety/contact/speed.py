@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, number, positive
+from hrsafety._arguments import Array, number, positive
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.rows import contact_row, in_order, limits_of
-from hrsafety.contact.simulation import _SPEED_WORDS, known, many
-from hrsafety.errors import InvalidParameterError
+from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.many import many
+from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, spring_of
+from hrsafety.contact.simulation import arrays_of, known
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.tables import Columns, Table
 
 __all__ = [
@@ -45,7 +47,7 @@ class AllowedSpeed:
     status : str
         ``"closed_form"``; ``"monotone"`` or ``"several_crossings"`` by simulation (then the lowest one);
         ``"unlimited_up_to_20"``; ``"unbounded_mass"`` with speed 0; ``"not_checked"`` without a limit;
-        ``"unfinished"`` if a simulation did not end.
+        ``"unfinished"`` if a simulation did not end, so that nothing is known.
     speeds : dict of str to float or None
         Speed at each limit by itself; ``None`` where it is not there or beyond the data.
     bare_speed_force : float or None
@@ -54,6 +56,11 @@ class AllowedSpeed:
         Further crossings in m/s.
     not_checked : tuple of str
         Limits that were not checked; they never count as kept.
+    covering_compression : float or None
+        Compression of the covering at the speed in m.
+    warnings : tuple of ResultWarning
+        Why the speed may not be what it seems: limits that are not checked, loads that still rise at the
+        horizon of a simulation, a covering outside its model, implausible numbers.
     robot_speed : float or None
         Closing speed less the speed of the person towards the robot, at least 0.
     human_speed : float
@@ -67,6 +74,8 @@ class AllowedSpeed:
     bare_speed_force: float | None
     further: tuple[float, ...]
     not_checked: tuple[str, ...]
+    covering_compression: float | None
+    warnings: Doubts
     robot_speed: float | None
     human_speed: float
 
@@ -85,9 +94,9 @@ def allowed_speed(
     body_damping: float = 0.0,
     body_stiffness: float = 0.0,
     stop: tuple[float, float] | None = None,
-    horizon: float = 0.2,
+    horizon: float = HORIZON,
     human_speed: float = 0.0,
-    tolerance: float = 1e-10,
+    tolerance: float = TOLERANCE,
 ) -> AllowedSpeed:
     """Return the closing speed at which a contact just keeps its limits.
 
@@ -135,11 +144,12 @@ def allowed_speed(
     >>> round(bare.speed, 6), bare.governs
     (1.343933, 'force')
     """
+    pad = covering_of(covering)
     shared, values = contact_row(
         robot_mass=robot_mass,
         body_mass=body_mass,
         region=region,
-        covering=covering,
+        covering=pad,
         tolerance=tolerance,
         area=area,
         max_strain=max_strain,
@@ -156,9 +166,9 @@ def allowed_speed(
         raise InvalidParameterError("human_speed", "be finite", human_speed)
     found = _hrsafety.contact_speed(shared, in_order(values))
     speed = known(found["speed"])
-    missing = [name for name in ("force", "pressure") if math.isnan(values[f"{name}_limit"])]
-    if covering is None and area is None and "pressure" not in missing:
-        missing.append("pressure")
+    missing = missing_limits(values, bare=pad is None)
+    flags = {"unfinished": found["status"] == "unfinished", "rising": found["rising"]}
+    flags |= covering_flags(pad, found["covering_compression"], values)
     return AllowedSpeed(
         speed=speed,
         governs=found["governs"],
@@ -166,13 +176,28 @@ def allowed_speed(
         speeds=dict(zip(("force", "pressure", "strain"), map(known, found["speeds"]), strict=True)),
         bare_speed_force=known(found["bare_speed_force"]),
         further=tuple(found["further"]),
-        not_checked=tuple(missing),
+        not_checked=missing,
+        covering_compression=known(found["covering_compression"]),
+        warnings=(
+            *not_checked(missing),
+            *flagged(flags),
+            *implausible_numbers(pad, str(shared["region"]), values),
+        ),
         robot_speed=None if speed is None else max(speed - walking, 0.0),
         human_speed=walking,
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+def missing_limits(values: Mapping[str, float], *, bare: bool) -> tuple[str, ...]:
+    """Return the limits that are not checked: none is given, or no area of a bare contact."""
+    return tuple(
+        name
+        for name in ("force", "pressure")
+        if math.isnan(values[f"{name}_limit"]) or (name == "pressure" and bare and math.isnan(values["area"]))
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class AllowedSpeeds(Table):
     """Allowed closing speeds as arrays of the broadcast shape, NaN where there is none.
 
@@ -182,6 +207,15 @@ class AllowedSpeeds(Table):
         In m/s, as in `AllowedSpeed`.
     governs, status : ndarray of str
         As in `AllowedSpeed`, and ``"invalid_"`` with a name for rows with a bad number.
+    covering_compression : ndarray
+        Compression of the covering at the speed in m.
+    rising, outside_paraboloid, beyond_pad, edge : ndarray of bool
+        Whether loads of a simulation still rise at its horizon, and where the model of the covering does not
+        hold, as in `Column`.
+    not_checked : tuple of str
+        Limits that were not checked in any row; they never count as kept.
+    warnings : tuple of ResultWarning
+        As in `AllowedSpeed`, with the number of rows.
     """
 
     speed: Array
@@ -191,6 +225,13 @@ class AllowedSpeeds(Table):
     bare_speed_force: Array
     governs: npt.NDArray[np.str_]
     status: npt.NDArray[np.str_]
+    covering_compression: Array
+    rising: npt.NDArray[np.bool_]
+    outside_paraboloid: npt.NDArray[np.bool_]
+    beyond_pad: npt.NDArray[np.bool_]
+    edge: npt.NDArray[np.bool_]
+    not_checked: tuple[str, ...]
+    warnings: Doubts
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name.
@@ -200,7 +241,7 @@ class AllowedSpeeds(Table):
         dict of str to ndarray
             Every field flattened.
         """
-        return {each.name: getattr(self, each.name).ravel() for each in fields(self)}
+        return arrays_of(self)
 
 
 def allowed_speeds(
@@ -212,7 +253,7 @@ def allowed_speeds(
     covering: Covering | Mapping[str, object] | None = None,
     area: npt.ArrayLike | None = None,
     max_strain: npt.ArrayLike | None = None,
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
     threads: int | None = None,
     progress: Callable[[int, int], object] | None = None,
     **arrays: npt.ArrayLike,
@@ -255,14 +296,25 @@ def allowed_speeds(
     >>> found.speed.round(3).tolist(), found.governs[0].tolist()
     ([[0.588, 0.874], [0.733, 1.029]], ['strain', 'force'])
     """
-    callback("progress", progress)
-    shared, values = contact_row(robot_mass=1.0, body_mass=None, region=region, covering=covering, tolerance=tolerance)
+    pad = covering_of(covering)
+    spring = spring_of(region, arrays)
+    shared, values = contact_row(robot_mass=1.0, body_mass=None, region=spring, covering=pad, tolerance=tolerance)
     values |= limits_of(limits)
     given = {"robot_mass": robot_mass, "body_mass": body_mass, "max_strain": max_strain, "area": area}
     varying = {name: value for name, value in given.items() if value is not None} | arrays
-    found, status, word, shape = many("speed", shared, values, varying, covering, None, threads, progress, _SPEED_WORDS)
+    found = many("speed", (shared, values), varying, pad, threads=threads, progress=progress)
+    there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
+    missing = missing_limits(there, bare=pad is None)
+    empty = np.zeros(found.status.shape, dtype=bool)
+    numbers = dict(found.numbers)
+    governs = _GOVERNS[numbers.pop("governs_code").astype(np.intp)]
     return AllowedSpeeds(
-        **{name: values.reshape(shape) for name, values in found.items()}, governs=_GOVERNS[word], status=status
+        **numbers,
+        governs=governs,
+        status=found.status,
+        **{name: found.flags.get(name, empty) for name in ("rising", "outside_paraboloid", "beyond_pad", "edge")},
+        not_checked=missing,
+        warnings=(*not_checked(missing), *found.warnings),
     )
 
 
@@ -276,10 +328,16 @@ class LeastThickness:
         In m; 0 if bare is enough, ``None`` if not even 1 m suffices.
     status : {"found", "bare_is_enough", "none_up_to_1_m"}
         What was found. The strain counts: a thin pad may be slower than none.
+    not_checked : tuple of str
+        Limits that were not checked; they never count as kept.
+    warnings : tuple of ResultWarning
+        As in `AllowedSpeed`.
     """
 
     thickness: float | None
     status: str
+    not_checked: tuple[str, ...]
+    warnings: Doubts
 
 
 def thickness(
@@ -326,18 +384,33 @@ def thickness(
     """
     if isinstance(covering, Mapping) and "thickness" not in covering:
         covering = {**covering, "thickness": 0.01}
+    pad = covering_of(covering)
     shared, values = contact_row(
         robot_mass=robot_mass,
         body_mass=body_mass,
         region=region,
-        covering=covering,
-        tolerance=1e-8,
+        covering=pad,
+        tolerance=TOLERANCE,
         max_strain=max_strain,
         closing_speed=positive("speed", speed),
     )
     values |= limits_of(limits)
     value, status = _hrsafety.contact_thickness(shared, in_order(values))
-    return LeastThickness(thickness=known(value), status=status)
+    missing = missing_limits(values, bare=pad is None)
+    doubted = values | {"thickness": value if value > 0.0 else math.nan}
+    depth = math.nan
+    if value > 0.0:
+        depth = _hrsafety.contact_speed(shared, in_order(doubted | {"closing_speed": math.nan}))["covering_compression"]
+    return LeastThickness(
+        thickness=known(value),
+        status=status,
+        not_checked=missing,
+        warnings=(
+            *not_checked(missing),
+            *flagged(covering_flags(pad, depth, doubted)),
+            *implausible_numbers(pad, str(shared["region"]), doubted),
+        ),
+    )
 
 
 def sensitivity(
@@ -363,6 +436,11 @@ def sensitivity(
         By name; central differences. At a tie of two limits each side has its own slope, and this is
         the mean.
 
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or nothing limits the speed.
+
     Examples
     --------
     >>> from hrsafety import contact
@@ -382,17 +460,18 @@ def sensitivity(
     values |= limits_of(limits)
     pad = covering_of(covering)
     laws = [] if pad is None else list(pad.material.keys.values())
-    ends = [("bottoming_strain", "horizon", "backing_stiffness", "second_radius")]
+    fixed = ("bottoming_strain", "horizon", "backing_stiffness")
     found: dict[str, float] = {}
     for name, value in values.items():
-        if name in ends[0] or not (math.isfinite(value) and value > 0.0):
+        if name in fixed or not (math.isfinite(value) and value > 0.0):
             continue
         speeds = []
         for factor in (1.0 + _STEP, 1.0 - _STEP):
-            moved = values | {name: factor * value}
-            if name == "radius" and moved["second_radius"] == value:
-                moved["second_radius"] = moved["radius"]
-            speeds.append(_hrsafety.contact_speed(shared, in_order(moved))["speed"])
+            moved = _hrsafety.contact_speed(shared, in_order(values | {name: factor * value}))
+            if math.isnan(moved["speed"]):
+                rule = "give an allowed speed on both sides, for a sensitivity"
+                raise InvalidParameterError(name, rule, Shown(moved["status"]))
+            speeds.append(moved["speed"])
         slope = math.log(speeds[0] / speeds[1]) / math.log((1.0 + _STEP) / (1.0 - _STEP)) if min(speeds) > 0.0 else 0.0
         label = laws[int(name.removeprefix("material_"))] if name.startswith("material_") else name
         if abs(slope) > 1e-9:

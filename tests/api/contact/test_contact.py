@@ -142,7 +142,12 @@ def test_statuses() -> None:
     assert contact.simulate(**{**HIT, "closing_speed": -1.0}).status == "no_impact"
     points = {"law": "table", "strain": [0.0, 0.1], "stress": [0.0, 1e3]}
     short = {"material": points, "thickness": 0.01, "area": 1e-3}
-    assert contact.simulate(**{**HIT, "covering": short}).status == "beyond_data"
+    with pytest.raises(InvalidParameterError, match="beyond_data"):
+        contact.simulate(**{**HIT, "covering": short})
+    rows = contact.batch(**{**HIT, "closing_speed": [1e-4, 0.5], "covering": short})
+    assert rows.status.tolist() == ["horizon", "beyond_data"]
+    assert np.isnan(rows.peak_force[1])
+    assert "beyond_data" in {each.code for each in rows.warnings}
     heavy = contact.allowed_speed(**{**SPEED, "robot_mass": math.inf, "body_mass": None})
     assert (heavy.speed, heavy.status) == (0.0, "unbounded_mass")
     bare = contact.allowed_speed(robot_mass=8.0, region=25e3, limits={"pressure": 1e6})
@@ -217,14 +222,15 @@ def test_margins_along_a_run(kind: Any) -> None:
             contact=contact_class,
             permitted=True,
             force=force,
-            pressure=None,
+            pressure=1e9,
             spring_constant=60e3,
             body_mass=mass,
         )
         for contact_class, force, mass in (("transient", 260.0, 75.0), ("quasi_static", 130.0, math.inf))
     ]
-    base = kind(mass=4.4, inertia=0.1)
-    found = contact.contact_margins(run, base=base, covering=None, regions=regions, robot_radius=0.2, person_radius=0.4)
+    around: dict[str, Any] = {"base": kind(mass=4.4, inertia=0.1), "covering": None, "area": 1e-3}
+    around |= {"robot_radius": 0.2, "person_radius": 0.4}
+    found = contact.contact_margins(run, regions=regions, **around)
     present = np.isfinite(found.closing_speed)
     assert found.contact == "quasi_static"
     assert set(found.verdict[present].tolist()) <= {"within_limits", "exceeds"}
@@ -234,10 +240,8 @@ def test_margins_along_a_run(kind: Any) -> None:
         limit = 130.0 / math.sqrt(4.4 * 60e3)
         assert (found.margin + found.closing_speed)[present] == pytest.approx(limit)
     regions[0].permitted = False
-    refused = contact.contact_margins(
-        run, base=base, covering=None, regions=regions, robot_radius=0.2, person_radius=0.4
-    )
+    refused = contact.contact_margins(run, regions=regions, **around)
     closing = present & (found.closing_speed > 0.0)
     assert closing.any()
     assert (refused.verdict[closing] == "not_permitted").all()
-    assert len(found.columns()["margin"]) == found.margin.size
+    assert len(found.columns()["margin_m_per_s"]) == found.margin.size

@@ -177,6 +177,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         let command = law.command(&Situation {
             time,
             bodies: &self.bodies,
+            ages: &[],
             robot: RobotState {
                 position: runs.position,
                 velocity: runs.velocity,

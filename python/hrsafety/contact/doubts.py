@@ -1,0 +1,123 @@
+"""Why a result about a contact may not mean what it seems to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from hrsafety.contact.covering import Covering, shape_flags
+from hrsafety.contact.materials import Rusch, StressTable
+from hrsafety.plausibility import ResultWarning, implausible
+
+__all__ = ["Doubts", "covering_flags", "flagged", "implausible_numbers", "not_checked"]
+
+Doubts = tuple[ResultWarning, ...]
+
+_FLAGS = {
+    "invalid": ResultWarning("invalid_numbers", "status", "a number is invalid and nothing is known: see status"),
+    "unfinished": ResultWarning(
+        "unfinished", "status", "the solution did not come to its end and nothing is known: a larger tolerance may help"
+    ),
+    "beyond_data": ResultWarning(
+        "beyond_data", "covering.material", "the covering is compressed by more than was measured: no load is known"
+    ),
+    "rising": ResultWarning(
+        "rising_at_horizon",
+        "horizon",
+        "loads still rise at the horizon, and their peaks may be larger: a longer horizon shows them",
+    ),
+    "outside_paraboloid": ResultWarning(
+        "outside_paraboloid",
+        "covering.radius",
+        "the covering is compressed by more than half of a radius, where the paraboloid of its gap does not hold",
+    ),
+    "beyond_pad": ResultWarning(
+        "beyond_pad",
+        "covering.half_width",
+        "the contact is wider than the covering: forces and pressures are not known",
+    ),
+    "edge": ResultWarning(
+        "edge", "covering.radius", "a radius is below a fifth of the thickness: the pressure of an edge is not covered"
+    ),
+    "beyond_thickness": ResultWarning(
+        "beyond_thickness",
+        "covering.thickness",
+        "the covering is compressed by more than its thickness, which none can be: give it a backing",
+    ),
+}
+
+_QUANTITIES = {
+    "robot_mass": "effective_mass",
+    "body_mass": "body_mass",
+    "closing_speed": "closing_speed",
+    "horizon": "impact_time",
+    "stiffness": "region_stiffness",
+    "thickness": "thickness",
+    "area": "contact_area",
+    "radius": "contact_radius",
+    "second_radius": "contact_radius",
+    "force_limit": "force_limit",
+    "pressure_limit": "pressure_limit",
+}
+
+
+def flagged(flags: Mapping[str, Any]) -> Doubts:
+    """Return a warning for each flag that holds, with the number of rows where there are several."""
+    found = []
+    for name, flag in flags.items():
+        rows = np.asarray(flag)
+        held = int(np.count_nonzero(rows))
+        if held:
+            doubt = _FLAGS[name]
+            found.append(doubt if rows.ndim == 0 else replace(doubt, message=_counted(held, rows.size, doubt.message)))
+    return tuple(found)
+
+
+def _counted(held: int, rows: int, message: str) -> str:
+    return f"{held} of {rows} rows: {message}"
+
+
+def covering_flags(pad: Covering | None, depth: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """Return where the model of a covering does not hold at a compression; numbers may be arrays."""
+    if pad is None:
+        return {}
+    radii = [numbers["radius"], numbers["second_radius"]]
+    flags = shape_flags(depth, radii=radii, thickness=numbers["thickness"], half_width=pad.half_width)
+    with np.errstate(invalid="ignore"):
+        return {**flags, "beyond_thickness": np.asarray(depth) > np.asarray(numbers["thickness"])}
+
+
+def implausible_numbers(pad: Covering | None, region: str, numbers: Mapping[str, Any]) -> Doubts:
+    """Return a warning for every number of a contact that is hardly what was meant."""
+    values = {name: numbers[name] for name in _QUANTITIES if not (name == "stiffness" and region == "power")}
+    quantities = dict(_QUANTITIES)
+    if pad is not None:
+        law = pad.material
+        for place, name in enumerate(law.keys.values()):
+            # One of both numbers of a power law may be 0.
+            if name in ("modulus", "plateau") or (isinstance(law, Rusch) and name in ("a", "b")):
+                values[name], quantities[name] = numbers[f"material_{place}"], "covering_stress"
+        if isinstance(law, StressTable):
+            values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
+    return implausible({name: _judged(value) for name, value in values.items()}, quantities)
+
+
+def _judged(value: Any) -> Any:
+    """Return what of a number can be implausible: not what is 0, below 0, infinite or not given."""
+    given = np.asarray(value, dtype=np.float64)
+    return np.where((given > 0.0) & np.isfinite(given), given, np.nan)
+
+
+def not_checked(names: tuple[str, ...]) -> Doubts:
+    """Return a warning for every limit that was not checked."""
+    return tuple(
+        ResultWarning(
+            "not_checked",
+            f"limits.{name}",
+            f"the {name} is not checked: no limit is given{', or no area of contact' if name == 'pressure' else ''}",
+        )
+        for name in names
+    )
