@@ -175,6 +175,24 @@ def test_more_contacts_than_fit_are_refused_before_memory_is_taken() -> None:
         contact.batch(robot_mass=np.ones((100_000, 1)), closing_speed=np.full(100_000, 0.3), region=25e3)
 
 
+def test_sensitivities_with_a_covering() -> None:
+    given: dict[str, Any] = {"robot_mass": 8.0, "region": 25e3, "limits": {"force": 280.0}}
+    found = contact.sensitivity(**given, covering=PAD)
+    assert set(found) >= {"robot_mass", "thickness", "modulus"}
+    assert found["robot_mass"] == pytest.approx(-0.5, abs=1e-6)
+    # p = 1 is the end of its range: the slope is from one side.
+    power = contact.Covering(material=contact.Rusch(a=2e5, p=1.0, b=1e5, q=3.0), thickness=0.02, area=4e-3)
+    one_sided = contact.sensitivity(**given, covering=power)
+    speeds = [
+        contact.allowed_speed(
+            **given,
+            covering=contact.Covering(material=contact.Rusch(a=2e5, p=p, b=1e5, q=3.0), thickness=0.02, area=4e-3),
+        ).speed
+        for p in (1.0, 0.999)
+    ]
+    assert one_sided["p"] == pytest.approx(math.log(speeds[0] / speeds[1]) / -math.log(0.999), rel=1e-2)
+
+
 # ---- margins along a run ------------------------------------------------------------------------
 
 
