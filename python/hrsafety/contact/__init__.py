@@ -11,6 +11,7 @@ from hrsafety.contact.base import (
     contact_margins,
     contact_speed_limit,
 )
+from hrsafety.contact.catalogs import CatalogMaterial, load_materials
 from hrsafety.contact.chance import Exceedance, probability
 from hrsafety.contact.covering import Column, Covering, Region
 from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
@@ -30,6 +31,7 @@ __all__ = [
     "AllowedSpeed",
     "AllowedSpeeds",
     "Avalle",
+    "CatalogMaterial",
     "Column",
     "ContactBatch",
     "ContactImpact",
@@ -52,6 +54,7 @@ __all__ = [
     "contact_margins",
     "contact_speed_limit",
     "free_from_fixed_force",
+    "load_materials",
     "material",
     "probability",
     "sensitivity",
