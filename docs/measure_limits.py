@@ -22,7 +22,7 @@ from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
 from hrsafety.navigation.trajectory import Outcome
 from hrsafety.reactive.sound.fixes import STATUS_WORDS as FIX_WORDS
-from hrsafety.standards.contact_limits import VERDICTS
+from hrsafety.standards.verdicts import VERDICTS
 from measure_laws import LAWS
 from page_tables import DOCS, head, line, percent, print_or_write
 

@@ -11,17 +11,15 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, number, numbers
 from hrsafety.errors import InvalidParameterError
+from hrsafety.standards.verdicts import strictest
 
-__all__ = ["CERTAINTIES", "CONTACTS", "VERDICTS", "ContactLimit", "Quantity", "Verdict"]
+__all__ = ["CERTAINTIES", "CONTACTS", "ContactLimit", "Quantity", "Verdict"]
 
 CONTACTS = ("quasi_static", "transient")
 """Clamped: the region cannot give way. Transient: it is free to."""
 
 CERTAINTIES = ("certain", "likely", "single_source", "not_stated")
 """How sure a number is; only the first one goes without saying."""
-
-VERDICTS = ("not_permitted", "exceeds", "not_checked", "within_limits")
-"""What a load means for a limit: of several the first one counts."""
 
 Words = npt.NDArray[np.str_]
 
@@ -240,7 +238,7 @@ class ContactLimit:
             missing if force is None else str(self.force_verdict(number("force", force))),
             missing if pressure is None else str(self.pressure_verdict(number("pressure", pressure))),
         )
-        return Verdict(next(word for word in VERDICTS if word in words), *words)
+        return Verdict(strictest(words), *words)
 
     def _verdicts(self, name: str, given: object, limit: float | None) -> Words:
         loads = _loads(name, given)

@@ -1,0 +1,64 @@
+"""What loads and speeds mean for limits: the words of verdicts, their order and how they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from types import MappingProxyType
+
+__all__ = ["VERDICTS", "VERDICT_WORDS", "speed_verdict", "strictest"]
+
+VERDICT_WORDS = MappingProxyType(
+    {
+        "not_permitted": "not permitted",
+        "exceeds": "exceeds",
+        "not_checked": "not checked",
+        "within_limits": "within limits",
+    }
+)
+"""Verdicts as pages and tables show them; only the last one is good."""
+
+VERDICTS = tuple(VERDICT_WORDS)
+"""What a load means for a limit: of several the first one counts."""
+
+
+def strictest(words: Iterable[str]) -> str:
+    """Return the verdict that counts of several; ``"not_checked"`` without any.
+
+    Parameters
+    ----------
+    words : iterable of str
+        Verdicts.
+
+    Returns
+    -------
+    str
+        One of `VERDICTS`.
+    """
+    given = set(words)
+    return next((word for word in VERDICTS if word in given), "not_checked")
+
+
+def speed_verdict(planned: float, allowed: float | None, *, permitted: bool, checked: bool) -> str:
+    """Return what a planned closing speed means beside the allowed one.
+
+    Parameters
+    ----------
+    planned : float
+        In m/s.
+    allowed : float or None
+        In m/s; ``None`` where nothing limits it, or nothing is known.
+    permitted : bool
+        Whether contact is permitted at all.
+    checked : bool
+        Whether every limit was checked: one that was not never counts as kept.
+
+    Returns
+    -------
+    str
+        One of `VERDICTS`.
+    """
+    if not permitted:
+        return "not_permitted"
+    if allowed is not None and not planned <= allowed:
+        return "exceeds"
+    return "within_limits" if checked else "not_checked"
