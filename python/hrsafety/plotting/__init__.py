@@ -1,6 +1,6 @@
 """Pictures of results: paths, forces, distances, energies, studies and animations.
 
-Every function takes results of `hrsafety.navigation`, `hrsafety.impact` or `hrsafety.arms`, computes no physics,
+Every function takes results of `hrsafety.navigation`, `.impact`, `.contact`, `.standards` or `.arms`, computes no physics,
 and returns a ``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
 with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
 units. matplotlib is imported when a picture is asked for; without it the functions raise
@@ -10,7 +10,7 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_below
-from hrsafety.plotting import arms, comparisons, gains, impacts, reactive, robots, runs, sweeps
+from hrsafety.plotting import arms, comparisons, contacts, gains, impacts, reactive, robots, runs, sweeps
 from hrsafety.plotting.arms.ellipses import mass_ellipse
 from hrsafety.plotting.comparisons.law_runs import comparison_distances, comparison_paths, comparison_sequence
 from hrsafety.plotting.comparisons.repeated import repeated_distances, repeated_paths
@@ -41,6 +41,7 @@ __all__ = [
     "comparison_sequence",
     "comparison_standings",
     "comparisons",
+    "contacts",
     "distances",
     "energy",
     "flatness",
@@ -76,5 +77,5 @@ __all__ = [
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
     __getattr__, __dir__ = names_below(
-        __name__, __all__, [arms, comparisons, gains, impacts, reactive, robots, runs, sweeps]
+        __name__, __all__, [arms, comparisons, contacts, gains, impacts, reactive, robots, runs, sweeps]
     )

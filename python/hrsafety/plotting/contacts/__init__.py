@@ -1,0 +1,6 @@
+"""Pictures of contacts with people."""
+
+from hrsafety.plotting.contacts.loads import contact_forces, forces_over_speed
+from hrsafety.plotting.contacts.speeds import contact_sensitivity, speed_map, speed_over_distance
+
+__all__ = ["contact_forces", "contact_sensitivity", "forces_over_speed", "speed_map", "speed_over_distance"]

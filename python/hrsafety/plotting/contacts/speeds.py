@@ -1,0 +1,187 @@
+"""Allowed speeds of contacts: over a covering, over the distance, and what they hang on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import instance, vector
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.plotting import style
+from hrsafety.standards import SpeedCurve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["contact_sensitivity", "speed_map", "speed_over_distance"]
+
+MILLI = 1000.0
+MODES = {"contact": "contact allowed at this speed", "separation": "stop before contact"}
+
+
+@style.styled
+def speed_map(
+    thickness: npt.ArrayLike,
+    strength: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    *,
+    quantity: str = "modulus (Pa)",
+    wanted: float | None = None,
+    own: tuple[float, float] | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw the allowed speed over the thickness and a number of the law of a covering.
+
+    Parameters
+    ----------
+    thickness : array_like, shape (n,)
+        In m, rising.
+    strength : array_like, shape (k,)
+        Number of the law, rising; both axes are logarithmic.
+    speed : array_like, shape (n, k)
+        Allowed closing speeds in m/s, of `contact.allowed_speeds`; NaN is left blank.
+    quantity : str
+        Label of the number with its unit.
+    wanted : float or None
+        Speed in m/s whose contour is drawn.
+    own : tuple of two floats or None
+        Thickness and number of a covering to mark.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    ShapeError
+        If ``speed`` has another shape.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import plotting
+    >>> figure = plotting.contacts.speed_map([0.01, 0.02], [1e5, 2e5], [[0.3, 0.4], [0.5, 0.6]], wanted=0.45)
+    """
+    rows, columns = vector("thickness", thickness), vector("strength", strength)
+    table = np.asarray(speed, dtype=np.float64)
+    if table.shape != (len(rows), len(columns)):
+        raise ShapeError("speed", f"({len(rows)}, {len(columns)})", table.shape)
+    figure = style.new_figure(4.4, title=title)
+    axes = figure.subplots()
+    colors = axes.pcolormesh(columns, MILLI * rows, table, shading="nearest", rasterized=False)
+    bar = figure.colorbar(colors, ax=axes, label="allowed closing speed (m/s)")
+    known = table[np.isfinite(table)]
+    if wanted is not None and known.size and known.min() < wanted < known.max():
+        axes.contour(columns, MILLI * rows, table, levels=[wanted], colors="white", linewidths=1.8)
+        bar.ax.axhline(wanted, color="white", linewidth=1.8)
+    if own is not None:
+        axes.plot([own[1]], [MILLI * own[0]], "o", color="white", markeredgecolor="black", label="planned covering")
+        axes.legend(loc="lower right", frameon=True)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.grid(visible=False)
+    axes.set_xlabel(quantity)
+    axes.set_ylabel("thickness (mm)")
+    ticks, words = style.log_ticks(MILLI * float(rows[0]), MILLI * float(rows[-1]))
+    axes.set_yticks(ticks, labels=words)
+    axes.yaxis.set_minor_formatter("")
+    return figure
+
+
+@style.styled
+def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figure:
+    """Draw the speed that is allowed at each distance to a person, v(d).
+
+    Parameters
+    ----------
+    curve : SpeedCurve
+        Of `standards.speed_over_distance`.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture; each mode has a line of its own, and the robot's own limit is dotted.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import plotting, standards
+    >>> curve = standards.speed_over_distance(
+    ...     [0.2, 1.0, 2.0], contact_speed=0.25, max_speed=1.5, reaction_time=0.1, deceleration=3.0
+    ... )
+    >>> plotting.contacts.speed_over_distance(curve).axes[0].get_xlabel()
+    'distance to the person (m)'
+    """
+    instance("curve", curve, SpeedCurve)
+    figure = style.new_figure(3.6, title=title)
+    axes = figure.subplots()
+    for index, (mode, words) in enumerate(MODES.items()):
+        here = (curve.mode == mode) & ~curve.capped
+        # A line reaches to the first point of the next one.
+        joined = here | np.concatenate([[False], here[:-1]])
+        label = "contact not permitted: rest" if mode == "contact" and curve.status == "not_permitted" else words
+        if here.any():
+            axes.plot(curve.distance, np.where(joined, curve.speed, np.nan), label=label, **style.run_look(index))
+    if curve.capped.any():
+        drawn = np.where(curve.capped, curve.speed, np.nan)
+        axes.plot(curve.distance, drawn, color=style.NEUTRAL, linestyle=(0, (1, 1)), label="largest speed of the robot")
+    axes.set_xlabel("distance to the person (m)")
+    axes.set_ylabel("speed (m/s)")
+    axes.set_xlim(float(curve.distance[0]), float(curve.distance[-1]))
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="best")
+    return figure
+
+
+@style.styled
+def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None) -> Figure:
+    """Draw what an allowed speed hangs on, the largest first.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        d ln v/d ln x by name, of `contact.sensitivity`.
+    title : str or None
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no value.
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import plotting
+    >>> figure = plotting.contacts.contact_sensitivity({"force_limit": 1.0, "robot_mass": -0.5})
+    """
+    if not values:
+        raise InvalidParameterError("values", "hold at least one sensitivity", Shown("none"))
+    names = list(values)[::-1]
+    figure = style.new_figure(0.9 + 0.3 * len(names), title=title)
+    axes = figure.subplots()
+    colors = [style.RUN_COLORS[0] if values[name] > 0.0 else style.PERSON_COLORS[0] for name in names]
+    axes.barh([name.replace("_", " ") for name in names], [values[name] for name in names], color=colors, height=0.65)
+    axes.axvline(0.0, color=style.NEUTRAL, linewidth=0.8)
+    axes.set_xlabel("change of the allowed speed in % for 1 % more")
+    axes.grid(visible=False, axis="y")
+    return figure
