@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms, benchmark."""
+"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms, judge contacts."""
 
 from __future__ import annotations
 
@@ -150,6 +150,12 @@ def _arm(options: argparse.Namespace) -> None:
         show_arm(options)
 
 
+def _contact(options: argparse.Namespace) -> None:
+    from hrsafety.cli.cell import report_cell
+
+    report_cell(options)
+
+
 def _benchmark(options: argparse.Namespace) -> None:
     from hrsafety.cli.benchmark import run_suite
 
@@ -163,5 +169,6 @@ _COMMANDS = {
     "optimize": _optimize,
     "sweep": _sweep,
     "arm": _arm,
+    "contact": _contact,
     "benchmark": _benchmark,
 }

@@ -87,6 +87,15 @@ and in drawn poses. The folder receives masses.csv and mass_ellipse.png, the mas
 pose with the worst mass.
 """
 
+_CONTACT_EXAMPLE = """examples:
+  hrsafety contact --init cell.toml
+  hrsafety contact examples/contact_arm.toml --out report --date 2026-03-31
+
+The file names a robot (an arm from URDF, a mobile base or a mass), coverings, the regions of the body
+that may be touched and the planned speeds. The folder receives report.html, a page that prints on A4,
+and report.json with every number of it; the same file gives the same bytes. The date is printed only
+if it is given here or by SOURCE_DATE_EPOCH.
+"""
 
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
@@ -164,6 +173,7 @@ def parser() -> argparse.ArgumentParser:
     _add_optimize(commands)
     _add_sweep(commands)
     _add_arm(commands)
+    _add_contact(commands)
     _add_benchmark(commands)
     return whole
 
@@ -334,6 +344,20 @@ def _add_arm(commands: Any) -> None:
         "--armature", metavar="NAME=VALUE", action="append", help="reflected motor inertia in kg m^2; can be repeated"
     )
     arm.add_argument("--lock", metavar="NAME", action="append", help="joint that keeps its value; can be repeated")
+
+
+def _add_contact(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "contact",
+        summary="judge planned contacts with people and write a report to hand over",
+        example=_CONTACT_EXAMPLE,
+    )
+    parser.add_argument("cell", nargs="?", default="cell.toml", metavar="CELL.toml", help="cell file [%(default)s]")
+    parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
+    parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
+    parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
+    _add_strict(parser)
 
 
 def _add_benchmark(commands: Any) -> None:
