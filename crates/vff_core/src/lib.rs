@@ -9,6 +9,7 @@
 pub use numeric::{error, lanes};
 
 pub mod arguments;
+pub mod crowd;
 pub mod laws;
 pub mod robots;
 pub mod run;

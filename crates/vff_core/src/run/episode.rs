@@ -64,15 +64,23 @@ pub struct Episode<P> {
 
 impl<P: Parts> Episode<P> {
     /// A run at its start, where the robot senses for the first time.
-    pub(crate) fn starting(mut parts: P, clock: Clock) -> Result<Self> {
-        parts.look_around(&clock, 0);
-        parts.check(0.0)?;
-        parts.sense(&clock, 0);
-        Ok(Self {
+    pub(crate) fn starting(parts: P, clock: Clock) -> Result<Self> {
+        let mut episode = Self {
             parts,
             clock,
             step: 0,
-        })
+        };
+        episode.restart(clock)?;
+        Ok(episode)
+    }
+
+    /// Starts again with its parts, which somebody has brought back to the start.
+    pub(crate) fn restart(&mut self, clock: Clock) -> Result<()> {
+        (self.clock, self.step) = (clock, 0);
+        self.parts.look_around(&self.clock, 0);
+        self.parts.check(0.0)?;
+        self.parts.sense(&self.clock, 0);
+        Ok(())
     }
 
     /// Whether the run has ended.

@@ -26,8 +26,10 @@ mod walls;
 
 pub use batch::{BatchOptions, run_batch};
 pub use episode::Episode;
+pub(crate) use episode::Parts;
 pub use group::AnyLaw;
 pub use navigation::{Navigation, Request};
+pub(crate) use options::Clock;
 pub use options::{Integrator, Options};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 pub use plan::{Instructions, Width};

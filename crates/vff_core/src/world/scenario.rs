@@ -189,6 +189,49 @@ impl Scenario {
         })
     }
 
+    /// A robot among people and robots who decide as they go, and things that stand: each obstacle
+    /// with its largest speed in m/s, `None` for no bound, and whether it stands. Where somebody stands
+    /// at the start says nothing of the goal, and the robot may be there already.
+    ///
+    /// # Errors
+    /// A value is out of range.
+    pub(crate) fn among(
+        robot: Mover,
+        [start, goal]: [[f64; 2]; 2],
+        obstacles: impl Iterator<Item = (Obstacle, Option<f64>, bool)>,
+        rules: Rules,
+        measurement: Option<Measurement>,
+    ) -> Result<Self> {
+        let (point, limits, differential) = match robot {
+            Mover::Holonomic(robot) => (robot, robot.checked()?.limits(), None),
+            Mover::Differential(robot) => {
+                (robot.reference(), robot.checked()?.limits(), Some(robot))
+            }
+        };
+        let sensing = Sensing {
+            measurement,
+            ..Sensing::default()
+        };
+        let placed = obstacles.map(|(obstacle, speed_bound, stationary)| {
+            Ok(PlacedObstacle {
+                speed_bound,
+                stationary,
+                ..place(&limits, obstacle, rules.control_period, &sensing)?
+            })
+        });
+        Ok(Self {
+            robot: point,
+            differential,
+            start,
+            goal,
+            obstacles: placed.collect::<Result<_>>()?,
+            rules,
+            measurement,
+            seed: 0,
+            map: None,
+        })
+    }
+
     /// The same scenario with noisy or late measurements drawn from a seed. Regions that were not
     /// given are sized for them.
     ///

@@ -13,7 +13,8 @@ pub(super) mod sight;
 pub use crate::robots::drives::{PoseFusion, Steered};
 pub use history::BuiltTrajectory;
 pub use many::{Histories, ManyOptions, ManyRuns, run_many_built};
-pub(super) use run::{clock_of, robot_under};
+pub(super) use run::clock_of;
+pub(crate) use run::robot_under;
 pub use run::{evaluate_built, simulate_built};
 
 use crate::error::{Failure, Given, Result, positive};
@@ -87,7 +88,7 @@ impl Built {
     }
 
     /// Where a run of the robot starts.
-    pub(super) fn start_in(&self, scenario: &Scenario) -> Start {
+    pub(crate) fn start_in(&self, scenario: &Scenario) -> Start {
         Start {
             point: scenario.robot,
             position: scenario.start,

@@ -1,0 +1,27 @@
+//! People that react to each other and to robots, all in one world that moves in step.
+//!
+//! One file per pedestrian model; [`neighbors`] says who is near whom, [`world`] what there is, and
+//! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
+
+pub mod collision_free_speed;
+pub mod models;
+pub mod moussaid;
+pub mod neighbors;
+pub mod pedestrian;
+pub mod people;
+pub mod reciprocal_people;
+mod record;
+pub mod robots;
+mod sight;
+pub mod simulation;
+pub mod snapshot;
+pub mod social_force_1995;
+pub mod social_force_2000;
+mod sources;
+pub mod walls;
+pub mod world;
+
+pub use models::Model;
+pub use record::Trajectories;
+pub use simulation::{Divergence, Simulation};
+pub use world::CrowdWorld;

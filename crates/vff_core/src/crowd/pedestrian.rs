@@ -1,0 +1,118 @@
+//! What a pedestrian model knows and answers.
+
+use crate::crowd::neighbors::Neighbors;
+use crate::crowd::walls::Wall;
+use crate::lanes::Vector2;
+use crate::laws::planning::half_planes::{HalfPlane, Solver};
+
+/// Nothing has a direction if it is shorter than this.
+pub const SHORTEST: f64 = 1e-9;
+
+/// Robots come after all people where numbers decide.
+pub const FIRST_ROBOT: u32 = 1 << 31;
+
+/// Somebody at an instant, as others see them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agent {
+    /// Position in m.
+    pub position: Vector2<f64>,
+    /// Velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Where a person wants to go, where a robot moves: of length 1, or zero.
+    pub direction: Vector2<f64>,
+    /// Radius in m.
+    pub radius: f64,
+    /// Number of a person; that of a robot is above [`FIRST_ROBOT`].
+    pub number: u32,
+}
+
+/// A person who decides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walker {
+    /// The person as others see them.
+    pub agent: Agent,
+    /// Speed `v0` that the person wants, in m/s.
+    pub desired_speed: f64,
+    /// Distance from the next point of the route in m.
+    pub to_go: f64,
+    /// Whether the route has ended: the person stays.
+    pub stays: bool,
+    /// Direction in which the person walked last, of length 1.
+    pub heading: Vector2<f64>,
+    /// Share `a` by which the person takes robots into account.
+    pub awareness: f64,
+}
+
+/// Members of the person's group, relative to the person.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Company {
+    /// Members present, the person included.
+    pub members: usize,
+    /// Sum of the ways from the person to the others, in m.
+    pub ways: Vector2<f64>,
+    /// Sum of the unit vectors from those nearer than the distance that groups keep.
+    pub crowding: Vector2<f64>,
+}
+
+/// Everything around a person.
+#[derive(Clone, Copy, Debug)]
+pub struct Around<'a> {
+    /// The others.
+    pub neighbors: Neighbors<'a>,
+    /// What stands.
+    pub walls: &'a [Wall],
+    /// Those the person belongs to.
+    pub company: &'a dyn Fellows,
+    /// How long the decision holds, in s.
+    pub step: f64,
+}
+
+/// The group of a person.
+pub trait Fellows: std::fmt::Debug {
+    /// Its members around a person; `near`: the distance in m below which they are too near.
+    fn company(&self, own: &Agent, near: f64) -> Company;
+}
+
+/// Nobody belongs together.
+#[derive(Clone, Copy, Debug)]
+pub struct Alone;
+
+impl Fellows for Alone {
+    fn company(&self, _own: &Agent, _near: f64) -> Company {
+        Company::default()
+    }
+}
+
+/// Room that decisions need, used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Room {
+    /// Nearest neighbors: distance, the neighbor, its weight, the vector from it.
+    pub nearest: Vec<(f64, Agent, f64, Vector2<f64>)>,
+    /// Half-planes of permitted velocities.
+    pub planes: Vec<HalfPlane>,
+    /// Linear programs.
+    pub solver: Solver,
+}
+
+/// A model of people.
+pub trait Pedestrian {
+    /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64>;
+}
+
+/// A vector of length 1, or zero for one without a direction.
+#[inline]
+#[must_use]
+pub fn direction_of(vector: Vector2<f64>) -> Vector2<f64> {
+    let length = vector.norm();
+    if length < SHORTEST {
+        return Vector2::zeros();
+    }
+    vector / length
+}
+
+/// Drive `(v0 e - v)/tau` of the force models.
+#[inline]
+pub(super) fn drive(own: &Walker, relaxation_time: f64) -> Vector2<f64> {
+    (own.agent.direction * own.desired_speed - own.agent.velocity) / relaxation_time
+}

@@ -1,0 +1,278 @@
+//! The people of a world as they are now, and what is drawn for each.
+
+use numeric::random::Stream;
+
+use crate::crowd::models::Model;
+use crate::crowd::neighbors::Period;
+use crate::crowd::pedestrian::{Agent, Company, Fellows, SHORTEST, Walker, direction_of};
+use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
+use crate::lanes::Vector2;
+
+type Vector = Vector2<f64>;
+
+/// Mean, standard deviation and bounds of walking speeds in m/s, Weidmann (1993).
+const SPEED: [f64; 4] = [1.34, 0.26, 0.5, 2.2];
+
+/// What is drawn; each purpose has streams of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    Speed = 1,
+    Distraction = 2,
+    Arrivals = 3,
+    Place = 4,
+    Measurement = 5,
+    Law = 6,
+}
+
+/// The stream of an agent or source for a purpose.
+pub(super) fn stream_of(seed: u64, purpose: Purpose, number: u64) -> Stream {
+    Stream::new(seed, ((purpose as u64) << 48) | number)
+}
+
+/// Where a person is on the route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// On the way.
+    Walking,
+    /// At the end, for good.
+    Staying,
+    /// No longer there.
+    Left,
+}
+
+/// A person now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PersonState {
+    /// Position in m.
+    pub position: Vector,
+    /// Velocity in m/s.
+    pub velocity: Vector,
+    /// Direction of the last decision, of models that keep it.
+    pub heading: Vector,
+    /// Radius in m.
+    pub radius: f64,
+    /// Wanted speed in m/s.
+    pub desired_speed: f64,
+    /// Share by which robots are taken into account.
+    pub awareness: f64,
+    /// Whether the person is there.
+    pub presence: Presence,
+    /// Number of the model.
+    pub model: u32,
+    /// The source it came from, if it did.
+    pub source: Option<u32>,
+    /// Group, if it belongs to one.
+    pub group: Option<u32>,
+    /// Next point of the route.
+    pub next: u32,
+    /// When the end of the route was reached, in s; NaN before.
+    pub arrival_time: f64,
+}
+
+impl PersonState {
+    /// A person with a number at a place.
+    #[allow(clippy::cast_possible_truncation)] // models and sources are few
+    pub(super) fn new(traits: &Traits, place: Vector, seed: u64, number: usize) -> Self {
+        let distracted = traits.distracted_share > 0.0
+            && stream_of(seed, Purpose::Distraction, number as u64).unit()
+                < traits.distracted_share;
+        let drawn = || drawn_speed(&mut stream_of(seed, Purpose::Speed, number as u64));
+        Self {
+            position: place,
+            velocity: Vector::zeros(),
+            heading: Vector::x(),
+            radius: traits.radius,
+            desired_speed: traits.desired_speed.unwrap_or_else(drawn),
+            awareness: if distracted { 0.0 } else { traits.awareness },
+            presence: if traits.route.points.is_empty() {
+                Presence::Staying
+            } else {
+                Presence::Walking
+            },
+            model: traits.model as u32,
+            source: None,
+            group: None,
+            next: 0,
+            arrival_time: f64::NAN,
+        }
+    }
+
+    /// One of the world at its start.
+    pub(super) fn at_start(setup: &PersonSetup, seed: u64, number: usize) -> Self {
+        Self {
+            velocity: setup.velocity.into(),
+            group: setup.group,
+            ..Self::new(&setup.traits, setup.start.into(), seed, number)
+        }
+    }
+
+    /// Whether the person is there.
+    #[must_use]
+    pub fn is_present(&self) -> bool {
+        self.presence != Presence::Left
+    }
+
+    /// The person as one who decides.
+    #[inline]
+    pub(super) fn walker(&self, number: u32, route: &Route) -> Walker {
+        let (mut direction, mut to_go) = (Vector::zeros(), 0.0);
+        if self.presence == Presence::Walking {
+            let way = Vector::from(route.points[self.next as usize]) - self.position;
+            to_go = way.norm();
+            direction = if to_go < SHORTEST {
+                direction
+            } else {
+                way / to_go
+            };
+        }
+        Walker {
+            agent: Agent {
+                position: self.position,
+                velocity: self.velocity,
+                direction,
+                radius: self.radius,
+                number,
+            },
+            desired_speed: self.desired_speed,
+            to_go,
+            stays: self.presence != Presence::Walking,
+            heading: self.heading,
+            awareness: self.awareness,
+        }
+    }
+
+    /// Moves for a time in s by a decision of the person's model.
+    #[inline]
+    pub(super) fn move_by(&mut self, decision: Vector, model: &Model, step: f64) {
+        self.velocity = if model.is_force() {
+            let velocity = self.velocity + decision * step;
+            let (speed, most) = (velocity.norm(), model.cap() * self.desired_speed);
+            if speed > most {
+                velocity * (most / speed)
+            } else {
+                velocity
+            }
+        } else {
+            decision
+        };
+        self.position += self.velocity * step;
+    }
+
+    /// Looks at the next points of the route at a time in s.
+    #[inline]
+    pub(super) fn follow(&mut self, route: &Route, time: f64) {
+        if self.presence != Presence::Walking {
+            return;
+        }
+        let radius = route.arrival_radius * route.arrival_radius;
+        for _ in 0..route.points.len() {
+            let way = Vector::from(route.points[self.next as usize]) - self.position;
+            if way.dot(&way) > radius {
+                return;
+            }
+            self.next += 1;
+            if self.next as usize == route.points.len() {
+                self.next = 0;
+                if route.end == RouteEnd::Repeat {
+                    continue;
+                }
+                self.presence = if route.end == RouteEnd::Leave {
+                    Presence::Left
+                } else {
+                    Presence::Staying
+                };
+                self.arrival_time = time;
+                return;
+            }
+        }
+    }
+}
+
+/// A walking speed: normal, and again if it is out of bounds.
+fn drawn_speed(stream: &mut Stream) -> f64 {
+    let [mean, deviation, least, most] = SPEED;
+    loop {
+        for normal in stream.normals() {
+            let speed = mean + deviation * normal;
+            if (least..=most).contains(&speed) {
+                return speed;
+            }
+        }
+    }
+}
+
+/// Largest speed in m/s that people of these traits want.
+pub(super) fn fastest(traits: &Traits) -> f64 {
+    traits.desired_speed.unwrap_or(SPEED[3])
+}
+
+/// The groups of a world.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Groups {
+    /// Members of every group by number.
+    members: Vec<Vec<u32>>,
+    /// Place of the group of every person in that list.
+    of: Vec<Option<u32>>,
+}
+
+impl Groups {
+    /// Of people at the start.
+    #[allow(clippy::cast_possible_truncation)] // there are at most a million people
+    pub fn fill(&mut self, people: &[PersonState]) {
+        self.of.clear();
+        self.members.clear();
+        if people.iter().all(|person| person.group.is_none()) {
+            return;
+        }
+        let mut names: Vec<u32> = people.iter().filter_map(|person| person.group).collect();
+        names.sort_unstable();
+        names.dedup();
+        self.members.resize(names.len(), Vec::new());
+        for (number, person) in (0_u32..).zip(people) {
+            let place = person
+                .group
+                .and_then(|name| names.binary_search(&name).ok());
+            if let Some(place) = place {
+                self.members[place].push(number);
+            }
+            self.of.push(place.map(|place| place as u32));
+        }
+    }
+}
+
+/// Groups as their members are now.
+#[derive(Debug)]
+pub(super) struct Companions<'a> {
+    pub groups: &'a Groups,
+    pub people: &'a [PersonState],
+    pub period: Period,
+}
+
+impl Fellows for Companions<'_> {
+    fn company(&self, own: &Agent, near: f64) -> Company {
+        let mut found = Company::default();
+        let group = self.groups.of.get(own.number as usize).copied().flatten();
+        let Some(group) = group else {
+            return found;
+        };
+        for &number in &self.groups.members[group as usize] {
+            let other = &self.people[number as usize];
+            if !other.is_present() {
+                continue;
+            }
+            found.members += 1;
+            if number == own.number {
+                continue;
+            }
+            let way = self.period.wrap(other.position - own.position);
+            found.ways += way;
+            let distance = way.norm();
+            if distance < SHORTEST {
+                found.crowding.x += if own.number < number { 1.0 } else { -1.0 };
+            } else if distance < near {
+                found.crowding -= direction_of(way);
+            }
+        }
+        found
+    }
+}

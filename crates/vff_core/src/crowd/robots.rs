@@ -1,0 +1,261 @@
+//! The robots of a world at work: what drives and moves each of them.
+
+use crate::crowd::neighbors::Period;
+use crate::crowd::pedestrian::{Agent, FIRST_ROBOT, direction_of};
+use crate::crowd::people::{PersonState, Purpose, stream_of};
+use crate::crowd::sight::{Known, Sight};
+use crate::crowd::world::CrowdWorld;
+use crate::error::Result;
+use crate::lanes::Vector2;
+use crate::laws::trace::Trace;
+use crate::laws::{Situation, Stop, force_toward};
+use crate::robots::drives::{MotorDrive, Order, Reading};
+use crate::run::built::{Built, robot_under};
+use crate::run::{Interrupted, Request, Steering};
+use crate::world::geometry::RobotState;
+use crate::world::scenario::{Rules, Scenario};
+
+/// Places for people of each source at first.
+const GUESTS: usize = 16;
+
+/// A robot at work.
+pub struct CrowdRobot {
+    reading: Reading,
+    radius: f64,
+    goal: Vector2<f64>,
+    tolerance: f64,
+    arrival_time: f64,
+    drive: Box<dyn MotorDrive>,
+    mass: f64,
+    /// A law with what it sees.
+    law: Option<(Box<dyn Steering>, Sight)>,
+    /// What is asked for from outside.
+    request: Request,
+    /// Steps of the world between two commands.
+    every: usize,
+    interval: f64,
+}
+
+impl CrowdRobot {
+    /// A robot of a world at its start; `part`: time between two motions in s.
+    pub(super) fn new(
+        world: &CrowdWorld,
+        people: &[PersonState],
+        index: usize,
+        part: f64,
+    ) -> Result<Self> {
+        let setup = &world.robots[index];
+        let sighted = match setup.law {
+            Some(_) => Some(Sight::new(world, people, index, guests(world))?),
+            None => None,
+        };
+        let (sight, known) =
+            sighted.map_or((None, Vec::new()), |(sight, known)| (Some(sight), known));
+        let scenario = scenario_of(world, index, known)?;
+        let built = Built {
+            step: part,
+            ..Built::default()
+        };
+        let start = built.start_in(&scenario);
+        let law = match (&setup.law, sight) {
+            (Some(law), Some(mut sight)) => {
+                sight.size(&scenario);
+                Some((law.driven().steering(&scenario)?, sight))
+            }
+            _ => None,
+        };
+        let built = match (&law, scenario.differential()) {
+            // From outside a robot with two wheels is told velocities and twists.
+            (None, Some(_)) => Built {
+                steered: crate::run::built::Steered::Velocity,
+                ..built
+            },
+            _ => built,
+        };
+        Ok(Self {
+            reading: Reading::at(&start),
+            radius: setup.radius(),
+            goal: setup.goal.into(),
+            tolerance: setup.arrival_tolerance,
+            arrival_time: f64::NAN,
+            drive: robot_under(&scenario, &built, setup.law.as_ref())?,
+            mass: scenario.mass(),
+            law,
+            request: Request::Law,
+            every: setup.steps(world.step)?,
+            interval: setup.control_period,
+        })
+    }
+
+    /// Position in m and velocity in m/s.
+    #[must_use]
+    pub fn state(&self) -> RobotState<f64> {
+        self.reading.robot
+    }
+
+    /// Heading in rad.
+    #[must_use]
+    pub fn heading(&self) -> f64 {
+        self.reading.heading
+    }
+
+    /// Radius in m.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// When it arrived, in s; NaN before.
+    #[must_use]
+    pub fn arrival_time(&self) -> f64 {
+        self.arrival_time
+    }
+
+    /// Whether it has arrived; it then brakes and stays.
+    #[must_use]
+    pub fn has_arrived(&self) -> bool {
+        !self.arrival_time.is_nan()
+    }
+
+    /// What parts around the law did in the last control period, if there are any.
+    #[must_use]
+    pub fn trace(&self) -> Option<Trace> {
+        self.law.as_ref()?.0.trace()
+    }
+
+    /// The robot as others see it.
+    #[allow(clippy::cast_possible_truncation)] // there are at most ten thousand robots
+    pub(super) fn agent(&self, index: usize) -> Agent {
+        let RobotState { position, velocity } = self.reading.robot;
+        Agent {
+            position,
+            velocity,
+            direction: direction_of(velocity),
+            radius: self.radius,
+            number: FIRST_ROBOT + index as u32,
+        }
+    }
+
+    /// What it is to do from the next command on; [`Request::Law`]: what its law says, or to stand.
+    pub(super) fn ask(&mut self, request: Request) {
+        self.request = request;
+    }
+
+    /// Keeps what is measured late, and looks whether it has arrived, at a time in s.
+    pub(super) fn watch(&mut self, people: &[PersonState], robots: &[Agent], time: f64) {
+        if let Some((_, sight)) = &mut self.law {
+            sight.watch(people, robots);
+        }
+        let away = (self.goal - self.reading.robot.position).norm();
+        if away <= self.tolerance && !self.has_arrived() {
+            self.arrival_time = time;
+        }
+    }
+
+    /// Decides if it is time to; `false` if what it decides is not finite.
+    pub(super) fn decide(
+        &mut self,
+        world: &CrowdWorld,
+        people: &[PersonState],
+        robots: &[Agent],
+        (step, time): (usize, f64),
+        (index, interrupted): (usize, Interrupted<'_>),
+    ) -> Result<bool> {
+        if !step.is_multiple_of(self.every) {
+            return Ok(true);
+        }
+        self.make_room(world, people, index)?;
+        let mut known = self.reading.robot;
+        let mut clear = true;
+        let mut situation = Situation {
+            time,
+            bodies: &[],
+            robot: known,
+            heading: self.drive.known_heading(),
+            interval: self.interval,
+            stop: Stop(interrupted),
+        };
+        let toward =
+            |velocity, known: &Situation<'_, f64>| force_toward(velocity, known, self.mass);
+        let force = match (self.request, &mut self.law) {
+            _ if !self.arrival_time.is_nan() => toward(Vector2::zeros(), &situation),
+            (Request::Force(force), _) => force.into(),
+            (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
+            (Request::Law, None) => toward(Vector2::zeros(), &situation),
+            (Request::Law, Some((law, sight))) => {
+                sight.look(people, robots, world, self.interval);
+                (known, clear) = (sight.own, sight.clear());
+                (situation.robot, situation.bodies) = (known, &sight.bodies);
+                law.command(&situation).force
+            }
+        };
+        self.drive.hold(&Order {
+            force,
+            fix: None,
+            clear,
+        });
+        Ok(force.norm().is_finite())
+    }
+
+    /// Gives its law more places if people from sources need them: its memory then starts anew.
+    fn make_room(
+        &mut self,
+        world: &CrowdWorld,
+        people: &[PersonState],
+        index: usize,
+    ) -> Result<()> {
+        let (Some((law, sight)), Some(kind)) = (&mut self.law, &world.robots[index].law) else {
+            return Ok(());
+        };
+        let mut places = guests(world);
+        while !sight.admit(people) {
+            places *= 2;
+            let (more, known) = Sight::new(world, people, index, places)?;
+            let scenario = scenario_of(world, index, known)?;
+            *sight = more;
+            sight.size(&scenario);
+            *law = kind.driven().steering(&scenario)?;
+        }
+        Ok(())
+    }
+
+    /// Moves by a part of a step.
+    pub(super) fn travel(&mut self) {
+        self.reading = self.drive.step();
+    }
+
+    /// Whether its state is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        let RobotState { position, velocity } = self.reading.robot;
+        (position + velocity).norm().is_finite()
+    }
+
+    /// Distance of the surfaces from a disc in m.
+    pub(super) fn gap(&self, place: Vector2<f64>, radius: f64, period: &Period) -> f64 {
+        period.wrap(self.reading.robot.position - place).norm() - self.radius - radius
+    }
+}
+
+/// Places for people of each source.
+fn guests(world: &CrowdWorld) -> usize {
+    if world.sources.is_empty() { 0 } else { GUESTS }
+}
+
+/// What a law knows of the world before the run.
+fn scenario_of(world: &CrowdWorld, index: usize, known: Vec<Known>) -> Result<Scenario> {
+    let setup = &world.robots[index];
+    let rules = Rules {
+        control_period: setup.control_period,
+        time_limit: world.time_limit,
+        arrival_tolerance: setup.arrival_tolerance,
+        heading: setup.heading,
+        ..Rules::default()
+    };
+    let known = known
+        .into_iter()
+        .map(|one| (one.obstacle, one.bound, one.stands));
+    let seed = stream_of(world.seed, Purpose::Law, index as u64).bits();
+    let ends = [setup.start, setup.goal];
+    Scenario::among(setup.mover, ends, known, rules, setup.measurement)
+        .map(|scenario| scenario.reseeded(seed))
+}

@@ -1,0 +1,364 @@
+//! A world of people and robots as an episode of the one loop.
+//!
+//! Everybody moves in step: at an instant people and robots decide from the same snapshot, then all move. A step
+//! of the world is what a control period is elsewhere; models with a smaller largest step split it into equal
+//! motion steps, in each of which people decide anew. Robots decide in the first one, if it is time to.
+
+use crate::crowd::pedestrian::{Agent, Walker};
+use crate::crowd::people::{Companions, Groups, PersonState, Presence};
+use crate::crowd::record::Trajectories;
+use crate::crowd::robots::CrowdRobot;
+use crate::crowd::snapshot::{Setting, Snapshot};
+use crate::crowd::sources::Source;
+use crate::crowd::world::{CrowdWorld, Route, count_of};
+use crate::error::Result;
+use crate::lanes::Vector2;
+use crate::run::{Clock, Episode, Interrupted, Parts, Request};
+
+/// Share of a step by which a time limit may miss a whole number of them.
+const WHOLE: f64 = 1e-9;
+
+/// Whose state is no longer finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diverged {
+    /// A person by number.
+    Person(usize),
+    /// A robot by number.
+    Robot(usize),
+}
+
+/// The end of a world whose state is no longer finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divergence {
+    /// When, in s.
+    pub time: f64,
+    /// Who it is.
+    pub agent: Diverged,
+}
+
+/// What an episode of a crowd consists of.
+struct CrowdParts {
+    world: CrowdWorld,
+    people: Vec<PersonState>,
+    robots: Vec<CrowdRobot>,
+    /// The robots as others see them.
+    bodies: Vec<Agent>,
+    sources: Vec<Source>,
+    groups: Groups,
+    walkers: Vec<Option<Walker>>,
+    decisions: Vec<Vector2<f64>>,
+    snapshot: Snapshot,
+    reach: f64,
+    record: Option<Trajectories>,
+    /// Steps of the world so far.
+    instant: usize,
+    diverged: Option<Divergence>,
+    over: bool,
+}
+
+fn route_of<'a>(world: &'a CrowdWorld, person: &PersonState, number: usize) -> &'a Route {
+    match person.source {
+        Some(source) => &world.sources[source as usize].traits.route,
+        None => &world.people[number].traits.route,
+    }
+}
+
+fn clock_of(world: &CrowdWorld) -> Result<Clock> {
+    let parts = world.parts()?;
+    let steps = count_of((world.time_limit / world.step - WHOLE).ceil()).max(1);
+    Ok(Clock {
+        step: world.step / parts as f64,
+        steps_per_sample: parts,
+        steps: steps * parts,
+        interval: world.step,
+    })
+}
+
+impl CrowdParts {
+    fn new(world: CrowdWorld, record: bool) -> Self {
+        Self {
+            people: Vec::with_capacity(world.people.len()),
+            robots: Vec::with_capacity(world.robots.len()),
+            bodies: Vec::with_capacity(world.robots.len()),
+            sources: Vec::new(),
+            groups: Groups::default(),
+            walkers: Vec::new(),
+            decisions: Vec::new(),
+            snapshot: Snapshot::default(),
+            reach: 0.0,
+            record: record.then(Trajectories::default),
+            instant: 0,
+            diverged: None,
+            over: false,
+            world,
+        }
+    }
+
+    /// Brings everything to the start of the world.
+    fn open(&mut self, part: f64) -> Result<()> {
+        let world = &self.world;
+        let numbered = world.people.iter().enumerate();
+        self.people.clear();
+        self.people.extend(
+            numbered.map(|(number, setup)| PersonState::at_start(setup, world.seed, number)),
+        );
+        self.groups.fill(&self.people);
+        self.robots.clear();
+        for index in 0..world.robots.len() {
+            let robot = CrowdRobot::new(world, &self.people, index, part);
+            let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
+            self.robots.push(robot);
+        }
+        self.sources.clear();
+        let sources = world.sources.iter().enumerate();
+        self.sources
+            .extend(sources.map(|(index, setup)| Source::new(setup, world.seed, index)));
+        self.reach = world.reach();
+        self.instant = 0;
+        self.diverged = None;
+        self.over = false;
+        if let Some(record) = &mut self.record {
+            record.clear();
+        }
+        self.show_robots();
+        Ok(())
+    }
+
+    fn show_robots(&mut self) {
+        let robots = self.robots.iter().enumerate();
+        self.bodies.clear();
+        self.bodies
+            .extend(robots.map(|(index, robot)| robot.agent(index)));
+    }
+
+    /// Decides for all people and moves them for a time in s.
+    fn move_people(&mut self, part: f64) {
+        let (world, people) = (&self.world, &mut self.people);
+        if people.is_empty() {
+            return;
+        }
+        self.walkers.clear();
+        for (index, number) in (0..people.len()).zip(0_u32..) {
+            let person = &people[index];
+            let walker = || person.walker(number, route_of(world, person, index));
+            self.walkers.push(person.is_present().then(walker));
+        }
+        let setting = Setting {
+            walls: &world.walls,
+            company: &Companions {
+                groups: &self.groups,
+                people,
+                period: world.period,
+            },
+            period: world.period,
+            reach: self.reach,
+            step: part,
+        };
+        let model_of = |number: usize| &world.models[people[number].model as usize];
+        let (walkers, robots) = (&mut self.walkers, &self.bodies);
+        self.snapshot
+            .decide(&setting, walkers, robots, model_of, &mut self.decisions);
+        let decided = self.decisions.iter().zip(&self.walkers);
+        for (person, (decision, walker)) in people.iter_mut().zip(decided) {
+            if let Some(walker) = walker {
+                person.heading = walker.heading;
+                let model = &world.models[person.model as usize];
+                person.move_by(*decision, model, part);
+            }
+        }
+    }
+
+    /// Notes who is no longer at a finite place, at a time in s.
+    fn find_divergence(&mut self, time: f64) {
+        let lost = |person: &PersonState| {
+            person.is_present() && !(person.position + person.velocity).norm().is_finite()
+        };
+        let person = self.people.iter().position(lost).map(Diverged::Person);
+        let robot = || {
+            let found = self.robots.iter().position(|robot| !robot.is_finite());
+            found.map(Diverged::Robot)
+        };
+        let agent = person.or_else(robot);
+        self.diverged = agent.map(|agent| Divergence { time, agent });
+    }
+
+    /// Whether nothing is left to happen.
+    fn is_settled(&self) -> bool {
+        self.sources.is_empty()
+            && self.robots.iter().all(CrowdRobot::has_arrived)
+            && self
+                .people
+                .iter()
+                .all(|person| person.presence != Presence::Walking)
+    }
+}
+
+impl Parts for CrowdParts {
+    type Request = ();
+
+    fn ended(&self) -> bool {
+        self.over || self.diverged.is_some()
+    }
+
+    fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
+        let (world, people, bodies) = (&self.world, &self.people, &self.bodies);
+        let now = (self.instant, time);
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            let decided = robot.decide(world, people, bodies, now, (index, interrupted));
+            if !decided.map_err(|error| error.within(&format!("robots[{index}]")))? {
+                let agent = Diverged::Robot(index);
+                self.diverged = Some(Divergence { time, agent });
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn travel(&mut self, clock: &Clock, step: usize) {
+        self.move_people(clock.step);
+        for robot in &mut self.robots {
+            robot.travel();
+        }
+        self.show_robots();
+        self.find_divergence(clock.time(step + 1));
+    }
+
+    fn look_around(&mut self, _clock: &Clock, _step: usize) {}
+
+    fn check(&self, _time: f64) -> Result<()> {
+        // A state that is not finite ends the world: it is an outcome, not an error.
+        Ok(())
+    }
+
+    fn time_over(&mut self, _time: f64) {
+        self.over = true;
+    }
+
+    /// Waypoints, arrivals and exits; then people come, so that everybody is there for the next snapshot.
+    fn sense(&mut self, clock: &Clock, step: usize) {
+        if self.diverged.is_some() {
+            return;
+        }
+        let time = clock.time(step);
+        self.instant = step / clock.steps_per_sample;
+        for (number, person) in self.people.iter_mut().enumerate() {
+            let route = match person.source {
+                Some(source) => &self.world.sources[source as usize].traits.route,
+                None => &self.world.people[number].traits.route,
+            };
+            person.follow(route, time);
+        }
+        for robot in &mut self.robots {
+            robot.watch(&self.people, &self.bodies, time);
+        }
+        self.over |= self.is_settled();
+        if !self.over {
+            for (index, source) in self.sources.iter_mut().enumerate() {
+                source.admit(&self.world, index, time, &mut self.people, &self.robots);
+            }
+        }
+        if let Some(record) = &mut self.record {
+            record.push(time, &self.people, &self.robots);
+        }
+    }
+}
+
+/// A world under way: people decide by themselves, robots by their laws or by what they are told.
+///
+/// It can be started again in another world; its memory is used again.
+pub struct Simulation(Episode<CrowdParts>);
+
+impl Simulation {
+    /// A world at its start; `record`: with everybody's places at every step.
+    ///
+    /// # Errors
+    /// The world breaks a rule, or a law cannot work in it.
+    pub fn new(world: CrowdWorld, record: bool) -> Result<Self> {
+        world.check()?;
+        let clock = clock_of(&world)?;
+        let mut parts = CrowdParts::new(world, record);
+        parts.open(clock.step)?;
+        Episode::starting(parts, clock).map(Self)
+    }
+
+    /// Starts again in the same world after a change: another seed, other places.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the simulation cannot be stepped then.
+    pub fn restart(&mut self, change: impl FnOnce(&mut CrowdWorld)) -> Result<()> {
+        let parts = &mut self.0.parts;
+        change(&mut parts.world);
+        parts.over = true;
+        parts.world.check()?;
+        let clock = clock_of(&parts.world)?;
+        parts.open(clock.step)?;
+        self.0.restart(clock)
+    }
+
+    /// Tells a robot what to do from its next decision on; [`Request::Law`]: what its law says, or to stand
+    /// without one.
+    pub fn ask(&mut self, robot: usize, request: Request) {
+        if let Some(robot) = self.0.parts.robots.get_mut(robot) {
+            robot.ask(request);
+        }
+    }
+
+    /// Advances by one step of the world. Does nothing once it has ended.
+    ///
+    /// # Errors
+    /// The caller asked to stop.
+    #[inline]
+    pub fn step(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
+        self.0.period((), interrupted)
+    }
+
+    /// Advances to the end.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn completed(self, interrupted: Interrupted<'_>) -> Result<Self> {
+        self.0.run(interrupted).map(Self)
+    }
+
+    /// Whether it has ended: the time is over, nobody is on the way any more, or it has diverged.
+    #[must_use]
+    pub fn finished(&self) -> bool {
+        self.0.finished()
+    }
+
+    /// Time in s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.0.stepped()
+    }
+
+    /// The world.
+    #[must_use]
+    pub fn world(&self) -> &CrowdWorld {
+        &self.0.parts.world
+    }
+
+    /// The people, those who have left included.
+    #[must_use]
+    pub fn people(&self) -> &[PersonState] {
+        &self.0.parts.people
+    }
+
+    /// The robots.
+    #[must_use]
+    pub fn robots(&self) -> &[CrowdRobot] {
+        &self.0.parts.robots
+    }
+
+    /// Who is no longer at a finite place, if somebody is not.
+    #[must_use]
+    pub fn divergence(&self) -> Option<Divergence> {
+        self.0.parts.diverged
+    }
+
+    /// What was recorded so far.
+    #[must_use]
+    pub fn recorded(&self) -> Option<&Trajectories> {
+        self.0.parts.record.as_ref()
+    }
+}

@@ -1,0 +1,189 @@
+//! What stands among people: polylines, rectangles, discs, by their nearest points.
+
+use crate::crowd::pedestrian::SHORTEST;
+use crate::error::{Failure, Given, Result, finite_pair};
+use crate::lanes::Vector2;
+use crate::world::shape::{PlacedShape, Shape, into_axes, out_of_axes};
+
+type Vector = Vector2<f64>;
+
+/// Nearest point of a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// Unit vector away from the wall.
+    pub normal: Vector,
+    /// Distance in m, negative inside.
+    pub distance: f64,
+}
+
+/// A wall.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wall {
+    /// Segments between points in m.
+    Polyline(Vec<Vector>),
+    /// A disc or a rectangle.
+    Solid(PlacedShape),
+}
+
+impl Wall {
+    /// Segments from point to point.
+    ///
+    /// # Errors
+    /// There are fewer than two points, or one is not finite.
+    pub fn polyline(points: Vec<[f64; 2]>) -> Result<Self> {
+        if points.len() < 2 {
+            let given = Given::Count(points.len() as u64);
+            return Err(Failure::invalid("points", "be two points or more", given));
+        }
+        for (index, point) in points.iter().enumerate() {
+            finite_pair(&format!("points[{index}]"), *point)?;
+        }
+        Ok(Self::Polyline(
+            points.into_iter().map(Vector::from).collect(),
+        ))
+    }
+
+    /// A disc or a rectangle.
+    ///
+    /// # Errors
+    /// A number is not finite or not positive.
+    pub fn solid(shape: PlacedShape) -> Result<Self> {
+        Ok(Self::Solid(shape.checked()?))
+    }
+
+    /// The nearest point; of segments at the same distance that of the first. `None` on the wall.
+    #[inline]
+    #[must_use]
+    pub fn nearest(&self, place: Vector) -> Option<Near> {
+        match self {
+            Self::Polyline(points) => {
+                let mut best = (f64::INFINITY, Vector::zeros());
+                for ends in points.windows(2) {
+                    let offset = from_segment(ends, place);
+                    let squared = offset.dot(&offset);
+                    if squared < best.0 {
+                        best = (squared, offset);
+                    }
+                }
+                off(best.1)
+            }
+            Self::Solid(shape) => off_contour(shape, place),
+        }
+    }
+
+    /// The nearest point of every segment, or of the contour, in order.
+    #[inline]
+    pub fn each_part(&self, place: Vector, mut see: impl FnMut(Near)) {
+        match self {
+            Self::Polyline(points) => points
+                .windows(2)
+                .filter_map(|ends| off(from_segment(ends, place)))
+                .for_each(see),
+            Self::Solid(shape) => {
+                if let Some(near) = off_contour(shape, place) {
+                    see(near);
+                }
+            }
+        }
+    }
+
+    /// Distance of a place from the wall in m, negative inside.
+    #[must_use]
+    pub fn clearance(&self, place: Vector) -> f64 {
+        self.nearest(place).map_or(0.0, |near| near.distance)
+    }
+}
+
+/// Vector from the nearest point of a segment to a place.
+fn from_segment(ends: &[Vector], place: Vector) -> Vector {
+    let (from, along) = (ends[0], ends[1] - ends[0]);
+    let offset = place - from;
+    let squared = along.dot(&along);
+    if squared == 0.0 {
+        return offset;
+    }
+    offset - along * (offset.dot(&along) / squared).clamp(0.0, 1.0)
+}
+
+fn off(offset: Vector) -> Option<Near> {
+    let distance = offset.norm();
+    (distance >= SHORTEST).then(|| Near {
+        normal: offset / distance,
+        distance,
+    })
+}
+
+fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
+    let offset = place - shape.center;
+    match shape.shape {
+        Shape::Disc { radius } => {
+            let length = offset.norm();
+            let distance = length - radius;
+            let normal = if length < SHORTEST {
+                Vector::x()
+            } else {
+                offset / length
+            };
+            (distance.abs() >= SHORTEST).then_some(Near { normal, distance })
+        }
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => {
+            let local = into_axes(offset, axis);
+            let depth = Vector::new(half_length - local.x.abs(), half_width - local.y.abs());
+            if depth.x < 0.0 || depth.y < 0.0 {
+                return off(shape.shape.offset(offset));
+            }
+            let least = depth.x.min(depth.y);
+            let outward = if depth.x <= depth.y {
+                Vector::new(1.0_f64.copysign(local.x), 0.0)
+            } else {
+                Vector::new(0.0, 1.0_f64.copysign(local.y))
+            };
+            (least >= SHORTEST).then(|| Near {
+                normal: out_of_axes(outward, axis),
+                distance: -least,
+            })
+        }
+    }
+}
+
+/// Sum of the pushes of all walls, each through its nearest point.
+#[inline]
+pub(super) fn pushes(walls: &[Wall], place: Vector, push: impl Fn(&Near) -> Vector) -> Vector {
+    let mut sum = Vector::zeros();
+    for wall in walls {
+        if let Some(near) = wall.nearest(place) {
+            sum += push(&near);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_acts_once_and_outward() {
+        let corner = Wall::polyline(vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]).unwrap();
+        let near = corner.nearest(Vector::new(1.0, 1.0)).unwrap();
+        assert_eq!((near.normal, near.distance), (Vector::new(0.0, 1.0), 1.0));
+        assert_eq!(corner.nearest(Vector::new(1.0, 0.0)), None);
+        let mut parts = 0;
+        corner.each_part(Vector::new(1.0, 1.0), |_| parts += 1);
+        assert_eq!(parts, 2);
+        let disc = Wall::solid(PlacedShape::disc([1.0, 0.0], 0.5)).unwrap();
+        let inside = disc.nearest(Vector::new(1.2, 0.0)).unwrap();
+        assert_eq!(inside.normal, Vector::x());
+        assert!((inside.distance + 0.3).abs() < 1e-15);
+        let block = Wall::solid(PlacedShape::upright([0.0, 0.0], [2.0, 1.0])).unwrap();
+        let inside = block.nearest(Vector::new(0.2, -0.4)).unwrap();
+        assert_eq!(inside.normal, Vector::new(0.0, -1.0));
+        assert!((inside.distance + 0.1).abs() < 1e-15);
+        assert!((block.clearance(Vector::new(4.0, 4.5)) - 5.0).abs() < 1e-15);
+        assert!(Wall::polyline(vec![[0.0, 0.0]]).is_err());
+    }
+}

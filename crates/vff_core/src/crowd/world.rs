@@ -1,0 +1,356 @@
+//! What a world of people and robots consists of, and what it must obey.
+
+use crate::crowd::models::Model;
+use crate::crowd::neighbors::Period;
+use crate::crowd::walls::Wall;
+use crate::error::{Failure, Given, Result, at_most, finite, finite_pair, not_negative, positive};
+use crate::lanes::Vector2;
+use crate::run::AnyLaw;
+use crate::sensing::measurement::Measurement;
+use crate::world::scenario::Mover;
+
+/// Largest deviation of a control period from a whole number of steps, relative.
+const WHOLE: f64 = 1e-9;
+
+/// Most people of a world, from the start and from sources.
+pub const MOST_PEOPLE: usize = 1_000_000;
+
+/// Most robots of a world.
+pub const MOST_ROBOTS: usize = 10_000;
+
+/// Most steps of a world.
+const MOST_STEPS: f64 = 1e7;
+
+/// What a person does at the end of the route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RouteEnd {
+    /// Stands there for good, and remains a neighbor.
+    Stay,
+    /// Is no longer there.
+    Leave,
+    /// Starts again with the first point.
+    Repeat,
+}
+
+/// Where a person walks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Points in m, one after the other; nobody goes anywhere without one.
+    pub points: Vec<[f64; 2]>,
+    /// What comes after the last one.
+    pub end: RouteEnd,
+    /// Distance in m at which a point is reached.
+    pub arrival_radius: f64,
+}
+
+impl Route {
+    /// Straight to a place, and to stay there.
+    #[must_use]
+    pub fn to(goal: [f64; 2]) -> Self {
+        Self {
+            points: vec![goal],
+            end: RouteEnd::Stay,
+            arrival_radius: 0.3,
+        }
+    }
+
+    fn check(&self) -> Result<()> {
+        for (index, point) in self.points.iter().enumerate() {
+            finite_pair(&format!("route[{index}]"), *point)?;
+        }
+        if self.points.is_empty() && self.end != RouteEnd::Stay {
+            let rule = "hold a point unless its end is \"stay\"";
+            let given = Given::Found("an empty route".into());
+            return Err(Failure::invalid("route", rule, given));
+        }
+        positive("arrival_radius", self.arrival_radius)?;
+        Ok(())
+    }
+}
+
+/// What people have in common, at the start or when they come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traits {
+    /// Radius in m.
+    pub radius: f64,
+    /// Wanted speed in m/s; drawn where `None`.
+    pub desired_speed: Option<f64>,
+    /// Share by which robots are taken into account.
+    pub awareness: f64,
+    /// Share of people whose awareness is 0.
+    pub distracted_share: f64,
+    /// Number of the model.
+    pub model: usize,
+    /// Where to.
+    pub route: Route,
+}
+
+impl Traits {
+    fn check(&self, models: usize) -> Result<()> {
+        positive("radius", self.radius)?;
+        if let Some(speed) = self.desired_speed {
+            not_negative("desired_speed", speed)?;
+        }
+        share("awareness", self.awareness)?;
+        share("distracted_share", self.distracted_share)?;
+        if self.model >= models {
+            let rule = format!("be below {models}, the number of models");
+            let given = Given::Count(self.model as u64);
+            return Err(Failure::invalid("model", rule, given));
+        }
+        self.route.check()
+    }
+}
+
+/// A person at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PersonSetup {
+    /// Position in m.
+    pub start: [f64; 2],
+    /// Velocity in m/s.
+    pub velocity: [f64; 2],
+    /// Members of a group have its number.
+    pub group: Option<u32>,
+    /// The rest.
+    pub traits: Traits,
+}
+
+/// Where people come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceSetup {
+    /// Lower left corner of a rectangle in m.
+    pub low: [f64; 2],
+    /// Upper right corner in m.
+    pub high: [f64; 2],
+    /// People per second.
+    pub rate: f64,
+    /// Whether they come at equal intervals, not at random.
+    pub regular: bool,
+    /// What they are like.
+    pub traits: Traits,
+}
+
+/// A robot at the start.
+#[derive(Clone)]
+pub struct RobotSetup {
+    /// What it is.
+    pub mover: Mover,
+    /// Position in m.
+    pub start: [f64; 2],
+    /// Goal in m.
+    pub goal: [f64; 2],
+    /// Heading in rad.
+    pub heading: f64,
+    /// Time between two commands in s.
+    pub control_period: f64,
+    /// Distance from the goal in m at which it has arrived.
+    pub arrival_tolerance: f64,
+    /// Distance in m up to which it sees people and robots.
+    pub sensing_range: f64,
+    /// Errors of what it sees.
+    pub measurement: Option<Measurement>,
+    /// What drives it; commands from outside where `None`.
+    pub law: Option<AnyLaw>,
+}
+
+impl RobotSetup {
+    /// Radius in m.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        match &self.mover {
+            Mover::Holonomic(robot) => robot.radius,
+            Mover::Differential(robot) => robot.radius,
+        }
+    }
+
+    /// Largest speed in m/s.
+    #[must_use]
+    pub fn max_speed(&self) -> f64 {
+        match &self.mover {
+            Mover::Holonomic(robot) => robot.max_speed,
+            Mover::Differential(robot) => robot.max_speed,
+        }
+    }
+
+    fn check(&self, step: f64) -> Result<()> {
+        match &self.mover {
+            Mover::Holonomic(robot) => robot.checked().map(|_| ())?,
+            Mover::Differential(robot) => robot.checked().map(|_| ())?,
+        }
+        finite_pair("start", self.start)?;
+        finite_pair("goal", self.goal)?;
+        finite("heading", self.heading)?;
+        positive("arrival_tolerance", self.arrival_tolerance)?;
+        positive("sensing_range", self.sensing_range)?;
+        positive("control_period", self.control_period)?;
+        self.steps(step)?;
+        Ok(())
+    }
+
+    /// Steps of the world between two commands.
+    pub(super) fn steps(&self, step: f64) -> Result<usize> {
+        let whole = (self.control_period / step).round();
+        if whole >= 1.0 && (whole * step - self.control_period).abs() <= WHOLE * self.control_period
+        {
+            return Ok(count_of(whole));
+        }
+        let rule = format!("be a multiple of the step of the world, {step} s");
+        let given = Given::Number(self.control_period);
+        Err(Failure::invalid("control_period", rule, given))
+    }
+}
+
+/// A world.
+#[derive(Clone)]
+pub struct CrowdWorld {
+    /// Who is there at the start.
+    pub people: Vec<PersonSetup>,
+    /// The robots.
+    pub robots: Vec<RobotSetup>,
+    /// Where more people come from.
+    pub sources: Vec<SourceSetup>,
+    /// What stands.
+    pub walls: Vec<Wall>,
+    /// Models of the people.
+    pub models: Vec<Model>,
+    /// Lengths in m after which the world repeats itself, 0 for none.
+    pub period: Period,
+    /// Time step in s.
+    pub step: f64,
+    /// Longest time in s.
+    pub time_limit: f64,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+}
+
+impl CrowdWorld {
+    /// Returns the world if it obeys its rules.
+    ///
+    /// # Errors
+    /// Names the argument, with the index of its owner, that does not.
+    pub fn checked(self) -> Result<Self> {
+        self.check()?;
+        Ok(self)
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        positive("step", self.step)?;
+        positive("time_limit", self.time_limit)?;
+        not_negative("period[0]", self.period.0[0])?;
+        not_negative("period[1]", self.period.0[1])?;
+        let substeps = (self.time_limit / self.step) * self.parts()? as f64;
+        if substeps > MOST_STEPS {
+            let rule = format!("be at most {MOST_STEPS} steps long");
+            let given = Given::Number(self.time_limit);
+            return Err(Failure::invalid("time_limit", rule, given));
+        }
+        at_most("len(people)", self.people.len(), MOST_PEOPLE)?;
+        at_most("len(robots)", self.robots.len(), MOST_ROBOTS)?;
+        for (index, person) in self.people.iter().enumerate() {
+            let owner = || format!("people[{index}]");
+            finite_pair("start", person.start)
+                .and_then(|_| finite_pair("velocity", person.velocity))
+                .and_then(|_| person.traits.check(self.models.len()))
+                .map_err(|error| error.within(&owner()))?;
+        }
+        for (index, source) in self.sources.iter().enumerate() {
+            self.check_source(source)
+                .map_err(|error| error.within(&format!("sources[{index}]")))?;
+        }
+        for (index, robot) in self.robots.iter().enumerate() {
+            robot
+                .check(self.step)
+                .and_then(|()| self.check_contact(index))
+                .map_err(|error| error.within(&format!("robots[{index}]")))?;
+        }
+        Ok(())
+    }
+
+    fn check_source(&self, source: &SourceSetup) -> Result<()> {
+        finite_pair("low", source.low)?;
+        finite_pair("high", source.high)?;
+        if source.high[0] < source.low[0] || source.high[1] < source.low[1] {
+            let rule = "not be below or left of low";
+            return Err(Failure::invalid("high", rule, Given::Pair(source.high)));
+        }
+        positive("rate", source.rate)?;
+        if source.rate * self.time_limit > MOST_PEOPLE as f64 {
+            let rule = format!("bring at most {MOST_PEOPLE} people within the time limit");
+            return Err(Failure::invalid("rate", rule, Given::Number(source.rate)));
+        }
+        source.traits.check(self.models.len())
+    }
+
+    /// Refuses a robot that touches somebody, another robot or a wall at the start.
+    fn check_contact(&self, index: usize) -> Result<()> {
+        let robot = &self.robots[index];
+        let place = Vector2::from(robot.start);
+        let gap = |other: [f64; 2], radius: f64| {
+            let way = self.period.wrap(place - Vector2::from(other));
+            way.norm() - robot.radius() - radius
+        };
+        let people = self.people.iter().enumerate().map(|(other, person)| {
+            let gap = gap(person.start, person.traits.radius);
+            (gap, "people", other)
+        });
+        let robots = self.robots[..index].iter().enumerate();
+        let robots =
+            robots.map(|(other, found)| (gap(found.start, found.radius()), "robots", other));
+        let walls = self.walls.iter().enumerate();
+        let walls =
+            walls.map(|(other, wall)| (wall.clearance(place) - robot.radius(), "walls", other));
+        for (gap, kind, other) in people.chain(robots).chain(walls) {
+            if gap < 0.0 {
+                let rule = format!("not be in contact with {kind}[{other}]");
+                let advice = format!("the bodies overlap by {:.4} m", -gap);
+                return Err(
+                    Failure::invalid("start", rule, Given::Pair(robot.start)).mended_by(advice)
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Parts of a step in which people decide anew.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub(super) fn parts(&self) -> Result<usize> {
+        let used = self.people.iter().map(|person| person.traits.model);
+        let used = used.chain(self.sources.iter().map(|source| source.traits.model));
+        let models = used.filter_map(|index| self.models.get(index));
+        let least = models
+            .map(Model::largest_step)
+            .fold(f64::INFINITY, f64::min);
+        let parts = (self.step / least - WHOLE).ceil().max(1.0);
+        if parts > MOST_STEPS {
+            let rule = "be at most 1e7 steps of the models of people";
+            return Err(Failure::invalid("step", rule, Given::Number(self.step)));
+        }
+        Ok(count_of(parts))
+    }
+
+    /// Farthest distance in m at which people act on each other.
+    pub(super) fn reach(&self) -> f64 {
+        let reach = self.models.iter().map(Model::cutoff);
+        reach.fold(0.0, f64::max)
+    }
+}
+
+/// Returns a share from 0 to 1.
+fn share(name: &str, value: f64) -> Result<f64> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    Err(Failure::invalid(
+        name,
+        "be from 0 to 1",
+        Given::Number(value),
+    ))
+}
+
+/// A checked, whole, not negative number as a count.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded by the caller
+pub(super) fn count_of(whole: f64) -> usize {
+    whole as usize
+}
