@@ -10,6 +10,7 @@ mod batch;
 mod built;
 mod contact;
 mod controller;
+mod crowd;
 mod differential;
 mod episode;
 mod errors;
@@ -63,6 +64,11 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::controller::Controller;
+    #[pymodule_export]
+    use crate::crowd::{
+        CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld, crowd_circle,
+        crowd_decisions, crowd_simulate,
+    };
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]

@@ -81,6 +81,13 @@ type Place = (f64, f64);
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Obstacle(obstacle::Obstacle);
 
+impl Obstacle {
+    /// The obstacle of the core.
+    pub fn core(&self) -> &obstacle::Obstacle {
+        &self.0
+    }
+}
+
 /// Radii and speed that every obstacle may have.
 fn limits_of(given: &Keywords<'_>) -> PyResult<Limits> {
     Ok(taken!(
@@ -188,6 +195,13 @@ impl Obstacle {
         let time: Vec<f64> = given.take("time")?;
         let position: Vec<[f64; 2]> = given.take("position")?;
         Self::moved(&given, || Motion::recorded(&time, &position))
+    }
+}
+
+impl Measurement {
+    /// The measurement of the core.
+    pub fn core(&self) -> measurement::Measurement {
+        self.0
     }
 }
 

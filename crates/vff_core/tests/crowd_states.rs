@@ -7,7 +7,7 @@ use serde_json::Value;
 use vff_core::arguments::Arguments;
 use vff_core::crowd::Model;
 use vff_core::crowd::neighbors::Period;
-use vff_core::crowd::pedestrian::{Agent, Company, FIRST_ROBOT, Fellows, Walker, direction_of};
+use vff_core::crowd::pedestrian::{Agent, FIRST_ROBOT, Groupings, Walker, direction_of};
 use vff_core::crowd::snapshot::{Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::error::{Failure, Given, Result};
@@ -54,33 +54,6 @@ impl Arguments for Parameters<'_> {
 
     fn places(&self, _: &str) -> Result<Vec<[f64; 3]>> {
         unreachable!()
-    }
-}
-
-/// Groups of a state.
-#[derive(Debug)]
-struct Groups {
-    of: Vec<i64>,
-    agents: Vec<Agent>,
-    period: Period,
-}
-
-impl Fellows for Groups {
-    fn company(&self, own: &Agent, near: f64) -> Company {
-        let group = self.of.get(own.number as usize).copied().unwrap_or(-1);
-        let mut found = Company::default();
-        for (number, other) in self.agents.iter().enumerate() {
-            if group < 0 || self.of[number] != group {
-                continue;
-            }
-            found.members += 1;
-            let way = self.period.wrap(other.position - own.position);
-            found.ways += way;
-            if way.norm() > 0.0 && way.norm() < near {
-                found.crowding -= direction_of(way);
-            }
-        }
-        found
     }
 }
 
@@ -165,18 +138,15 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     let period = state
         .get("period")
         .map_or([0.0; 2], |period| vector(period).into());
-    let groups = Groups {
-        of: state.get("group").map_or_else(
-            || vec![-1; all.len()],
-            |all| {
-                all.as_array()
-                    .unwrap()
-                    .iter()
-                    .map(|one| one.as_i64().unwrap())
-                    .collect()
-            },
-        ),
-        agents: all.iter().map(|(walker, _)| walker.agent).collect(),
+    let of: Vec<Option<u32>> = state.get("group").map_or_else(Vec::new, |all| {
+        let all = all.as_array().unwrap().iter();
+        all.map(|one| u32::try_from(one.as_i64().unwrap()).ok())
+            .collect()
+    });
+    let agents: Vec<Agent> = all.iter().map(|(walker, _)| walker.agent).collect();
+    let groups = Groupings {
+        agents: &agents,
+        of: &of,
         period: Period(period),
     };
     let people = all

@@ -3,6 +3,8 @@
 //! One file per pedestrian model; [`neighbors`] says who is near whom, [`world`] what there is, and
 //! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
 
+mod batch;
+pub mod circle;
 pub mod collision_free_speed;
 pub mod models;
 pub mod moussaid;
@@ -21,7 +23,8 @@ mod sources;
 pub mod walls;
 pub mod world;
 
+pub use batch::simulate_worlds;
 pub use models::Model;
 pub use record::Trajectories;
-pub use simulation::{Divergence, Simulation};
+pub use simulation::{Diverged, Divergence, Simulation};
 pub use world::CrowdWorld;

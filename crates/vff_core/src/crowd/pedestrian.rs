@@ -1,6 +1,6 @@
 //! What a pedestrian model knows and answers.
 
-use crate::crowd::neighbors::Neighbors;
+use crate::crowd::neighbors::{Neighbors, Period};
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
@@ -73,13 +73,52 @@ pub trait Fellows: std::fmt::Debug {
     fn company(&self, own: &Agent, near: f64) -> Company;
 }
 
-/// Nobody belongs together.
-#[derive(Clone, Copy, Debug)]
-pub struct Alone;
+/// The members of a group, by number and position, around one of them.
+pub(super) fn company_of(
+    own: &Agent,
+    members: impl Iterator<Item = (u32, Vector2<f64>)>,
+    near: f64,
+    period: Period,
+) -> Company {
+    let mut found = Company::default();
+    for (number, position) in members {
+        found.members += 1;
+        if number == own.number {
+            continue;
+        }
+        let way = period.wrap(position - own.position);
+        found.ways += way;
+        let distance = way.norm();
+        if distance < SHORTEST {
+            found.crowding.x += if own.number < number { 1.0 } else { -1.0 };
+        } else if distance < near {
+            found.crowding -= way / distance;
+        }
+    }
+    found
+}
 
-impl Fellows for Alone {
-    fn company(&self, _own: &Agent, _near: f64) -> Company {
-        Company::default()
+/// Groups at a state: the group of every agent, who are all people.
+#[derive(Clone, Copy, Debug)]
+pub struct Groupings<'a> {
+    /// Everybody by number.
+    pub agents: &'a [Agent],
+    /// Their groups.
+    pub of: &'a [Option<u32>],
+    /// Lengths after which the world repeats itself.
+    pub period: Period,
+}
+
+impl Fellows for Groupings<'_> {
+    fn company(&self, own: &Agent, near: f64) -> Company {
+        let group = self.of.get(own.number as usize).copied().flatten();
+        if group.is_none() {
+            return Company::default();
+        }
+        let all = self.agents.iter().zip(self.of);
+        let members = all.filter(|(_, other)| **other == group);
+        let places = members.map(|(agent, _)| (agent.number, agent.position));
+        company_of(own, places, near, self.period)
     }
 }
 

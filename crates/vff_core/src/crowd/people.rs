@@ -4,7 +4,7 @@ use numeric::random::Stream;
 
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Period;
-use crate::crowd::pedestrian::{Agent, Company, Fellows, SHORTEST, Walker, direction_of};
+use crate::crowd::pedestrian::{Agent, Company, Fellows, SHORTEST, Walker, company_of};
 use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
 use crate::lanes::Vector2;
 
@@ -250,29 +250,14 @@ pub(super) struct Companions<'a> {
 
 impl Fellows for Companions<'_> {
     fn company(&self, own: &Agent, near: f64) -> Company {
-        let mut found = Company::default();
         let group = self.groups.of.get(own.number as usize).copied().flatten();
         let Some(group) = group else {
-            return found;
+            return Company::default();
         };
-        for &number in &self.groups.members[group as usize] {
-            let other = &self.people[number as usize];
-            if !other.is_present() {
-                continue;
-            }
-            found.members += 1;
-            if number == own.number {
-                continue;
-            }
-            let way = self.period.wrap(other.position - own.position);
-            found.ways += way;
-            let distance = way.norm();
-            if distance < SHORTEST {
-                found.crowding.x += if own.number < number { 1.0 } else { -1.0 };
-            } else if distance < near {
-                found.crowding -= direction_of(way);
-            }
-        }
-        found
+        let members = self.groups.members[group as usize].iter();
+        let present = members.map(|number| (*number, &self.people[*number as usize]));
+        let present = present.filter(|(_, person)| person.is_present());
+        let places = present.map(|(number, person)| (number, person.position));
+        company_of(own, places, near, self.period)
     }
 }

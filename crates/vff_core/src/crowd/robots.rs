@@ -220,7 +220,7 @@ impl CrowdRobot {
     }
 
     /// Moves by a part of a step.
-    pub(super) fn travel(&mut self) {
+    pub(super) fn advance(&mut self) {
         self.reading = self.drive.step();
     }
 

@@ -11,12 +11,15 @@ use crate::crowd::robots::CrowdRobot;
 use crate::crowd::snapshot::{Setting, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, Route, count_of};
-use crate::error::Result;
+use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
 
 /// Share of a step by which a time limit may miss a whole number of them.
 const WHOLE: f64 = 1e-9;
+
+/// Most places of agents that a record keeps: 3 GB.
+const MOST_ROWS: f64 = 1e8;
 
 /// Whose state is no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +75,25 @@ fn clock_of(world: &CrowdWorld) -> Result<Clock> {
         steps: steps * parts,
         interval: world.step,
     })
+}
+
+/// Refuses a record that would not fit into memory.
+fn check_rows(world: &CrowdWorld, clock: &Clock) -> Result<()> {
+    let instants = (clock.steps / clock.steps_per_sample) as f64 + 1.0;
+    let coming = world.sources.iter().map(|source| source.rate);
+    let coming = coming.sum::<f64>() * world.time_limit;
+    let agents = world.people.len() as f64 + world.robots.len() as f64 + coming;
+    if instants * agents <= MOST_ROWS {
+        return Ok(());
+    }
+    let rule = format!("be at most {MOST_ROWS} agents times steps");
+    let given = Given::Number(world.time_limit);
+    Err(
+        Failure::invalid("time_limit", rule, given).mended_by(format!(
+            "{agents} agents at {instants} instants are {}",
+            instants * agents
+        )),
+    )
 }
 
 impl CrowdParts {
@@ -217,7 +239,7 @@ impl Parts for CrowdParts {
     fn travel(&mut self, clock: &Clock, step: usize) {
         self.move_people(clock.step);
         for robot in &mut self.robots {
-            robot.travel();
+            robot.advance();
         }
         self.show_robots();
         self.find_divergence(clock.time(step + 1));
@@ -276,6 +298,9 @@ impl Simulation {
     pub fn new(world: CrowdWorld, record: bool) -> Result<Self> {
         world.check()?;
         let clock = clock_of(&world)?;
+        if record {
+            check_rows(&world, &clock)?;
+        }
         let mut parts = CrowdParts::new(world, record);
         parts.open(clock.step)?;
         Episode::starting(parts, clock).map(Self)

@@ -86,18 +86,13 @@ pub struct Traits {
 }
 
 impl Traits {
-    fn check(&self, models: usize) -> Result<()> {
+    fn check(&self) -> Result<()> {
         positive("radius", self.radius)?;
         if let Some(speed) = self.desired_speed {
             not_negative("desired_speed", speed)?;
         }
         share("awareness", self.awareness)?;
         share("distracted_share", self.distracted_share)?;
-        if self.model >= models {
-            let rule = format!("be below {models}, the number of models");
-            let given = Given::Count(self.model as u64);
-            return Err(Failure::invalid("model", rule, given));
-        }
         self.route.check()
     }
 }
@@ -115,6 +110,18 @@ pub struct PersonSetup {
     pub traits: Traits,
 }
 
+impl PersonSetup {
+    /// Returns nothing if the values are in range.
+    ///
+    /// # Errors
+    /// Names the value that is not.
+    pub fn check(&self) -> Result<()> {
+        finite_pair("start", self.start)?;
+        finite_pair("velocity", self.velocity)?;
+        self.traits.check()
+    }
+}
+
 /// Where people come from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceSetup {
@@ -128,6 +135,23 @@ pub struct SourceSetup {
     pub regular: bool,
     /// What they are like.
     pub traits: Traits,
+}
+
+impl SourceSetup {
+    /// Returns nothing if the values are in range.
+    ///
+    /// # Errors
+    /// Names the value that is not.
+    pub fn check(&self) -> Result<()> {
+        finite_pair("low", self.low)?;
+        finite_pair("high", self.high)?;
+        if self.high[0] < self.low[0] || self.high[1] < self.low[1] {
+            let rule = "not be below or left of low";
+            return Err(Failure::invalid("high", rule, Given::Pair(self.high)));
+        }
+        positive("rate", self.rate)?;
+        self.traits.check()
+    }
 }
 
 /// A robot at the start.
@@ -172,7 +196,11 @@ impl RobotSetup {
         }
     }
 
-    fn check(&self, step: f64) -> Result<()> {
+    /// Returns nothing if the values are in range.
+    ///
+    /// # Errors
+    /// Names the value that is not.
+    pub fn check(&self) -> Result<()> {
         match &self.mover {
             Mover::Holonomic(robot) => robot.checked().map(|_| ())?,
             Mover::Differential(robot) => robot.checked().map(|_| ())?,
@@ -183,7 +211,6 @@ impl RobotSetup {
         positive("arrival_tolerance", self.arrival_tolerance)?;
         positive("sensing_range", self.sensing_range)?;
         positive("control_period", self.control_period)?;
-        self.steps(step)?;
         Ok(())
     }
 
@@ -247,38 +274,44 @@ impl CrowdWorld {
         at_most("len(people)", self.people.len(), MOST_PEOPLE)?;
         at_most("len(robots)", self.robots.len(), MOST_ROBOTS)?;
         for (index, person) in self.people.iter().enumerate() {
-            let owner = || format!("people[{index}]");
-            finite_pair("start", person.start)
-                .and_then(|_| finite_pair("velocity", person.velocity))
-                .and_then(|_| person.traits.check(self.models.len()))
-                .map_err(|error| error.within(&owner()))?;
+            person
+                .check()
+                .and_then(|()| self.check_model(&person.traits))
+                .map_err(|error| error.within(&format!("people[{index}]")))?;
         }
         for (index, source) in self.sources.iter().enumerate() {
-            self.check_source(source)
+            source
+                .check()
+                .and_then(|()| self.check_model(&source.traits))
+                .and_then(|()| self.check_rate(source))
                 .map_err(|error| error.within(&format!("sources[{index}]")))?;
         }
         for (index, robot) in self.robots.iter().enumerate() {
             robot
-                .check(self.step)
+                .check()
+                .and_then(|()| robot.steps(self.step).map(|_| ()))
                 .and_then(|()| self.check_contact(index))
                 .map_err(|error| error.within(&format!("robots[{index}]")))?;
         }
         Ok(())
     }
 
-    fn check_source(&self, source: &SourceSetup) -> Result<()> {
-        finite_pair("low", source.low)?;
-        finite_pair("high", source.high)?;
-        if source.high[0] < source.low[0] || source.high[1] < source.low[1] {
-            let rule = "not be below or left of low";
-            return Err(Failure::invalid("high", rule, Given::Pair(source.high)));
+    fn check_model(&self, traits: &Traits) -> Result<()> {
+        let models = self.models.len();
+        if traits.model < models {
+            return Ok(());
         }
-        positive("rate", source.rate)?;
-        if source.rate * self.time_limit > MOST_PEOPLE as f64 {
-            let rule = format!("bring at most {MOST_PEOPLE} people within the time limit");
-            return Err(Failure::invalid("rate", rule, Given::Number(source.rate)));
+        let rule = format!("be below {models}, the number of models");
+        let given = Given::Count(traits.model as u64);
+        Err(Failure::invalid("model", rule, given))
+    }
+
+    fn check_rate(&self, source: &SourceSetup) -> Result<()> {
+        if source.rate * self.time_limit <= MOST_PEOPLE as f64 {
+            return Ok(());
         }
-        source.traits.check(self.models.len())
+        let rule = format!("bring at most {MOST_PEOPLE} people within the time limit");
+        Err(Failure::invalid("rate", rule, Given::Number(source.rate)))
     }
 
     /// Refuses a robot that touches somebody, another robot or a wall at the start.
