@@ -1,0 +1,113 @@
+//! Contacts with people, and who brought them about; contacts with walls.
+
+use nalgebra::Vector2;
+
+use super::episode::Episode;
+
+/// Speeds that differ by no more are equal, in m/s.
+const ALIKE: f64 = 1e-9;
+/// Bodies whose centers are nearer than this have no direction between them, in m.
+const NOWHERE: f64 = 1e-9;
+
+/// Events up to the end; an event is a longest run of instants in which one person is touched.
+pub(super) struct Contacts {
+    pub robot_on_person: u32,
+    pub person_on_robot: u32,
+    pub mutual: u32,
+    pub max_closing_speed: f64,
+    pub walls: u32,
+    pub wall_clearance: f64,
+}
+
+impl Contacts {
+    pub fn of(episode: &Episode<'_>, end: usize) -> Self {
+        let (walls, wall_clearance) = at_walls(episode, end);
+        let mut contacts = Self {
+            robot_on_person: 0,
+            person_on_robot: 0,
+            mutual: 0,
+            max_closing_speed: 0.0,
+            walls,
+            wall_clearance,
+        };
+        for (person, radius) in episode.radii.iter().enumerate() {
+            let reach = episode.rules.robot_radius + radius;
+            let mut touched = false;
+            for instant in 0..=end {
+                // NaN, who is absent, is not nearer.
+                let touches = offset(episode, instant, person).norm() - reach < 0.0;
+                if touches && !touched {
+                    contacts.add(closing(episode, (instant, end), person));
+                }
+                touched = touches;
+            }
+        }
+        contacts
+    }
+
+    /// Whether nothing was touched.
+    pub fn none(&self) -> bool {
+        self.robot_on_person + self.person_on_robot + self.mutual + self.walls == 0
+    }
+
+    /// Adds an event with the speeds of robot and person toward each other.
+    fn add(&mut self, [robot, person]: [f64; 2]) {
+        self.max_closing_speed = self.max_closing_speed.max(robot + person);
+        let kind = if (robot - person).abs() <= ALIKE {
+            &mut self.mutual
+        } else if robot > person {
+            &mut self.robot_on_person
+        } else {
+            &mut self.person_on_robot
+        };
+        *kind += 1;
+    }
+}
+
+/// From the robot to a person.
+#[inline]
+fn offset(episode: &Episode<'_>, instant: usize, person: usize) -> Vector2<f64> {
+    let place = episode.people.at(instant)[person];
+    episode.rules.nearest_image(place - episode.robot[instant])
+}
+
+/// Speeds of robot and person toward each other over the step into a contact; over the next step where
+/// there is none before.
+fn closing(episode: &Episode<'_>, (instant, end): (usize, usize), person: usize) -> [f64; 2] {
+    let (people, step) = (&episode.people, episode.rules.step);
+    let came = instant > 0 && people.place(instant - 1, person).is_some();
+    let start = if came { instant - 1 } else { instant };
+    let to_person = offset(episode, start, person);
+    let distance = to_person.norm();
+    let toward = if distance < NOWHERE {
+        Vector2::x()
+    } else {
+        to_person / distance
+    };
+    if start >= end {
+        return [0.0; 2];
+    }
+    let robot = (episode.robot[start + 1] - episode.robot[start]) / step;
+    let other = people.velocity(start, person, step).unwrap_or_default();
+    [robot.dot(&toward).max(0.0), (-other.dot(&toward)).max(0.0)]
+}
+
+/// Number of contacts with walls, and least distance to one, in m.
+fn at_walls(episode: &Episode<'_>, end: usize) -> (u32, f64) {
+    let (mut count, mut least, mut touched) = (0, f64::INFINITY, false);
+    if episode.walls.is_empty() {
+        return (count, least);
+    }
+    for place in &episode.robot[..=end] {
+        let distances = episode
+            .walls
+            .iter()
+            .map(|wall| wall.signed_distance(*place));
+        let gap = distances.fold(f64::INFINITY, f64::min) - episode.rules.robot_radius;
+        let touches = gap < 0.0;
+        count += u32::from(touches && !touched);
+        touched = touches;
+        least = least.min(gap);
+    }
+    (count, least)
+}

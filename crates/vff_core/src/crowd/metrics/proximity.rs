@@ -1,0 +1,207 @@
+//! How near people are: clearances, zones, time to a collision, groups, social forces.
+
+use nalgebra::Vector2;
+
+use super::episode::Episode;
+use super::pressure;
+
+/// Ends of the intimate, personal and social zones of E. T. Hall (1966), in m.
+const ZONES: [f64; 3] = [0.45, 1.2, 3.6];
+/// Clearance from which on a robot is comfortable, in m.
+const COMFORT: f64 = 0.5;
+/// Clearance below which it is uncomfortable, in m.
+const DISCOMFORT: f64 = 0.2;
+/// A time to a collision below it is low, in s.
+const LOW_TIME: f64 = 2.0;
+
+/// What the distances to people tell.
+pub(super) struct Proximity {
+    pub min_clearance: f64,
+    pub mean_clearance: f64,
+    pub intimate_share: f64,
+    pub personal_share: f64,
+    pub social_share: f64,
+    pub comfort_share: f64,
+    pub discomfort_time: f64,
+    pub min_time_to_collision: f64,
+    pub low_time_to_collision_share: f64,
+    pub group_intrusion_share: f64,
+    pub force_on_people: f64,
+    pub force_on_robot: f64,
+}
+
+/// Sums over the instants.
+#[derive(Default)]
+struct Sums {
+    clearance: f64,
+    with_people: u32,
+    zones: [u32; 3],
+    comfort: u32,
+    discomfort: u32,
+    low_time: u32,
+    intrusion: u32,
+    force_on_people: f64,
+    force_on_robot: f64,
+}
+
+impl Proximity {
+    pub fn of(episode: &Episode<'_>, end: usize) -> Self {
+        let groups = members(episode.groups);
+        let mut sums = Sums::default();
+        let (mut least, mut least_time) = (f64::INFINITY, f64::INFINITY);
+        for instant in 0..=end {
+            let near = Near::at(episode, instant);
+            let moves = instant < end;
+            sums.count(&near, moves);
+            least = least.min(near.gap);
+            if moves {
+                let time = sums.step(episode, instant);
+                least_time = least_time.min(time);
+            }
+            let intruded = groups.iter().any(|group| intrudes(episode, instant, group));
+            sums.intrusion += u32::from(intruded);
+        }
+        let (step, steps) = (episode.rules.step, end as f64);
+        let share = |count: u32| f64::from(count) / (steps + 1.0);
+        Self {
+            min_clearance: least,
+            mean_clearance: sums.clearance / f64::from(sums.with_people),
+            intimate_share: share(sums.zones[0]),
+            personal_share: share(sums.zones[1]),
+            social_share: share(sums.zones[2]),
+            comfort_share: share(sums.comfort),
+            discomfort_time: f64::from(sums.discomfort) * step,
+            min_time_to_collision: least_time,
+            low_time_to_collision_share: f64::from(sums.low_time) / steps,
+            group_intrusion_share: share(sums.intrusion),
+            force_on_people: sums.force_on_people * step,
+            force_on_robot: sums.force_on_robot * step,
+        }
+    }
+}
+
+/// Least distances at an instant, in m; infinite without people.
+struct Near {
+    /// Between the surfaces.
+    gap: f64,
+    /// From the surface of the robot to a center.
+    zone: f64,
+}
+
+impl Near {
+    fn at(episode: &Episode<'_>, instant: usize) -> Self {
+        let (rules, robot) = (&episode.rules, episode.robot[instant]);
+        let mut near = Self {
+            gap: f64::INFINITY,
+            zone: f64::INFINITY,
+        };
+        for (place, radius) in episode.people.at(instant).iter().zip(episode.radii) {
+            // Comparisons with NaN, who is absent, change nothing.
+            let zone = rules.nearest_image(place - robot).norm() - rules.robot_radius;
+            near.zone = near.zone.min(zone);
+            near.gap = near.gap.min(zone - radius);
+        }
+        near
+    }
+}
+
+impl Sums {
+    fn count(&mut self, near: &Near, moves: bool) {
+        if near.gap < f64::INFINITY {
+            self.clearance += near.gap;
+            self.with_people += 1;
+        }
+        if let Some(zone) = ZONES.iter().position(|end| near.zone < *end) {
+            self.zones[zone] += 1;
+        }
+        self.comfort += u32::from(near.gap >= COMFORT);
+        self.discomfort += u32::from(moves && near.gap < DISCOMFORT);
+    }
+
+    /// Adds the forces over a step, and returns the least time to a collision at its start, in s.
+    fn step(&mut self, episode: &Episode<'_>, instant: usize) -> f64 {
+        let (rules, people) = (&episode.rules, &episode.people);
+        let robot = episode.robot[instant];
+        let velocity = (episode.robot[instant + 1] - robot) / rules.step;
+        let (mut least, mut on_robot) = (f64::INFINITY, Vector2::zeros());
+        let (places, nexts) = (people.at(instant), people.at(instant + 1));
+        for ((place, next), radius) in places.iter().zip(nexts).zip(episode.radii) {
+            if place.x.is_nan() || next.x.is_nan() {
+                continue;
+            }
+            let to_person = rules.nearest_image(place - robot);
+            let closing = (next - place) / rules.step - velocity;
+            let reach = rules.robot_radius + radius;
+            least = least.min(time_to_collision(to_person, closing, reach));
+            let [on_person, back] = pressure::forces(to_person, closing);
+            self.force_on_people += on_person.norm();
+            on_robot += back;
+        }
+        self.force_on_robot += on_robot.norm();
+        self.low_time += u32::from(least < LOW_TIME);
+        least
+    }
+}
+
+/// Least time `t >= 0` with `|r + w t| = reach`, 0 if nearer already, infinite if never, in s.
+fn time_to_collision(offset: Vector2<f64>, closing: Vector2<f64>, reach: f64) -> f64 {
+    let outside = offset.norm_squared() - reach * reach;
+    if outside <= 0.0 {
+        return 0.0;
+    }
+    let approach = -offset.dot(&closing);
+    let square = approach * approach - closing.norm_squared() * outside;
+    if approach <= 0.0 || square < 0.0 {
+        return f64::INFINITY;
+    }
+    // The lesser root as a quotient: the difference in the other form would cancel.
+    outside / (approach + square.sqrt())
+}
+
+/// Members of each group of two or more.
+fn members(groups: &[i64]) -> Vec<Vec<usize>> {
+    let mut numbers: Vec<i64> = groups
+        .iter()
+        .copied()
+        .filter(|number| *number >= 0)
+        .collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let of = |number: i64| -> Vec<usize> {
+        (0..groups.len())
+            .filter(|person| groups[*person] == number)
+            .collect()
+    };
+    let all = numbers.into_iter().map(of);
+    all.filter(|group| group.len() >= 2).collect()
+}
+
+/// Whether the robot is in the personal zone of a group, all of whom are present.
+fn intrudes(episode: &Episode<'_>, instant: usize, group: &[usize]) -> bool {
+    let (rules, places) = (&episode.rules, episode.people.at(instant));
+    let first = places[group[0]];
+    // From the first one, so that a group is not torn apart where the world repeats; NaN if one is absent.
+    let sum: Vector2<f64> = group
+        .iter()
+        .map(|person| rules.nearest_image(places[*person] - first))
+        .sum();
+    let center = first + sum / group.len() as f64;
+    let distance = rules.nearest_image(center - episode.robot[instant]).norm();
+    distance - rules.robot_radius < ZONES[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_to_a_collision_has_its_limits() {
+        let (far, toward) = (Vector2::new(3.0, 0.0), Vector2::new(-2.0, 0.0));
+        assert_eq!(time_to_collision(far, toward, 1.0), 1.0);
+        assert_eq!(time_to_collision(far, -toward, 1.0), f64::INFINITY);
+        assert_eq!(time_to_collision(far, Vector2::zeros(), 1.0), f64::INFINITY);
+        assert_eq!(time_to_collision(far, toward, 3.0), 0.0);
+        let aside = Vector2::new(3.0, 1.1);
+        assert_eq!(time_to_collision(aside, toward, 1.0), f64::INFINITY);
+    }
+}

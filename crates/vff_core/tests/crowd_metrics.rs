@@ -1,0 +1,355 @@
+//! Metrics of the episodes of `tests/golden/crowd_cases.json`, which Python reads too, and what must not
+//! change them: rotations, reflections, shifts, the order of the people, people who are absent.
+
+use nalgebra::{Rotation2, Vector2};
+use numeric::error::Failure;
+use serde_json::Value;
+use vff_core::crowd::metrics::{
+    Episode, Kind, Paths, ROBOT_METRICS, RobotMetrics, Rules, Without, evaluate,
+};
+use vff_core::world::shape::PlacedShape;
+
+type Point = Vector2<f64>;
+
+/// Relative to 1 or the value, whichever is greater.
+const TOLERANCE: f64 = 1e-9;
+const TOLERANCE_OF_FORCES: f64 = 1e-8;
+
+/// An episode with its own arrays.
+#[derive(Clone)]
+struct Case {
+    name: String,
+    robot: Vec<Point>,
+    people: Vec<Point>,
+    radii: Vec<f64>,
+    groups: Vec<i64>,
+    walls: Vec<[Point; 2]>,
+    without: Vec<Point>,
+    goals: Vec<Point>,
+    rules: Rules,
+    expected: Value,
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| {
+        value
+            .as_str()
+            .map_or(f64::NAN, |word| word.parse().unwrap())
+    })
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().into_iter().flatten().map(number).collect()
+}
+
+fn point(value: &Value) -> Point {
+    Point::new(number(&value[0]), number(&value[1]))
+}
+
+fn points(value: &Value) -> Vec<Point> {
+    value.as_array().into_iter().flatten().map(point).collect()
+}
+
+fn all_points(value: &Value) -> Vec<Point> {
+    let instants = value.as_array().into_iter().flatten();
+    instants.flat_map(points).collect()
+}
+
+impl Case {
+    fn of(case: &Value) -> Self {
+        let options = &case["options"];
+        let people = case["people"][0].as_array().map_or(0, Vec::len);
+        let radius = &options["person_radius"];
+        let segment = |wall: &Value| {
+            let corners = points(wall);
+            [corners[0], corners[1]]
+        };
+        let given = |name: &str, default: f64| options[name].as_f64().unwrap_or(default);
+        Self {
+            name: case["name"].as_str().unwrap().into(),
+            robot: points(&case["robot"]),
+            people: all_points(&case["people"]),
+            radii: match radius.as_f64() {
+                Some(radius) => vec![radius; people],
+                None => numbers(radius),
+            },
+            groups: options["group"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .map(|group| group.as_i64().unwrap())
+                .collect(),
+            walls: options["walls"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .map(segment)
+                .collect(),
+            without: all_points(&options["without"]),
+            goals: points(&options["person_goal"]),
+            rules: Rules {
+                step: number(&options["dt"]),
+                goal: point(&options["goal"]),
+                robot_radius: number(&options["robot_radius"]),
+                arrival_tolerance: given("tolerance", 0.3),
+                person_tolerance: given("person_tolerance", 0.3),
+                max_speed: given("max_speed", 1.0),
+                shortest_length: options["shortest_length"].as_f64(),
+                period: options["period"]
+                    .as_array()
+                    .map_or([0.0; 2], |period| [number(&period[0]), number(&period[1])]),
+            },
+            expected: case["result"].clone(),
+        }
+    }
+
+    fn metrics(&self) -> Result<RobotMetrics, Failure> {
+        let count = self.radii.len();
+        let walls: Vec<PlacedShape> = self
+            .walls
+            .iter()
+            .map(|[from, to]| PlacedShape::wall((*from).into(), (*to).into()))
+            .collect();
+        let without = match self.without.is_empty() {
+            true => None,
+            false => Some(Without {
+                people: Paths::new("people_without", &self.without, count)?,
+                goals: &self.goals,
+            }),
+        };
+        evaluate(&Episode {
+            robot: &self.robot,
+            people: Paths::new("people", &self.people, count)?,
+            radii: &self.radii,
+            groups: &self.groups,
+            walls: &walls,
+            without,
+            rules: self.rules,
+        })
+    }
+
+    /// The same with every position elsewhere.
+    fn moved(&self, place: impl Fn(Point) -> Point) -> Self {
+        let all = |points: &[Point]| points.iter().map(|point| place(*point)).collect();
+        Self {
+            robot: all(&self.robot),
+            people: all(&self.people),
+            walls: self.walls.iter().map(|wall| wall.map(&place)).collect(),
+            without: all(&self.without),
+            goals: all(&self.goals),
+            rules: Rules {
+                goal: place(self.rules.goal),
+                ..self.rules
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The same with the people in another order, and one more who is never there.
+    fn renumbered(&self) -> Self {
+        let count = self.radii.len();
+        let absent = Point::repeat(f64::NAN);
+        let turn = |points: &[Point]| -> Vec<Point> {
+            let rows = points.chunks_exact(count.max(1));
+            rows.flat_map(|row| row.iter().rev().copied().chain([absent]))
+                .collect()
+        };
+        let last = |values: &[Point]| values.iter().rev().copied().chain([absent]).collect();
+        let mut case = self.clone();
+        case.people = match count {
+            0 => vec![absent; self.robot.len()],
+            _ => turn(&self.people),
+        };
+        case.without = turn(&self.without);
+        case.goals = last(&self.goals);
+        case.radii = self.radii.iter().rev().copied().chain([0.3]).collect();
+        if !self.groups.is_empty() {
+            case.groups = self.groups.iter().rev().copied().chain([7]).collect();
+        }
+        case
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("tests/golden/crowd_cases.json")).unwrap();
+    let table: Value = serde_json::from_str(&text).unwrap();
+    let cases = table["episodes"].as_array().unwrap();
+    cases.iter().map(Case::of).collect()
+}
+
+fn alike(found: f64, expected: f64, tolerance: f64) -> bool {
+    found == expected
+        || (found.is_nan() && expected.is_nan())
+        || (found - expected).abs() <= tolerance * expected.abs().max(1.0)
+}
+
+fn assert_equal(found: RobotMetrics, expected: &RobotMetrics, tolerance: f64, about: &str) {
+    let rows = found.into_array().into_iter().zip(expected.into_array());
+    for ((found, expected), metric) in rows.zip(ROBOT_METRICS) {
+        let name = metric.name;
+        assert!(
+            alike(found, expected, tolerance),
+            "{about}: {name} {found} {expected}"
+        );
+    }
+}
+
+#[test]
+fn metrics_equal_the_golden_episodes() {
+    let cases = cases();
+    assert_eq!(cases.len(), 12);
+    for case in cases {
+        let found = case.metrics().unwrap().into_array();
+        assert_eq!(
+            case.expected.as_object().unwrap().len(),
+            ROBOT_METRICS.len()
+        );
+        for (found, metric) in found.into_iter().zip(ROBOT_METRICS) {
+            let value = &case.expected[metric.name];
+            let expected = match metric.kind {
+                Kind::Flag => f64::from(value.as_bool().unwrap()),
+                Kind::Count | Kind::Number => number(value),
+            };
+            let forces = metric.name.starts_with("force") || metric.name == "social_work";
+            let tolerance = if forces {
+                TOLERANCE_OF_FORCES
+            } else {
+                TOLERANCE
+            };
+            assert!(
+                alike(found, expected, tolerance),
+                "{}: {} is {found}, expected {expected}",
+                case.name,
+                metric.name
+            );
+        }
+    }
+}
+
+/// Episodes in which nobody touches or faces another exactly, where rounding decides.
+fn at_random() -> Vec<Case> {
+    let mut cases = cases();
+    cases.retain(|case| case.name.starts_with("random"));
+    assert_eq!(cases.len(), 3);
+    cases
+}
+
+#[test]
+fn places_directions_and_numbers_do_not_matter() {
+    let turn = Rotation2::new(0.7);
+    let shift = Point::new(12.3, -4.5);
+    for case in at_random() {
+        let expected = case.metrics().unwrap();
+        let same = |other: Case, what: &str| {
+            let about = format!("{} {what}", case.name);
+            assert_equal(other.metrics().unwrap(), &expected, 1e-9, &about);
+        };
+        same(case.renumbered(), "renumbered");
+        same(
+            case.moved(|point| Point::new(point.x, -point.y)),
+            "mirrored",
+        );
+        same(case.moved(|point| turn * point), "rotated");
+        same(case.moved(|point| point + shift), "moved");
+    }
+}
+
+#[test]
+fn whole_periods_do_not_matter_where_the_world_repeats() {
+    for mut case in at_random() {
+        case.rules.period = [9.0, 11.0];
+        // Where people are without robots, and their goals, are told apart from their images.
+        case.without.clear();
+        let expected = case.metrics().unwrap();
+        let count = case.radii.len();
+        let grouped: Vec<bool> = case.groups.iter().map(|group| *group >= 0).collect();
+        for (index, place) in case.people.iter_mut().enumerate() {
+            let turns = if grouped[index % count] { 1.0 } else { -2.0 };
+            *place += Point::new(9.0 * turns, -11.0);
+        }
+        let found = case.metrics().unwrap();
+        assert_equal(found, &expected, 1e-9, &case.name);
+        let near = Case {
+            rules: Rules {
+                period: [0.0; 2],
+                ..case.rules
+            },
+            ..case.clone()
+        };
+        let away = near.metrics().unwrap();
+        assert!(away.min_clearance > found.min_clearance + 1.0);
+    }
+}
+
+#[test]
+fn one_instant_and_nobody_have_metrics() {
+    let mut case = cases().swap_remove(0);
+    case.robot.truncate(1);
+    let found = case.metrics().unwrap();
+    assert!(!found.arrived && found.path_length == 0.0);
+    assert_eq!(found.min_clearance, f64::INFINITY);
+    assert_eq!(found.longest_without_progress, 0.0);
+    assert!(found.mean_speed.is_nan() && found.low_time_to_collision_share.is_nan());
+    assert_eq!(found.comfort_share, 1.0);
+}
+
+#[test]
+fn a_stop_of_five_seconds_is_frozen_and_rounding_of_the_step_does_not_matter() {
+    let mut case = cases().swap_remove(0);
+    case.rules.step = 0.1;
+    case.robot = vec![Point::zeros(); 51];
+    assert!(case.metrics().unwrap().frozen);
+    case.robot.pop();
+    assert!(!case.metrics().unwrap().frozen);
+}
+
+#[test]
+fn walls_count_inside_discs_and_rectangles_too() {
+    let case = cases().swap_remove(0);
+    let walls = [PlacedShape::upright([2.0, 0.0], [1.0, 1.0])];
+    let found = evaluate(&Episode {
+        robot: &case.robot,
+        people: Paths::default(),
+        radii: &[],
+        groups: &[],
+        walls: &walls,
+        without: None,
+        rules: case.rules,
+    });
+    let found = found.unwrap();
+    assert_eq!((found.wall_contacts, found.wall_clearance), (1, -0.8));
+    assert!(found.arrived && !found.success && found.spl == 0.0);
+}
+
+fn refused(change: impl Fn(&mut Case)) -> String {
+    let mut case = cases().swap_remove(6);
+    change(&mut case);
+    match case.metrics() {
+        Err(Failure::InvalidParameter { name, .. }) => name,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_invalid_value_is_named_with_its_index() {
+    assert_eq!(refused(|case| case.rules.step = 0.0), "step");
+    assert_eq!(refused(|case| case.rules.goal.x = f64::NAN), "goal");
+    assert_eq!(
+        refused(|case| case.rules.robot_radius = -1.0),
+        "robot_radius"
+    );
+    assert_eq!(refused(|case| case.rules.period[1] = -1.0), "period[1]");
+    assert_eq!(refused(|case| case.rules.max_speed = 0.0), "max_speed");
+    assert_eq!(refused(|case| case.robot[3].y = f64::NAN), "position[3]");
+    assert_eq!(refused(|case| case.robot.clear()), "position");
+    assert_eq!(refused(|case| case.people[5].x = f64::NAN), "people[2, 1]");
+    assert_eq!(
+        refused(|case| case.people[4].y = f64::INFINITY),
+        "people[2, 0]"
+    );
+    assert_eq!(refused(|case| case.radii[1] = 0.0), "person_radius[1]");
+    assert_eq!(refused(|case| case.groups = vec![1]), "groups");
+    assert_eq!(refused(|case| case.goals.clear()), "person_goals");
+    assert_eq!(refused(|case| case.people.truncate(4)), "people");
+}
