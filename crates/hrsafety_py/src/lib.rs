@@ -11,6 +11,7 @@ mod built;
 mod contact;
 mod controller;
 mod crowd;
+mod crowd_metrics;
 mod differential;
 mod episode;
 mod errors;
@@ -68,6 +69,10 @@ mod _hrsafety {
     use crate::crowd::{
         CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld, crowd_circle,
         crowd_decisions, crowd_simulate,
+    };
+    #[pymodule_export]
+    use crate::crowd_metrics::{
+        CrowdEpisode, crowd_metric_names, crowd_metrics, crowd_world_metrics,
     };
     #[pymodule_export]
     use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};

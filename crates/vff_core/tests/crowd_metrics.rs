@@ -5,7 +5,8 @@ use nalgebra::{Rotation2, Vector2};
 use numeric::error::Failure;
 use serde_json::Value;
 use vff_core::crowd::metrics::{
-    Episode, Kind, Paths, ROBOT_METRICS, RobotMetrics, Rules, Without, evaluate,
+    Episode, Kind, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without, evaluate,
+    evaluate_world,
 };
 use vff_core::world::shape::PlacedShape;
 
@@ -352,4 +353,52 @@ fn an_invalid_value_is_named_with_its_index() {
     assert_eq!(refused(|case| case.groups = vec![1]), "groups");
     assert_eq!(refused(|case| case.goals.clear()), "person_goals");
     assert_eq!(refused(|case| case.people.truncate(4)), "people");
+}
+
+#[test]
+fn a_world_counts_who_left_stands_and_touches() {
+    let absent = Point::repeat(f64::NAN);
+    // One walks to the goal and leaves, one stands, robots pass through each other.
+    let instants = 0..=60;
+    let people: Vec<Point> = instants
+        .clone()
+        .flat_map(|step| {
+            let walker = if step <= 20 {
+                Point::new(0.1 * f64::from(step), 0.0)
+            } else {
+                absent
+            };
+            [walker, Point::new(5.0, 5.0)]
+        })
+        .collect();
+    let robots: Vec<Point> = instants
+        .flat_map(|step| {
+            let x = 0.1 * f64::from(step);
+            [
+                Point::new(x, 9.0),
+                Point::new(6.0 - x, 9.0),
+                Point::new(x, 12.0),
+            ]
+        })
+        .collect();
+    let whole = |radii: &[f64]| {
+        evaluate_world(&Whole {
+            people: Paths::new("people", &people, 2)?,
+            goals: &[Point::new(2.0, 0.0), Point::zeros()],
+            robots: Paths::new("robots", &robots, 3)?,
+            radii,
+            time_limit: 20.0,
+            rules: Rules {
+                step: 0.1,
+                ..Rules::of_people()
+            },
+        })
+    };
+    let found = whole(&[0.3; 3]).unwrap();
+    assert!((found.throughput - 1.0 / 6.0).abs() < 1e-12);
+    assert_eq!(found.deadlocked_share, 0.5);
+    assert!((found.mean_person_speed - 20.0 / 80.0).abs() < 1e-12);
+    assert!((found.aggregated_time - 21.7).abs() < 1e-9);
+    assert_eq!(found.robot_contacts, 1);
+    assert!(whole(&[0.3, -0.3, 0.3]).is_err());
 }

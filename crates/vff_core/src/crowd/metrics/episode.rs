@@ -110,6 +110,21 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// Rules where there is no robot: a step of 1 s, a tolerance of 0.3 m.
+    #[must_use]
+    pub fn of_people() -> Self {
+        Self {
+            step: 1.0,
+            goal: Point::zeros(),
+            robot_radius: 1.0,
+            arrival_tolerance: 0.3,
+            person_tolerance: 0.3,
+            max_speed: 1.0,
+            shortest_length: None,
+            period: [0.0; 2],
+        }
+    }
+
     /// The difference of two positions, to the nearest image where the world repeats.
     #[inline]
     #[must_use]
@@ -123,7 +138,7 @@ impl Rules {
         )
     }
 
-    fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         positive("step", self.step)?;
         finite_pair("goal", self.goal.into())?;
         positive("robot_radius", self.robot_radius)?;
@@ -176,9 +191,11 @@ pub struct Episode<'a> {
 }
 
 impl Episode<'_> {
+    /// Looks at all values.
+    ///
     /// # Errors
     /// Names the value that is out of range, or the array of another length.
-    pub(super) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         self.rules.check()?;
         let count = self.people.bodies();
         if self.robot.is_empty() {
@@ -219,7 +236,7 @@ impl Episode<'_> {
     }
 }
 
-fn same(name: &str, what: &str, found: usize, expected: usize) -> Result<()> {
+pub(super) fn same(name: &str, what: &str, found: usize, expected: usize) -> Result<()> {
     if found == expected {
         return Ok(());
     }

@@ -5,7 +5,8 @@ use nalgebra::Vector2;
 use super::STANDSTILL;
 use super::declared::WorldMetrics;
 use super::effect::arrival;
-use super::episode::{Paths, Rules};
+use super::episode::{Paths, Rules, same};
+use crate::error::{Result, not_negative, positive};
 
 /// Who has stood for so long is in a deadlock, in s.
 const DEADLOCK: f64 = 5.0;
@@ -30,8 +31,42 @@ pub struct Whole<'a> {
 }
 
 /// Metrics of a world.
-#[must_use]
-pub fn evaluate_world(world: &Whole<'_>) -> WorldMetrics {
+///
+/// # Errors
+/// Names the value that is out of range, or the array of another length.
+pub fn evaluate_world(world: &Whole<'_>) -> Result<WorldMetrics> {
+    world.check()?;
+    Ok(totals(world))
+}
+
+impl Whole<'_> {
+    fn check(&self) -> Result<()> {
+        self.rules.check()?;
+        not_negative("time_limit", self.time_limit)?;
+        same(
+            "person_goals",
+            "people",
+            self.goals.len(),
+            self.people.bodies(),
+        )?;
+        same(
+            "robot_radius",
+            "robots",
+            self.radii.len(),
+            self.robots.bodies(),
+        )?;
+        for (index, radius) in self.radii.iter().enumerate() {
+            positive(&format!("robot_radius[{index}]"), *radius)?;
+        }
+        if self.people.bodies() > 0 && self.robots.bodies() > 0 {
+            let instants = self.people.instants();
+            same("robots", "instants", self.robots.instants(), instants)?;
+        }
+        Ok(())
+    }
+}
+
+fn totals(world: &Whole<'_>) -> WorldMetrics {
     let (people, step) = (&world.people, world.rules.step);
     let (count, instants) = (people.bodies(), people.instants());
     let (mut left, mut deadlocked, mut time) = (0, 0, 0.0);
@@ -61,7 +96,7 @@ pub fn evaluate_world(world: &Whole<'_>) -> WorldMetrics {
 
 /// Whether somebody was there and is not at the end.
 fn has_left(people: &Paths<'_>, person: usize) -> bool {
-    let last = people.instants() - 1;
+    let last = people.instants().saturating_sub(1);
     let there = |instant| people.place(instant, person).is_some();
     !there(last) && (0..last).any(there)
 }
@@ -71,7 +106,7 @@ fn stands(people: &Paths<'_>, person: usize, step: f64) -> bool {
     // At most as many steps as there are instants, which is checked below.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let needed = (DEADLOCK / step - ROUNDING).ceil() as usize;
-    let last = people.instants() - 1;
+    let last = people.instants().saturating_sub(1);
     let slow = |instant| {
         let velocity = people.velocity(instant, person, step);
         velocity.is_some_and(|velocity| velocity.norm() < STANDSTILL)
