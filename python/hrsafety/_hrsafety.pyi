@@ -19,6 +19,7 @@ __all__ = [
     "Camera",
     "ConstrainedHead",
     "Converter",
+    "CrowdEpisode",
     "CylinderController",
     "DifferentialDriveRobot",
     "DifferentialKinematics",
@@ -86,6 +87,9 @@ __all__ = [
     "contact_thickness",
     "contact_words",
     "contiguous_level",
+    "crowd_metric_names",
+    "crowd_metrics",
+    "crowd_world_metrics",
     "dashpots_in_series",
     "differential_wheels",
     "doppler_frequency",
@@ -1897,6 +1901,25 @@ def urdf_joint_names(urdf: str) -> list[str]:
 
 def bare_forces(closing_speed: _Array, robot_mass: _Array, body_mass: float, stiffness: float) -> _Array:
     """Return contact forces of closing speeds on a linear region without a covering."""
+
+# ---- metrics of crowds ----------------------------------------------------------------------
+
+@final
+class CrowdEpisode:
+    """One robot among people."""
+
+    def __new__(cls, **given: object) -> Self: ...
+
+def crowd_metric_names() -> tuple[list[tuple[str, Any, str, str]], list[tuple[str, Any, str, str]]]:
+    """Return name, kind, unit and meaning of each metric of a robot, and of a world."""
+
+def crowd_metrics(
+    episodes: Sequence[CrowdEpisode], threads: int | None, progress: Callable[[int, int], object] | None
+) -> dict[str, npt.NDArray[Any]]:
+    """Return a column of each metric."""
+
+def crowd_world_metrics(**given: object) -> dict[str, npt.NDArray[Any]]:
+    """Return the metrics of a world, in columns of one row."""
 
 # ---- separation -----------------------------------------------------------------------------
 

@@ -1,0 +1,44 @@
+"""Scores and statistics of runs: social metrics, performance, shares and means with intervals, paired differences."""
+
+from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
+from hrsafety.navigation.bands import Band
+from hrsafety.navigation.compare import Comparison, Standing, step_cost
+from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Metric
+from hrsafety.navigation.metrics.episode import Episode
+from hrsafety.navigation.metrics.scores import (
+    EpisodeMetrics,
+    MetricTable,
+    WorldMetrics,
+    evaluate,
+    evaluate_many,
+    evaluate_world,
+)
+from hrsafety.navigation.performance import Performance
+from hrsafety.navigation.pursuits import Falsification, Pursuit, falsify
+
+__all__ = [
+    "METRICS",
+    "WORLD_METRICS",
+    "Band",
+    "Comparison",
+    "Episode",
+    "EpisodeMetrics",
+    "Falsification",
+    "Mean",
+    "Metric",
+    "MetricTable",
+    "Paired",
+    "Performance",
+    "Pursuit",
+    "Share",
+    "Standing",
+    "WorldMetrics",
+    "compare_paired",
+    "evaluate",
+    "evaluate_many",
+    "evaluate_world",
+    "falsify",
+    "mean_interval",
+    "step_cost",
+    "wilson",
+]

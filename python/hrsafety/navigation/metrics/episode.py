@@ -1,0 +1,272 @@
+"""What is scored: positions over time, with the sizes and rules that they are measured by."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Pair, Parameters, instance, number, numbers, pair, points, positive, sequence
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
+from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.trajectory import Trajectory
+
+__all__ = ["Episode", "Recorded", "Wall"]
+
+Wall = Disc | Rectangle | npt.ArrayLike
+
+
+class Recorded(Protocol):
+    """Positions of people over time, as `hrsafety.datasets.Recording` has them."""
+
+    @property
+    def time_s(self) -> Array:
+        """Instants in s."""
+
+    @property
+    def person(self) -> npt.NDArray[np.int64]:
+        """Who."""
+
+    @property
+    def position(self) -> Array:
+        """Positions in m."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Episode(Parameters):
+    """One robot among n people at T + 1 equal instants.
+
+    Parameters
+    ----------
+    position : array_like, shape (T + 1, 2)
+        Positions of the robot in m.
+    step : float
+        Time between two instants in s.
+    goal : tuple of float
+        Goal of the robot in m.
+    robot_radius : float
+        Radius of the robot in m.
+    people : array_like, shape (T + 1, n, 2)
+        Positions of the people in m; NaN while one is absent.
+    person_radius : float or array_like, shape (n,)
+        Radii of the people in m.
+    groups : array_like of int, shape (n,)
+        Who belongs together; below 0: to nobody. Empty: there are no groups.
+    walls : sequence of Disc, Rectangle, or array_like, shape (k, 2)
+        What stands still; arrays are polylines.
+    people_without : array_like, shape (U + 1, n, 2), or None
+        The same people in the same world and with the same seed, without robots.
+    person_goals : array_like, shape (n, 2)
+        Goals of the people in m, NaN for who has none; needed with ``people_without`` only.
+    arrival_tolerance, person_tolerance : float
+        Distance to the goal that counts as arrival, in m, of the robot and of people.
+    max_speed : float
+        Greatest speed allowed in m/s; ``efficacy`` is measured by it.
+    shortest_length : float or None
+        Length of the shortest path to the goal in m; the straight one up to the tolerance when ``None``.
+    period : tuple of float
+        Lengths in m after which the world repeats along x and y; 0: it does not.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, or arrays are of different lengths.
+    ShapeError
+        If an array has another number of axes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import navigation as nav
+    >>> x = np.linspace(0.0, 4.0, 9)
+    >>> straight = np.stack([x, 0.0 * x], axis=1)
+    >>> episode = nav.metrics.Episode(
+    ...     position=straight, step=0.5, goal=(4.0, 0.0), robot_radius=0.3, people=[[[2.0, 1.0]]] * 9
+    ... )
+    >>> nav.metrics.evaluate(episode).min_clearance
+    0.45
+    """
+
+    position: npt.ArrayLike
+    step: float
+    goal: Pair
+    robot_radius: float
+    people: npt.ArrayLike = ()
+    person_radius: npt.ArrayLike = 0.25
+    groups: npt.ArrayLike = ()
+    walls: Sequence[Wall] = ()
+    people_without: npt.ArrayLike | None = None
+    person_goals: npt.ArrayLike = ()
+    arrival_tolerance: float = 0.3
+    person_tolerance: float = 0.3
+    max_speed: float = 1.0
+    shortest_length: float | None = None
+    period: Pair = (0.0, 0.0)
+    _native: _hrsafety.CrowdEpisode = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values and keep copies of the arrays."""
+        rules: dict[str, Any] = self._as_numbers(
+            "step", "robot_radius", "arrival_tolerance", "person_tolerance", "max_speed"
+        )
+        rules |= {"goal": pair("goal", self.goal), "period": pair("period", self.period)}
+        length = self.shortest_length
+        rules["shortest_length"] = None if length is None else number("shortest_length", length)
+        people = _over_time("people", self.people)
+        without = None if self.people_without is None else _over_time("people_without", self.people_without)
+        if without is not None and len(without) == 0:
+            raise InvalidParameterError("people_without", "hold at least one instant", 0)
+        arrays: dict[str, Any] = {
+            "position": points("position", self.position),
+            "people": people,
+            "person_radius": _of_people("person_radius", self.person_radius, people.shape[1]),
+            "groups": _whole("groups", self.groups),
+            "people_without": without,
+            "person_goals": points("person_goals", self.person_goals) if np.size(self.person_goals) else _NOWHERE,
+        }
+        walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
+        flat = {name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None}
+        native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
+        kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
+        self._set(**rules, **kept, walls=tuple(walls), _native=native)
+
+    @classmethod
+    def from_trajectory(cls, trajectory: Trajectory, **options: Any) -> Self:
+        """Return a run of `simulate` as an episode.
+
+        The people of its scenario are the people, what stands still are walls; other robots (`MovingDisc`)
+        are left out. The last row, the arrival inside a step, is moved to the end of the step.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+            A run in a scenario.
+        **options
+            Fields of `Episode` that are to differ from those of the scenario.
+
+        Returns
+        -------
+        Episode
+            Step, goal, radius, tolerance and greatest speed are those of the run.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the run has no scenario or no two instants.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> run = nav.simulate(scenarios.configuration("parallel_human"), nav.VirtualForceField())
+        >>> episode = nav.metrics.Episode.from_trajectory(run)
+        >>> nav.metrics.evaluate(episode).arrived
+        True
+        """
+        return cls(**(steps_of_run(instance("trajectory", trajectory, Trajectory)) | options))
+
+    @classmethod
+    def from_recording(cls, recording: Recorded, robot: int | npt.ArrayLike, *, step: float, **options: Any) -> Self:
+        """Return recorded people as an episode, one of whom, or a path of one's own, is the robot.
+
+        Positions are linear between the rows of a person; a person is absent before the first and after the
+        last row. The episode lasts as long as the robot is there.
+
+        Parameters
+        ----------
+        recording : Recording
+            Positions over time; any object with ``time_s``, ``person`` and ``position``.
+        robot : int or array_like, shape (k, 3)
+            Id of the person who is taken for the robot, or instants in s and positions in m of a robot.
+        step : float
+            Time between two instants of the episode in s.
+        **options
+            The other fields of `Episode`; the goal is the last position of the robot unless given.
+
+        Returns
+        -------
+        Episode
+            People in the order of their ids.
+
+        Raises
+        ------
+        InvalidParameterError
+            If nobody has this id, or a value is out of range.
+
+        Examples
+        --------
+        >>> from hrsafety import datasets, navigation as nav
+        >>> time, person = [0.0, 0.0, 1.0, 1.0, 2.0, 2.0], [1, 2, 1, 2, 1, 2]
+        >>> places = [[0, 0], [4, 1], [1, 0], [3, 1], [2, 0], [2, 1]]
+        >>> walk = datasets.Recording(time_s=time, person=person, position=places)
+        >>> episode = nav.metrics.Episode.from_recording(walk, 1, step=0.25, robot_radius=0.25)
+        >>> round(nav.metrics.evaluate(episode).min_clearance, 3)
+        0.5
+        """
+        found = at_instants(recording, robot, positive("step", step))
+        return cls(**({**found, "step": step} | options))
+
+
+_NOWHERE = np.empty((0, 2))
+
+
+def _frozen(array: Array) -> Array:
+    """Return a copy that cannot be written to."""
+    kept = array.copy()
+    kept.setflags(write=False)
+    return kept
+
+
+def _rows(array: Array) -> Array:
+    return np.ascontiguousarray(array).reshape(-1, 2)
+
+
+def _over_time(name: str, value: npt.ArrayLike) -> Array:
+    """Return positions (instants, people, 2); nobody for an empty array."""
+    array = numbers(name, value)
+    if array.size == 0:
+        return np.empty((0, array.shape[1] if array.ndim == 3 else 0, 2))
+    if array.ndim != 3 or array.shape[2] != 2:
+        raise ShapeError(name, "(T + 1, n, 2)", array.shape)
+    return array
+
+
+def _of_people(name: str, value: npt.ArrayLike, count: int) -> Array:
+    """Return a number for each person; a single one holds for all."""
+    array = numbers(name, value)
+    if array.ndim == 0:
+        positive(name, float(array))
+        return np.full(count, float(array))
+    if array.shape != (count,):
+        raise ShapeError(name, f"({count},)", array.shape)
+    return array
+
+
+def _whole(name: str, value: npt.ArrayLike) -> npt.NDArray[np.int64]:
+    if np.size(value) == 0:
+        return np.empty(0, dtype=np.int64)
+    array = numbers(name, value)
+    if array.ndim != 1 or not (array == np.floor(array)).all() or np.abs(array).max() > 2**53:
+        raise InvalidParameterError(name, "hold integers, one for each person", value)
+    return array.astype(np.int64)
+
+
+def wall_rows(walls: Sequence[Wall]) -> dict[str, Array]:
+    """Return walls as the core takes them: segments, discs and rectangles as rows of numbers."""
+    segments, discs, rectangles = [], [], []
+    for index, wall in enumerate(walls):
+        if isinstance(wall, Disc):
+            discs.append((*wall.center, wall.radius))
+        elif isinstance(wall, Rectangle):
+            rectangles.append((*wall.center, wall.length, wall.width, wall.heading))
+        else:
+            corners = points(f"walls[{index}]", wall)
+            if len(corners) < 2:
+                raise InvalidParameterError(f"walls[{index}]", "have two points or more", len(corners))
+            segments += np.hstack([corners[:-1], corners[1:]]).tolist()
+    kinds = {"segments": (segments, 4), "discs": (discs, 3), "rectangles": (rectangles, 5)}
+    return {name: np.array(rows, dtype=np.float64).reshape(-1, width) for name, (rows, width) in kinds.items()}

@@ -1,0 +1,333 @@
+"""Social metrics of episodes, one or many, and of whole worlds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, callback, instance, number, numbers, pair, sequence, thread_count
+from hrsafety._statistics import Share, wilson
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
+from hrsafety.navigation.metrics.episode import Episode, Recorded
+from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.tables import Columns, Table, unit_suffix
+
+__all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
+
+
+class _Scores(Table):
+    """Values by the names of declared metrics."""
+
+    __slots__ = ("_values",)
+    _metrics: Mapping[str, Metric] = METRICS
+    _values: dict[str, Any]
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "_values", dict(values))
+
+    def __getattr__(self, name: str) -> Any:
+        # Pickling asks before there are values.
+        values = object.__getattribute__(self, "_values") if name in self._metrics else {}
+        if name not in values:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+        return values[name]
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{type(self).__name__} cannot be changed", name=name, obj=self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._values,)
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        mine, theirs = self._values, other._values
+        return all(np.array_equal(mine[name], theirs[name], equal_nan=True) for name in mine)
+
+    __hash__ = None  # type: ignore[assignment]  # they hold arrays
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, with units.
+
+        Returns
+        -------
+        dict of str to ndarray
+            A column for each metric.
+        """
+        return {
+            f"{metric.name}{unit_suffix(metric.unit)}": np.atleast_1d(self._values[metric.name])
+            for metric in self._metrics.values()
+        }
+
+
+class _One(_Scores):
+    """One row, printed as a list of names."""
+
+    __slots__ = ()
+
+    def to_dict(self) -> dict[str, float | int | bool]:
+        """Return the values by name.
+
+        Returns
+        -------
+        dict of str to float, int or bool
+            In the order of the declared list.
+        """
+        return dict(self._values)
+
+    def __repr__(self) -> str:
+        """Return a line for each metric."""
+        lines = [f"{type(self).__name__}:"]
+        for metric in self._metrics.values():
+            value = self._values[metric.name]
+            shown = f"{value:.6g}" if isinstance(value, float) else str(value)
+            lines.append(f"  {metric.name} = {shown}{' ' if metric.unit else ''}{metric.unit}")
+        return "\n".join(lines)
+
+
+@with_metrics(METRICS)
+class EpisodeMetrics(_One, Measured[float, int, bool]):
+    """How a robot fared among people; made by `evaluate`.
+
+    Attributes
+    ----------
+    {metrics}
+
+    See Also
+    --------
+    MetricTable : of many episodes.
+    """
+
+    __slots__ = ()
+
+
+@with_metrics(WORLD_METRICS)
+class WorldMetrics(_One, MeasuredWorld[float, int]):
+    """How all fared in a world; made by `evaluate_world`.
+
+    Attributes
+    ----------
+    {metrics}
+    """
+
+    __slots__ = ()
+    _metrics = WORLD_METRICS
+
+
+@with_metrics(METRICS, ", shape (n,)")
+class MetricTable(_Scores, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]):
+    """How a robot fared in n episodes, one a row; made by `evaluate_many`.
+
+    Attributes
+    ----------
+    {metrics}
+
+    See Also
+    --------
+    EpisodeMetrics : of one episode.
+    """
+
+    __slots__ = ()
+
+    def __len__(self) -> int:
+        """Return the number of episodes."""
+        return len(self._values["arrived"])
+
+    def __getitem__(self, index: int) -> EpisodeMetrics:
+        """Return the metrics of one episode."""
+        return EpisodeMetrics({name: values[index].item() for name, values in self._values.items()})
+
+    @property
+    def success_share(self) -> Share:
+        """Share of the episodes that arrived without a contact, with its 95 % Wilson interval."""
+        return wilson(int(self.success.sum()), len(self))
+
+
+def evaluate(
+    run: Episode | Trajectory | Recorded | npt.ArrayLike, people: npt.ArrayLike | None = None, **options: Any
+) -> EpisodeMetrics:
+    """Return the social metrics of a run, a recording, or positions of any origin.
+
+    Velocities, accelerations and jerks are forward differences of the positions. The end is the first
+    instant within the tolerance of the goal, else the last one; what concerns the robot counts up to it.
+
+    Parameters
+    ----------
+    run : Episode, Trajectory, Recording, or array_like, shape (T + 1, 2)
+        What is scored; an array holds positions of the robot at equal instants, in m.
+    people : array_like, shape (T + 1, n, 2), or None
+        Positions of the people beside an array, NaN while one is absent.
+    **options
+        Fields of `Episode`: ``step``, ``goal``, ``robot_radius``, ...; of a recording ``robot``, too, see
+        `Episode.from_recording`. A run takes them from its scenario unless given; an episode has them.
+
+    Returns
+    -------
+    EpisodeMetrics
+        A value for each of `METRICS`.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, or arrays are of different lengths.
+    ShapeError
+        If an array has another number of axes.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> path = [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]
+    >>> found = nav.metrics.evaluate(path, step=0.5, goal=(1.0, 0.0), robot_radius=0.3)
+    >>> found.arrived, found.arrival_time, found.mean_speed
+    (True, 1.0, 1.0)
+    """
+    episode = _episode(run, people, options)
+    found = _hrsafety.crowd_metrics([episode._native], 1, None)
+    return EpisodeMetrics({name: values[0].item() for name, values in found.items()})
+
+
+def _episode(run: object, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
+    beside = {} if people is None else {"people": people}
+    if isinstance(run, (Episode, Trajectory)) or hasattr(run, "time_s"):
+        if beside:
+            raise InvalidParameterError("people", "be None beside a run that has people", people)
+        if isinstance(run, Episode):
+            if options:
+                name = next(iter(options))
+                raise InvalidParameterError(name, "be left out: the episode has it", options[name])
+            return run
+        if isinstance(run, Trajectory):
+            return Episode.from_trajectory(run, **options)
+        return Episode.from_recording(run, **options)
+    return Episode(position=run, **beside, **options)  # type: ignore[arg-type]  # the check follows
+
+
+def evaluate_many(
+    episodes: Sequence[Episode | Trajectory],
+    *,
+    threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> MetricTable:
+    """Return the social metrics of many episodes, a row for each.
+
+    Parameters
+    ----------
+    episodes : sequence of Episode or Trajectory
+        What is scored.
+    threads : int or None
+        Number of threads; all cores when ``None``. The results do not depend on it.
+    progress : callable or None
+        Called with ``(done, total)`` about twenty times a second.
+
+    Returns
+    -------
+    MetricTable
+        Rows in the order of the episodes.
+
+    Raises
+    ------
+    InvalidParameterError
+        If one of them is no episode or run, or threads is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import navigation as nav
+    >>> paths = [speed * np.linspace([0.0, 0.0], [6.0, 0.0], 13) for speed in (0.5, 1.0)]
+    >>> rules = {"step": 0.5, "goal": (6.0, 0.0), "robot_radius": 0.3}
+    >>> table = nav.metrics.evaluate_many([nav.metrics.Episode(position=path, **rules) for path in paths])
+    >>> table.arrived.tolist(), table.mean_speed.tolist()
+    ([False, True], [0.5, 1.0])
+    """
+    given = sequence("episodes", "be a sequence of episodes", episodes)
+    natives = [_native(f"episodes[{index}]", each) for index, each in enumerate(given)]
+    found = _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
+    return MetricTable(found)
+
+
+def _native(name: str, given: object) -> _hrsafety.CrowdEpisode:
+    known = instance(name, given, Episode, Trajectory)
+    return (Episode.from_trajectory(known) if isinstance(known, Trajectory) else known)._native
+
+
+def evaluate_world(
+    people: npt.ArrayLike,
+    *,
+    person_goals: npt.ArrayLike,
+    step: float,
+    time_limit: float,
+    robots: npt.ArrayLike = (),
+    robot_radius: float | npt.ArrayLike = (),
+    person_tolerance: float = 0.3,
+    period: tuple[float, float] = (0.0, 0.0),
+) -> WorldMetrics:
+    """Return the metrics of a whole world.
+
+    Parameters
+    ----------
+    people : array_like, shape (T + 1, n, 2)
+        Positions of the people in m; NaN while one is absent.
+    person_goals : array_like, shape (n, 2)
+        Goals of the people in m.
+    step : float
+        Time between two instants in s.
+    time_limit : float
+        What counts as arrival time of who has not arrived, in s.
+    robots : array_like, shape (T + 1, m, 2)
+        Positions of the robots in m.
+    robot_radius : float or array_like, shape (m,)
+        Radii of the robots in m.
+    person_tolerance : float
+        Distance to the goal that counts as arrival, in m.
+    period : tuple of float
+        Lengths in m after which the world repeats along x and y; 0: it does not.
+
+    Returns
+    -------
+    WorldMetrics
+        A value for each of `WORLD_METRICS`.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, or arrays are of different lengths.
+    ShapeError
+        If an array has another number of axes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hrsafety import navigation as nav
+    >>> walk = np.linspace([[0.0, 0.0]], [[3.0, 0.0]], 31)
+    >>> found = nav.metrics.evaluate_world(walk, person_goals=[(3.0, 0.0)], step=0.1, time_limit=10.0)
+    >>> round(found.mean_person_speed, 6), found.deadlocked_share
+    (1.0, 0.0)
+    """
+    places, machines = _places("people", people), _places("robots", robots)
+    radii = numbers("robot_radius", robot_radius)
+    found = _hrsafety.crowd_world_metrics(
+        people=places.reshape(-1, 2),
+        robots=machines.reshape(-1, 2),
+        person_goals=_places("person_goals", [person_goals])[0] if np.size(person_goals) else np.empty((0, 2)),
+        robot_radius=np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
+        step=number("step", step),
+        time_limit=number("time_limit", time_limit),
+        person_tolerance=number("person_tolerance", person_tolerance),
+        period=pair("period", period),
+    )
+    return WorldMetrics({name: values[0].item() for name, values in found.items()})
+
+
+def _places(name: str, value: npt.ArrayLike) -> Array:
+    """Return positions (instants, bodies, 2)."""
+    array = numbers(name, value)
+    if array.size == 0:
+        return np.empty((0, 0, 2))
+    if array.ndim != 3 or array.shape[2] != 2:
+        raise ShapeError(name, "(T + 1, n, 2)", array.shape)
+    return array

@@ -1,0 +1,94 @@
+"""Episodes from runs of the package and from recordings: everybody at the same equal instants."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, count, numbers, whole_steps
+from hrsafety._bounds import MOST_INSTANTS
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.obstacles import Disc, Human, Rectangle
+from hrsafety.navigation.trajectory import Trajectory
+
+__all__ = ["at_instants", "steps_of_run"]
+
+# Instants of a run that differ by less are the same, relative to the step.
+_ROUNDING = 1e-9
+
+
+def steps_of_run(run: Trajectory) -> dict[str, Any]:
+    """Return the fields of an episode that a run in a scenario knows."""
+    if run.scenario is None:
+        remedy = "take its positions: metrics.Episode(position=..., goal=..., ...)"
+        raise InvalidParameterError("trajectory", "be a run in a scenario", Shown("a run after a reference"), remedy)
+    if len(run.time) < 2:
+        raise InvalidParameterError("trajectory", "have two instants or more", Shown(f"{len(run.time)}"))
+    scene, step = run.scenario, float(run.time[1] - run.time[0])
+    obstacles = scene.obstacles
+    people = [index for index, each in enumerate(obstacles) if isinstance(each, Human)]
+    return {
+        "position": _whole_last_step(run.time, run.position, step),
+        "people": _whole_last_step(run.time, run.obstacle_position[:, people], step),
+        "person_radius": np.array([obstacles[index].radius for index in people]),
+        "walls": [each for each in obstacles if isinstance(each, (Disc, Rectangle))],
+        "step": step,
+        "goal": scene.goal,
+        "robot_radius": scene.robot.radius,
+        "arrival_tolerance": scene.arrival_tolerance,
+        "max_speed": scene.robot.max_speed,
+    }
+
+
+def _whole_last_step(time: Array, places: Array, step: float) -> Array:
+    """Return positions whose last row, an instant inside its step, is moved to the end of the step."""
+    last = time[-1] - time[-2]
+    if abs(last - step) <= _ROUNDING * step:
+        return places
+    found = places.copy()
+    found[-1] = places[-2] + (places[-1] - places[-2]) * (step / last)
+    return found
+
+
+def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict[str, Any]:
+    """Return positions of a robot and of all others while it is there, and its last position as goal."""
+    ids = np.unique(recording.person)
+    if isinstance(robot, (int, np.integer)):
+        who = count("robot", robot, least=-(2**63))
+        if who not in ids:
+            raise InvalidParameterError("robot", "be the id of a recorded person", robot)
+        time, path = _track(recording, who)
+        ids = ids[ids != who]
+    else:
+        time, path = _given_path(robot)
+    steps = int(whole_steps("step", float(time[-1] - time[0]), step, MOST_INSTANTS) + _ROUNDING)
+    instants = time[0] + step * np.arange(steps + 1)
+    people = np.empty((len(instants), len(ids), 2))
+    for index, person in enumerate(ids):
+        people[:, index] = _between(*_track(recording, int(person)), instants)
+    own = _between(time, path, np.minimum(instants, time[-1]))
+    return {"position": own, "people": people, "goal": tuple(path[-1].tolist())}
+
+
+def _given_path(robot: npt.ArrayLike) -> tuple[Array, Array]:
+    rows = numbers("robot", robot)
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0:
+        raise ShapeError("robot", "(k, 3): instants and positions", rows.shape)
+    if not np.isfinite(rows).all() or not (np.diff(rows[:, 0]) > 0.0).all():
+        raise InvalidParameterError("robot", "hold finite rows of growing instants", Shown("others"))
+    return rows[:, 0], rows[:, 1:]
+
+
+def _track(recording: Any, person: int) -> tuple[Array, Array]:
+    rows = recording.person == person
+    return recording.time_s[rows], recording.position[rows]
+
+
+def _between(time: Array, places: Array, instants: Array) -> Array:
+    """Return positions linear between rows, NaN before the first and after the last one."""
+    edges = {"left": np.nan, "right": np.nan}
+    # An instant that rounding moves beyond the last row is still there.
+    near = np.where(np.abs(instants - time[-1]) < _ROUNDING, time[-1], instants)
+    return np.stack([np.interp(near, time, places[:, axis], **edges) for axis in (0, 1)], axis=1)
