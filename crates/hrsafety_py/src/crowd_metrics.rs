@@ -8,6 +8,8 @@ use pyo3::types::PyDict;
 use vff_core::crowd::metrics::{
     self, Kind, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole, Without,
 };
+use vff_core::crowd::neighbors::Period;
+use vff_core::crowd::walls::Wall;
 use vff_core::world::shape::PlacedShape;
 
 use crate::arrays::Fields;
@@ -44,26 +46,26 @@ fn rules(given: &Keywords<'_>) -> PyResult<Rules> {
         person_tolerance: given.take("person_tolerance")?,
         max_speed: given.take("max_speed")?,
         shortest_length: given.take("shortest_length")?,
-        period: given.take("period")?,
+        period: Period(given.take("period")?),
     })
 }
 
 /// Segments as rows (x, y, x, y), discs as (x, y, radius), rectangles as (x, y, length, width, heading).
-fn walls(given: &Keywords<'_>) -> PyResult<Vec<PlacedShape>> {
+fn walls(given: &Keywords<'_>) -> PyResult<Vec<Wall>> {
     let (segments, discs): (Rows<'_>, Rows<'_>) = (given.take("segments")?, given.take("discs")?);
     let rectangles: Rows<'_> = given.take("rectangles")?;
     let mut all = Vec::new();
     for [x0, y0, x1, y1] in segments.as_slice()?.as_chunks::<4>().0 {
-        all.push(PlacedShape::wall([*x0, *y0], [*x1, *y1]));
+        all.push(Wall::polyline(vec![[*x0, *y0], [*x1, *y1]]));
     }
     for [x, y, radius] in discs.as_slice()?.as_chunks::<3>().0 {
-        all.push(PlacedShape::disc([*x, *y], *radius));
+        all.push(Wall::solid(PlacedShape::disc([*x, *y], *radius)));
     }
     for [x, y, length, width, heading] in rectangles.as_slice()?.as_chunks::<5>().0 {
-        all.push(PlacedShape::turned([*x, *y], [*length, *width], *heading));
+        let shape = PlacedShape::turned([*x, *y], [*length, *width], *heading);
+        all.push(Wall::solid(shape));
     }
-    let checked: numeric::error::Result<Vec<_>> =
-        all.into_iter().map(PlacedShape::checked).collect();
+    let checked: numeric::error::Result<Vec<Wall>> = all.into_iter().collect();
     Ok(checked.map_err(CoreError::from)?)
 }
 
@@ -74,7 +76,7 @@ pub struct CrowdEpisode {
     people: Vec<Vector2<f64>>,
     radii: Vec<f64>,
     groups: Vec<i64>,
-    walls: Vec<PlacedShape>,
+    walls: Vec<Wall>,
     without: Option<Vec<Vector2<f64>>>,
     goals: Vec<Vector2<f64>>,
     rules: Rules,
@@ -197,7 +199,7 @@ pub fn crowd_world_metrics<'py>(
     let rules = Rules {
         step: given.take("step")?,
         person_tolerance: given.take("person_tolerance")?,
-        period: given.take("period")?,
+        period: Period(given.take("period")?),
         ..Rules::of_people()
     };
     let time_limit = given.take("time_limit")?;

@@ -8,6 +8,8 @@ use vff_core::crowd::metrics::{
     Episode, Kind, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without, evaluate,
     evaluate_world,
 };
+use vff_core::crowd::neighbors::Period;
+use vff_core::crowd::walls::Wall;
 use vff_core::world::shape::PlacedShape;
 
 type Point = Vector2<f64>;
@@ -98,7 +100,9 @@ impl Case {
                 shortest_length: options["shortest_length"].as_f64(),
                 period: options["period"]
                     .as_array()
-                    .map_or([0.0; 2], |period| [number(&period[0]), number(&period[1])]),
+                    .map_or(Period::default(), |period| {
+                        Period([number(&period[0]), number(&period[1])])
+                    }),
             },
             expected: case["result"].clone(),
         }
@@ -106,10 +110,10 @@ impl Case {
 
     fn metrics(&self) -> Result<RobotMetrics, Failure> {
         let count = self.radii.len();
-        let walls: Vec<PlacedShape> = self
+        let walls: Vec<Wall> = self
             .walls
             .iter()
-            .map(|[from, to]| PlacedShape::wall((*from).into(), (*to).into()))
+            .map(|ends| Wall::polyline(ends.map(Into::into).to_vec()).unwrap())
             .collect();
         let without = match self.without.is_empty() {
             true => None,
@@ -259,7 +263,7 @@ fn places_directions_and_numbers_do_not_matter() {
 #[test]
 fn whole_periods_do_not_matter_where_the_world_repeats() {
     for mut case in at_random() {
-        case.rules.period = [9.0, 11.0];
+        case.rules.period = Period([9.0, 11.0]);
         // Where people are without robots, and their goals, are told apart from their images.
         case.without.clear();
         let expected = case.metrics().unwrap();
@@ -273,7 +277,7 @@ fn whole_periods_do_not_matter_where_the_world_repeats() {
         assert_equal(found, &expected, 1e-9, &case.name);
         let near = Case {
             rules: Rules {
-                period: [0.0; 2],
+                period: Period::default(),
                 ..case.rules
             },
             ..case.clone()
@@ -308,7 +312,7 @@ fn a_stop_of_five_seconds_is_frozen_and_rounding_of_the_step_does_not_matter() {
 #[test]
 fn walls_count_inside_discs_and_rectangles_too() {
     let case = cases().swap_remove(0);
-    let walls = [PlacedShape::upright([2.0, 0.0], [1.0, 1.0])];
+    let walls = [Wall::solid(PlacedShape::upright([2.0, 0.0], [1.0, 1.0])).unwrap()];
     let found = evaluate(&Episode {
         robot: &case.robot,
         people: Paths::default(),
@@ -340,7 +344,7 @@ fn an_invalid_value_is_named_with_its_index() {
         refused(|case| case.rules.robot_radius = -1.0),
         "robot_radius"
     );
-    assert_eq!(refused(|case| case.rules.period[1] = -1.0), "period[1]");
+    assert_eq!(refused(|case| case.rules.period.0[1] = -1.0), "period[1]");
     assert_eq!(refused(|case| case.rules.max_speed = 0.0), "max_speed");
     assert_eq!(refused(|case| case.robot[3].y = f64::NAN), "position[3]");
     assert_eq!(refused(|case| case.robot.clear()), "position");

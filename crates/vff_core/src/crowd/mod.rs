@@ -6,6 +6,7 @@
 mod batch;
 pub mod circle;
 pub mod collision_free_speed;
+pub mod environments;
 pub mod metrics;
 pub mod models;
 pub mod moussaid;

@@ -187,6 +187,15 @@ impl RobotSetup {
         }
     }
 
+    /// Mass in kg.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        match &self.mover {
+            Mover::Holonomic(robot) => robot.mass,
+            Mover::Differential(robot) => robot.mass,
+        }
+    }
+
     /// Largest speed in m/s.
     #[must_use]
     pub fn max_speed(&self) -> f64 {

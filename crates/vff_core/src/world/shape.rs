@@ -258,24 +258,6 @@ impl PlacedShape {
         })
     }
 
-    /// Distance of a point from the contour, negative inside, in m.
-    #[must_use]
-    pub fn signed_distance(&self, from: Vector2<f64>) -> f64 {
-        let from = from - self.center;
-        match self.shape {
-            Shape::Disc { radius } => from.norm() - radius,
-            Shape::Rectangle {
-                half_length,
-                half_width,
-                axis,
-            } => {
-                let local = into_axes(from, axis).abs() - Vector2::new(half_length, half_width);
-                let outside = local.sup(&Vector2::zeros()).norm();
-                if outside > 0.0 { outside } else { local.max() }
-            }
-        }
-    }
-
     /// Whether all of the shape lies beyond the line through a point, on the side of its normal.
     #[inline]
     #[must_use]
@@ -383,25 +365,6 @@ mod tests {
         assert_eq!(wall.distance(Vector2::new(4.0, 7.0)), 5.0);
         let point = PlacedShape::wall([1.0, 2.0], [1.0, 2.0]).checked().unwrap();
         assert_eq!(point.distance(Vector2::new(1.0, 0.0)), 2.0);
-    }
-
-    #[test]
-    fn a_signed_distance_is_negative_inside_and_zero_on_a_wall() {
-        let table = PlacedShape::upright([1.0, 0.0], [2.0, 1.0]);
-        for (place, expected) in [
-            ([1.0, 0.3], -0.2),
-            ([1.9, 0.0], -0.1),
-            ([1.0, 1.0], 0.5),
-            ([5.0, 4.5], 5.0),
-        ] {
-            let place = Vector2::from(place);
-            assert!((table.signed_distance(place) - expected).abs() < 1e-15);
-        }
-        let disc = PlacedShape::disc([1.0, 0.0], 2.0);
-        assert_eq!(disc.signed_distance(Vector2::new(1.0, 0.5)), -1.5);
-        let wall = PlacedShape::wall([0.0, -1.0], [0.0, 1.0]);
-        assert_eq!(wall.signed_distance(Vector2::zeros()), 0.0);
-        assert_eq!(wall.signed_distance(Vector2::new(-3.0, 5.0)), 5.0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Contacts with people, and who brought them about; contacts with walls.
 
-use nalgebra::Vector2;
+use crate::lanes::Vector2;
 
 use super::episode::Episode;
 
@@ -68,7 +68,7 @@ impl Contacts {
 #[inline]
 fn offset(episode: &Episode<'_>, instant: usize, person: usize) -> Vector2<f64> {
     let place = episode.people.at(instant)[person];
-    episode.rules.nearest_image(place - episode.robot[instant])
+    episode.rules.period.wrap(place - episode.robot[instant])
 }
 
 /// Speeds of robot and person toward each other over the step into a contact; over the next step where
@@ -99,10 +99,7 @@ fn at_walls(episode: &Episode<'_>, end: usize) -> (u32, f64) {
         return (count, least);
     }
     for place in &episode.robot[..=end] {
-        let distances = episode
-            .walls
-            .iter()
-            .map(|wall| wall.signed_distance(*place));
+        let distances = episode.walls.iter().map(|wall| wall.clearance(*place));
         let gap = distances.fold(f64::INFINITY, f64::min) - episode.rules.robot_radius;
         let touches = gap < 0.0;
         count += u32::from(touches && !touched);

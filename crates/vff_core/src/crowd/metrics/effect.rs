@@ -1,6 +1,6 @@
 //! What a robot costs the people: the same world and seed with it and without.
 
-use nalgebra::Vector2;
+use crate::lanes::Vector2;
 
 use super::episode::{Episode, Paths, Without};
 

@@ -1,9 +1,9 @@
 //! What is scored: positions over time with the sizes and rules that they are measured by.
 
-use nalgebra::Vector2;
-
+use crate::crowd::neighbors::Period;
+use crate::crowd::walls::Wall;
 use crate::error::{Failure, Given, Result, finite_pair, not_negative, positive};
-use crate::world::shape::PlacedShape;
+use crate::lanes::Vector2;
 
 type Point = Vector2<f64>;
 
@@ -106,7 +106,7 @@ pub struct Rules {
     /// Shortest length of a path to the goal, in m; the straight one when `None`.
     pub shortest_length: Option<f64>,
     /// Lengths after which the world repeats, in m; 0 where it does not.
-    pub period: [f64; 2],
+    pub period: Period,
 }
 
 impl Rules {
@@ -121,21 +121,8 @@ impl Rules {
             person_tolerance: 0.3,
             max_speed: 1.0,
             shortest_length: None,
-            period: [0.0; 2],
+            period: Period::default(),
         }
-    }
-
-    /// The difference of two positions, to the nearest image where the world repeats.
-    #[inline]
-    #[must_use]
-    pub fn nearest_image(&self, difference: Point) -> Point {
-        if self.period == [0.0; 2] {
-            return difference;
-        }
-        Point::new(
-            wrapped(difference.x, self.period[0]),
-            wrapped(difference.y, self.period[1]),
-        )
     }
 
     pub(super) fn check(&self) -> Result<()> {
@@ -148,18 +135,10 @@ impl Rules {
         if let Some(length) = self.shortest_length {
             not_negative("shortest_length", length)?;
         }
-        not_negative("period[0]", self.period[0])?;
-        not_negative("period[1]", self.period[1])?;
+        not_negative("period[0]", self.period.0[0])?;
+        not_negative("period[1]", self.period.0[1])?;
         Ok(())
     }
-}
-
-/// A difference in `[-length/2, length/2)`.
-fn wrapped(difference: f64, length: f64) -> f64 {
-    if length == 0.0 {
-        return difference;
-    }
-    difference - length * (difference / length + 0.5).floor()
 }
 
 /// The same people in the same world without robots.
@@ -183,7 +162,7 @@ pub struct Episode<'a> {
     /// Their groups; below 0 for who belongs to none, empty without any.
     pub groups: &'a [i64],
     /// What stands still.
-    pub walls: &'a [PlacedShape],
+    pub walls: &'a [Wall],
     /// The same without robots, if known.
     pub without: Option<Without<'a>>,
     /// What is measured by.

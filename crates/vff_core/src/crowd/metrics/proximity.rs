@@ -1,6 +1,6 @@
 //! How near people are: clearances, zones, time to a collision, groups, social forces.
 
-use nalgebra::Vector2;
+use crate::lanes::Vector2;
 
 use super::episode::Episode;
 use super::pressure;
@@ -97,7 +97,7 @@ impl Near {
         };
         for (place, radius) in episode.people.at(instant).iter().zip(episode.radii) {
             // Comparisons with NaN, who is absent, change nothing.
-            let zone = rules.nearest_image(place - robot).norm() - rules.robot_radius;
+            let zone = rules.period.wrap(place - robot).norm() - rules.robot_radius;
             near.zone = near.zone.min(zone);
             near.gap = near.gap.min(zone - radius);
         }
@@ -129,7 +129,7 @@ impl Sums {
             if place.x.is_nan() || next.x.is_nan() {
                 continue;
             }
-            let to_person = rules.nearest_image(place - robot);
+            let to_person = rules.period.wrap(place - robot);
             let closing = (next - place) / rules.step - velocity;
             let reach = rules.robot_radius + radius;
             least = least.min(time_to_collision(to_person, closing, reach));
@@ -183,10 +183,10 @@ fn intrudes(episode: &Episode<'_>, instant: usize, group: &[usize]) -> bool {
     // From the first one, so that a group is not torn apart where the world repeats; NaN if one is absent.
     let sum: Vector2<f64> = group
         .iter()
-        .map(|person| rules.nearest_image(places[*person] - first))
+        .map(|person| rules.period.wrap(places[*person] - first))
         .sum();
     let center = first + sum / group.len() as f64;
-    let distance = rules.nearest_image(center - episode.robot[instant]).norm();
+    let distance = rules.period.wrap(center - episode.robot[instant]).norm();
     distance - rules.robot_radius < ZONES[1]
 }
 

@@ -1,6 +1,6 @@
 //! The way of the robot: arrival, path, heading, speed, progress.
 
-use nalgebra::Vector2;
+use crate::lanes::Vector2;
 
 use super::STANDSTILL;
 use super::episode::Episode;

@@ -1,6 +1,6 @@
 //! Metrics of a whole world: people who left or stand, robots that touch each other.
 
-use nalgebra::Vector2;
+use crate::lanes::Vector2;
 
 use super::STANDSTILL;
 use super::declared::WorldMetrics;
@@ -120,7 +120,7 @@ fn touching_pairs(world: &Whole<'_>) -> u32 {
     let touch = |one: usize, other: usize| {
         (0..robots.instants()).any(|instant| {
             let places = robots.at(instant);
-            let apart = world.rules.nearest_image(places[one] - places[other]);
+            let apart = world.rules.period.wrap(places[one] - places[other]);
             apart.norm() - world.radii[one] - world.radii[other] < 0.0
         })
     };

@@ -1,0 +1,264 @@
+//! Environments for learners: many worlds of one robot each, stepped side by side.
+//!
+//! Observations, rewards and the starts of episodes are made here, so that a call steps all of them.
+
+mod history;
+mod layout;
+mod observation;
+mod one;
+mod settings;
+
+pub use layout::{Area, Circle, Layout, seed_of};
+pub use observation::{BOUND, RANGE};
+pub use one::{Environment, State, Step};
+pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
+
+use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
+use crate::error::{Failure, Given, Result};
+use crate::run::Interrupted;
+use numeric::threads::{on_threads, team, try_each};
+
+/// Most environments of a set.
+pub const MOST_ENVIRONMENTS: usize = 1 << 20;
+/// Fewest environments that are worth another thread.
+const LEAST_SHARE: usize = 16;
+/// Numbers of a row of metrics.
+const METRICS: usize = ROBOT_METRICS.len();
+
+/// Where results are written, a row for each environment.
+pub struct Outputs<'a> {
+    /// What the robots see.
+    pub observations: &'a mut [f32],
+    /// What they saw at the end of an episode that was followed by another one in the same step.
+    pub final_observations: &'a mut [f32],
+    /// How many of the people that each can see are there, after the step and at such an end.
+    pub seen: &'a mut [[i64; 2]],
+    /// Rewards.
+    pub rewards: &'a mut [f64],
+    /// Codes of [`State`].
+    pub states: &'a mut [u8],
+    /// Whether an episode has started in this step.
+    pub started: &'a mut [bool],
+    /// Least gaps within the step, in m.
+    pub clearances: &'a mut [f64],
+    /// Metrics of episodes that have ended.
+    pub metrics: &'a mut [[f64; METRICS]],
+}
+
+/// The results of one environment.
+struct Row<'a> {
+    environment: &'a mut Environment,
+    observation: &'a mut [f32],
+    final_observation: &'a mut [f32],
+    seen: &'a mut [i64; 2],
+    reward: &'a mut f64,
+    state: &'a mut u8,
+    started: &'a mut bool,
+    clearance: &'a mut f64,
+    metrics: &'a mut [f64; METRICS],
+}
+
+/// Environments side by side.
+pub struct Environments {
+    settings: Settings,
+    each: Vec<Environment>,
+    threads: Option<usize>,
+}
+
+impl Environments {
+    /// So many environments at the start of their first episodes; the seeds count up from the first one.
+    ///
+    /// # Errors
+    /// A setting breaks a rule, or there is no room for everybody.
+    pub fn new(
+        settings: Settings,
+        count: usize,
+        seed: u64,
+        threads: Option<usize>,
+    ) -> Result<Self> {
+        if !(1..=MOST_ENVIRONMENTS).contains(&count) {
+            return Err(Failure::invalid(
+                "num_envs",
+                format!("be from 1 to {MOST_ENVIRONMENTS}"),
+                Given::Count(count as u64),
+            ));
+        }
+        let settings = settings.checked()?;
+        let seeds = (0..count as u64).map(|index| seed.wrapping_add(index));
+        let each: Result<Vec<Environment>> = seeds
+            .map(|seed| Environment::new(&settings, seed))
+            .collect();
+        Ok(Self {
+            each: each?,
+            settings,
+            threads,
+        })
+    }
+
+    /// What they have in common.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// One of them.
+    #[must_use]
+    pub fn environment(&self, index: usize) -> Option<&Environment> {
+        self.each.get(index)
+    }
+
+    /// Starts episodes: of all, or where the mask says so; the first ones of other seeds where there are any.
+    ///
+    /// # Errors
+    /// There is no room for everybody.
+    pub fn reset(
+        &mut self,
+        seeds: &[Option<u64>],
+        mask: &[bool],
+        outputs: Outputs<'_>,
+    ) -> Result<()> {
+        let settings = &self.settings;
+        let chosen = |index: usize| mask.get(index).copied().unwrap_or(true);
+        let seed_of = |index: usize| seeds.get(index).copied().flatten();
+        let work = |(index, row): (usize, Row<'_>)| -> Result<()> {
+            if chosen(index) {
+                row.environment.reset(settings, seed_of(index))?;
+                *row.started = true;
+            }
+            row.show(settings);
+            Ok(())
+        };
+        each_row((settings, self.threads), &mut self.each, outputs, work)
+    }
+
+    /// Steps all of them by actions in [-1, 1].
+    ///
+    /// # Errors
+    /// The caller asked to stop, an episode that has ended is stepped, or there is no room for a new one.
+    pub fn step(
+        &mut self,
+        actions: &[[f64; 2]],
+        outputs: Outputs<'_>,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
+        let settings = &self.settings;
+        if settings.autoreset == Autoreset::Disabled
+            && let Some(index) = self.ended()
+        {
+            let given = Given::Found("one that has ended".into());
+            let name = format!("environment[{index}]");
+            return Err(Failure::invalid(name, "be under way", given)
+                .mended_by("start its next episode by reset first"));
+        }
+        let work = |(index, row): (usize, Row<'_>)| row.step(settings, actions[index], interrupted);
+        each_row((settings, self.threads), &mut self.each, outputs, work)
+    }
+
+    /// The first environment whose episode has ended.
+    #[must_use]
+    pub fn ended(&self) -> Option<usize> {
+        let mut states = self.each.iter().map(Environment::state);
+        states.position(|state| state != State::Running)
+    }
+}
+
+/// Does something with each environment and its results, on so many threads.
+fn each_row(
+    (settings, threads): (&Settings, Option<usize>),
+    each: &mut [Environment],
+    outputs: Outputs<'_>,
+    work: impl Fn((usize, Row<'_>)) -> Result<()> + Sync + Send,
+) -> Result<()> {
+    let size = settings.size();
+    let count = each.len();
+    let mut rows = each
+        .iter_mut()
+        .zip(outputs.observations.chunks_exact_mut(size))
+        .zip(outputs.final_observations.chunks_exact_mut(size))
+        .zip(outputs.seen.iter_mut().zip(outputs.rewards))
+        .zip(outputs.states.iter_mut().zip(outputs.started))
+        .zip(outputs.clearances.iter_mut().zip(outputs.metrics))
+        .map(
+            |(
+                ((((environment, observation), last), (seen, reward)), (state, started)),
+                (gap, row),
+            )| Row {
+                environment,
+                observation,
+                final_observation: last,
+                seen,
+                reward,
+                state,
+                started,
+                clearance: gap,
+                metrics: row,
+            },
+        )
+        .enumerate();
+    if threads == Some(1) {
+        return rows.try_for_each(work);
+    }
+    on_threads(threads, || {
+        let share = count.div_ceil(4 * team()).max(LEAST_SHARE);
+        let rows: Vec<(usize, Row<'_>)> = rows.collect();
+        let mut blocks: Vec<Vec<(usize, Row<'_>)>> = Vec::with_capacity(count.div_ceil(share));
+        let mut rest = rows.into_iter();
+        loop {
+            let block: Vec<_> = rest.by_ref().take(share).collect();
+            if block.is_empty() {
+                break;
+            }
+            blocks.push(block);
+        }
+        try_each(blocks, |block| block.into_iter().try_for_each(&work))
+    })
+}
+
+impl Row<'_> {
+    fn show(self, settings: &Settings) {
+        self.environment.observe(settings, self.observation);
+        self.seen[0] = count(self.environment.seen(settings));
+        *self.state = self.environment.state().code();
+    }
+
+    fn step(
+        self,
+        settings: &Settings,
+        action: [f64; 2],
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
+        let environment = self.environment;
+        *self.started = false;
+        if environment.state() != State::Running {
+            // The episode ended in the step before.
+            environment.reset(settings, None)?;
+            environment.observe(settings, self.observation);
+            self.seen[0] = count(environment.seen(settings));
+            (*self.reward, *self.clearance) = (0.0, f64::INFINITY);
+            (*self.state, *self.started) = (State::Running.code(), true);
+            return Ok(());
+        }
+        let step = environment.step(settings, action, interrupted)?;
+        (*self.reward, *self.clearance) = (step.reward, step.clearance);
+        *self.state = step.state.code();
+        if step.state != State::Running {
+            if let Some(found) = environment.metrics(settings) {
+                *self.metrics = RobotMetrics::into_array(found);
+            }
+            if settings.autoreset == Autoreset::SameStep {
+                environment.observe(settings, self.final_observation);
+                self.seen[1] = count(environment.seen(settings));
+                environment.reset(settings, None)?;
+                *self.started = true;
+            }
+        }
+        environment.observe(settings, self.observation);
+        self.seen[0] = count(environment.seen(settings));
+        Ok(())
+    }
+}
+
+/// A number of people as arrays have it.
+fn count(people: usize) -> i64 {
+    people.try_into().unwrap_or(i64::MAX)
+}

@@ -1,0 +1,168 @@
+//! What a robot sees: itself, the nearest people, ranges of a lidar.
+
+use crate::crowd::environments::settings::{Axes, Settings};
+use crate::crowd::people::PersonState;
+use crate::crowd::simulation::Simulation;
+use crate::crowd::walls::Wall;
+use crate::lanes::Vector2;
+use crate::world::shape::{PlacedShape, cast_on_disc};
+
+type Vector = Vector2<f64>;
+
+/// Bound of every number without a bound of its own.
+pub const BOUND: f64 = 100.0;
+/// Range of the lidar, in m.
+pub const RANGE: f64 = 10.0;
+
+/// A rotation of the plane.
+#[derive(Clone, Copy)]
+struct Turn {
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    /// From the axes of the world into those of an observation.
+    fn of(axes: Axes, to_goal: Vector) -> Self {
+        let distance = to_goal.norm();
+        match axes {
+            Axes::Goal if distance > 0.0 => Self {
+                cos: to_goal.x / distance,
+                sin: to_goal.y / distance,
+            },
+            Axes::Goal | Axes::World => Self { cos: 1.0, sin: 0.0 },
+        }
+    }
+
+    fn into_axes(self, vector: Vector) -> [f64; 2] {
+        [
+            vector.x * self.cos + vector.y * self.sin,
+            vector.y * self.cos - vector.x * self.sin,
+        ]
+    }
+
+    fn out_of_axes(self, angle: f64) -> Vector {
+        let (sin, cos) = angle.sin_cos();
+        Vector::new(
+            cos * self.cos - sin * self.sin,
+            sin * self.cos + cos * self.sin,
+        )
+    }
+}
+
+/// Distance and number of a person.
+type Ranked = (f64, usize);
+
+/// Room for the order of the people.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ranking(Vec<Ranked>);
+
+impl Ranking {
+    /// The nearest people of those present by the distance of their centers, then by number.
+    fn nearest(&mut self, simulation: &Simulation, robot: Vector, most: usize) -> &[Ranked] {
+        let period = simulation.world().period;
+        self.0.clear();
+        for (number, person) in simulation.people().iter().enumerate() {
+            if !person.is_present() {
+                continue;
+            }
+            let distance = period.wrap(person.position - robot).norm();
+            let place = self.0.partition_point(|other| other.0 <= distance);
+            if place < most {
+                self.0.truncate(most - 1);
+                self.0.insert(place, (distance, number));
+            }
+        }
+        &self.0
+    }
+}
+
+/// Writes an observation; `own` goal and greatest speed are those of the robot that is driven.
+pub(super) fn observe(
+    settings: &Settings,
+    simulation: &Simulation,
+    ranking: &mut Ranking,
+    into: &mut [f32],
+) {
+    let world = simulation.world();
+    let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
+    let state = robot.state();
+    let to_goal = Vector::from(setup.goal) - state.position;
+    let turn = Turn::of(settings.axes, to_goal);
+    let [goal_x, goal_y] = turn.into_axes(to_goal);
+    let [speed_x, speed_y] = turn.into_axes(state.velocity);
+    let own = [goal_x, goal_y, speed_x, speed_y, setup.max_speed()];
+    let (head, rest) = into.split_at_mut(Settings::OWN);
+    for (slot, value) in head.iter_mut().zip(own) {
+        *slot = bounded(value, -BOUND, BOUND);
+    }
+    head[5] = bounded(simulation.time() / world.time_limit, 0.0, 1.0);
+    let (people, rays) = rest.split_at_mut(Settings::PERSON * settings.people);
+    people.fill(0.0);
+    let nearest = ranking.nearest(simulation, state.position, settings.people);
+    for (slots, (distance, number)) in people.chunks_exact_mut(Settings::PERSON).zip(nearest) {
+        let person: &PersonState = &simulation.people()[*number];
+        let way = world.period.wrap(person.position - state.position);
+        let [x, y] = turn.into_axes(way);
+        let [vx, vy] = turn.into_axes(person.velocity - state.velocity);
+        let gap = distance - setup.radius() - person.radius;
+        for (slot, value) in slots.iter_mut().zip([x, y, vx, vy, gap]) {
+            *slot = bounded(value, -BOUND, BOUND);
+        }
+    }
+    let count = rays.len() as f64;
+    for (index, slot) in rays.iter_mut().enumerate() {
+        let angle = std::f64::consts::TAU * index as f64 / count;
+        let range = range(simulation, state.position, turn.out_of_axes(angle));
+        *slot = bounded(range, 0.0, RANGE);
+    }
+}
+
+/// How many people of an observation are there.
+pub(super) fn seen(settings: &Settings, simulation: &Simulation) -> usize {
+    let present = simulation
+        .people()
+        .iter()
+        .filter(|person| person.is_present());
+    present.take(settings.people).count()
+}
+
+/// A number within its bounds, in single precision.
+#[allow(clippy::cast_possible_truncation)] // observations are in single precision
+fn bounded(value: f64, low: f64, high: f64) -> f32 {
+    value.clamp(low, high) as f32
+}
+
+/// Distance from the center of the robot along a ray to people, other robots and walls, in m.
+fn range(simulation: &Simulation, from: Vector, ray: Vector) -> f64 {
+    let period = simulation.world().period;
+    let mut least = RANGE;
+    for person in simulation
+        .people()
+        .iter()
+        .filter(|person| person.is_present())
+    {
+        let to = period.wrap(person.position - from);
+        least = least.min(cast_on_disc(to, person.radius, ray));
+    }
+    for robot in &simulation.robots()[1..] {
+        let to = period.wrap(robot.state().position - from);
+        least = least.min(cast_on_disc(to, robot.radius(), ray));
+    }
+    for wall in &simulation.world().walls {
+        least = least.min(cast_on_wall(wall, from, ray));
+    }
+    least
+}
+
+fn cast_on_wall(wall: &Wall, from: Vector, ray: Vector) -> f64 {
+    match wall {
+        Wall::Solid(shape) => shape.cast(from, ray),
+        Wall::Polyline(points) => {
+            let segments = points.windows(2);
+            let cast =
+                |ends: &[Vector]| PlacedShape::wall(ends[0].into(), ends[1].into()).cast(from, ray);
+            segments.map(cast).fold(f64::INFINITY, f64::min)
+        }
+    }
+}

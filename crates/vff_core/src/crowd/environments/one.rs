@@ -1,0 +1,361 @@
+//! One environment: an episode of a world, one step of the driven robot at a time.
+
+use crate::crowd::environments::history::History;
+use crate::crowd::environments::layout::seed_of;
+use crate::crowd::environments::observation::{Ranking, observe, seen};
+use crate::crowd::environments::settings::{Action, Settings};
+use crate::crowd::metrics::RobotMetrics;
+use crate::crowd::simulation::Simulation;
+use crate::error::Result;
+use crate::lanes::Vector2;
+use crate::run::{Interrupted, Request};
+
+type Vector = Vector2<f64>;
+
+/// Surfaces that overlap by more are in contact, in m.
+const TOUCH: f64 = 1e-6;
+/// Gap below which a robot is uncomfortably near, in m, and how it is rewarded, as in `CrowdNav`.
+const DISCOMFORT: f64 = 0.2;
+const DISCOMFORT_REWARD: f64 = 0.5;
+const ARRIVAL_REWARD: f64 = 1.0;
+const CONTACT_REWARD: f64 = -0.25;
+/// Rounding of a time against its limit, relative to a step.
+const ROUNDING: f64 = 1e-9;
+
+/// How an episode stands after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It is under way.
+    Running,
+    /// The robot is at its goal.
+    Arrived,
+    /// It has touched somebody or a wall.
+    Collided,
+    /// The time is over.
+    TimedOut,
+    /// A state is no longer finite.
+    Diverged,
+}
+
+impl State {
+    /// All of them; the place of one is its code.
+    pub const ALL: [Self; 5] = [
+        Self::Running,
+        Self::Arrived,
+        Self::Collided,
+        Self::TimedOut,
+        Self::Diverged,
+    ];
+
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Running => "running",
+            Self::Arrived => "arrived",
+            Self::Collided => "collided",
+            Self::TimedOut => "timed_out",
+            Self::Diverged => "diverged",
+        }
+    }
+
+    /// Its code.
+    #[must_use]
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Running => 0,
+            Self::Arrived => 1,
+            Self::Collided => 2,
+            Self::TimedOut => 3,
+            Self::Diverged => 4,
+        }
+    }
+
+    /// Whether the episode has ended by itself.
+    #[must_use]
+    pub fn is_terminal(self) -> bool {
+        match self {
+            Self::Arrived | Self::Collided | Self::Diverged => true,
+            Self::Running | Self::TimedOut => false,
+        }
+    }
+}
+
+/// What a step brought.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// How the episode stands.
+    pub state: State,
+    /// The reward.
+    pub reward: f64,
+    /// Least distance to the people within the step, in m; infinite without any.
+    pub clearance: f64,
+}
+
+/// One environment.
+pub struct Environment {
+    simulation: Simulation,
+    seed: u64,
+    /// Number of the next episode.
+    next: u64,
+    /// Where the robot looks, in rad, if its action turns it.
+    heading: f64,
+    state: State,
+    /// Steps of the world in one of the robot.
+    steps: usize,
+    ranking: Ranking,
+    history: History,
+    /// From the robot to the people at the last instant; NaN for who was absent.
+    ways: Vec<Vector>,
+}
+
+impl Environment {
+    /// An environment at the start of its first episode.
+    ///
+    /// # Errors
+    /// The world breaks a rule, or there is no room for everybody.
+    pub fn new(settings: &Settings, seed: u64) -> Result<Self> {
+        let mut world = settings.world.clone();
+        world.seed = seed_of(seed, 0);
+        settings.layout.draw(&mut world)?;
+        let steps = (world.robots[0].control_period / world.step).round();
+        // Checked to be a small whole number by the world.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let steps = steps as usize;
+        let mut environment = Self {
+            simulation: Simulation::new(world, false)?,
+            seed,
+            next: 0,
+            heading: 0.0,
+            state: State::Running,
+            steps,
+            ranking: Ranking::default(),
+            history: History::default(),
+            ways: Vec::new(),
+        };
+        environment.open(settings);
+        Ok(environment)
+    }
+
+    /// Starts the next episode; the first one of another seed if there is one.
+    ///
+    /// # Errors
+    /// There is no room for everybody.
+    pub fn reset(&mut self, settings: &Settings, seed: Option<u64>) -> Result<()> {
+        if let Some(seed) = seed {
+            (self.seed, self.next) = (seed, 0);
+        }
+        let seed = seed_of(self.seed, self.next);
+        let mut drawn = Ok(());
+        self.simulation.restart(|world| {
+            world.seed = seed;
+            drawn = settings.layout.draw(world);
+        })?;
+        drawn?;
+        self.open(settings);
+        Ok(())
+    }
+
+    fn open(&mut self, settings: &Settings) {
+        self.next += 1;
+        self.state = State::Running;
+        let to_goal = self.to_goal();
+        self.heading = to_goal.y.atan2(to_goal.x);
+        self.history.clear();
+        self.note(settings);
+        self.ways.clear();
+        self.look();
+    }
+
+    /// How the episode stands.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The world under way.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// How many people of an observation are there.
+    #[must_use]
+    pub fn seen(&self, settings: &Settings) -> usize {
+        seen(settings, &self.simulation)
+    }
+
+    /// Writes what the robot sees.
+    pub fn observe(&mut self, settings: &Settings, into: &mut [f32]) {
+        observe(settings, &self.simulation, &mut self.ranking, into);
+    }
+
+    /// Metrics of the episode up to now, if positions are kept.
+    #[must_use]
+    pub fn metrics(&mut self, settings: &Settings) -> Option<RobotMetrics> {
+        settings
+            .metrics
+            .then(|| self.history.metrics(&self.simulation))
+    }
+
+    /// Drives the robot for one step.
+    ///
+    /// # Errors
+    /// The caller asked to stop.
+    pub fn step(
+        &mut self,
+        settings: &Settings,
+        action: [f64; 2],
+        interrupted: Interrupted<'_>,
+    ) -> Result<Step> {
+        let before = self.to_goal().norm();
+        let request = self.request(settings, action);
+        self.simulation.ask(0, request);
+        let mut clearance = f64::INFINITY;
+        for _ in 0..self.steps {
+            self.simulation.step(interrupted)?;
+            clearance = clearance.min(self.look());
+            self.note(settings);
+        }
+        self.state = self.judged(clearance);
+        let distance = self.to_goal().norm();
+        let period = self.simulation.world().robots[0].control_period;
+        let extra = settings.rewards.progress * (before - distance) + settings.rewards.step;
+        let reward = match self.state {
+            State::Arrived => ARRIVAL_REWARD,
+            State::Collided => CONTACT_REWARD,
+            State::Running | State::TimedOut if clearance < DISCOMFORT => {
+                -DISCOMFORT_REWARD * (DISCOMFORT - clearance) * period
+            }
+            State::Running | State::TimedOut => 0.0,
+            State::Diverged => {
+                return Ok(Step {
+                    state: self.state,
+                    reward: 0.0,
+                    clearance,
+                });
+            }
+        };
+        Ok(Step {
+            state: self.state,
+            reward: reward + extra,
+            clearance,
+        })
+    }
+
+    fn to_goal(&self) -> Vector {
+        let goal = self.simulation.world().robots[0].goal;
+        Vector::from(goal) - self.simulation.robots()[0].state().position
+    }
+
+    /// What the robot is told, from an action in [-1, 1].
+    fn request(&mut self, settings: &Settings, action: [f64; 2]) -> Request {
+        let action = Vector::from(action.map(|share| share.clamp(-1.0, 1.0)));
+        let setup = &self.simulation.world().robots[0];
+        let fastest = setup.max_speed();
+        match settings.action {
+            Action::Velocity => {
+                let length = action.norm();
+                let share = if length > 1.0 {
+                    action / length
+                } else {
+                    action
+                };
+                Request::Velocity((share * fastest).into())
+            }
+            Action::Acceleration => {
+                let force = action * (settings.max_acceleration * setup.mass());
+                Request::Force(force.into())
+            }
+            Action::Unicycle => {
+                self.heading += action.y * settings.max_turn_rate * setup.control_period;
+                let (sin, cos) = self.heading.sin_cos();
+                Request::Velocity((Vector::new(cos, sin) * (action.x * fastest)).into())
+            }
+        }
+    }
+
+    /// How the episode stands at the end of a step.
+    fn judged(&self, clearance: f64) -> State {
+        let (simulation, world) = (&self.simulation, self.simulation.world());
+        let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
+        let place = robot.state().position;
+        let mut walls = world.walls.iter();
+        let touches = |gap: f64| gap < -TOUCH;
+        if simulation.divergence().is_some() {
+            State::Diverged
+        } else if touches(clearance)
+            || walls.any(|wall| touches(wall.clearance(place) - setup.radius()))
+        {
+            State::Collided
+        } else if self.to_goal().norm() <= setup.arrival_tolerance {
+            State::Arrived
+        } else if simulation.time() >= world.time_limit - ROUNDING * world.step {
+            State::TimedOut
+        } else {
+            State::Running
+        }
+    }
+
+    /// Least gap to people since the last look, in straight relative motion, in m.
+    fn look(&mut self) -> f64 {
+        let period = self.simulation.world().period;
+        let robot = &self.simulation.robots()[0];
+        let (place, radius) = (robot.state().position, robot.radius());
+        let mut least = f64::INFINITY;
+        let people = self.simulation.people();
+        self.ways.resize(people.len(), Vector::repeat(f64::NAN));
+        for (before, person) in self.ways.iter_mut().zip(people) {
+            if !person.is_present() {
+                *before = Vector::repeat(f64::NAN);
+                continue;
+            }
+            let way = period.wrap(person.position - place);
+            let distance = if before.x.is_nan() {
+                way.norm()
+            } else {
+                nearest_between(way - period.wrap(way - *before), way)
+            };
+            *before = way;
+            least = least.min(distance - radius - person.radius);
+        }
+        least
+    }
+
+    fn note(&mut self, settings: &Settings) {
+        if settings.metrics {
+            self.history.push(&self.simulation);
+        }
+    }
+}
+
+/// Least distance from zero to the points between two.
+fn nearest_between(from: Vector, to: Vector) -> f64 {
+    let along = to - from;
+    let squared = along.dot(&along);
+    if squared == 0.0 {
+        return to.norm();
+    }
+    let share = (-from.dot(&along) / squared).clamp(0.0, 1.0);
+    (from + along * share).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_gap_of_a_step_lies_between_its_ends() {
+        let (from, to) = (Vector::new(-1.0, 0.5), Vector::new(1.0, 0.5));
+        assert_eq!(nearest_between(from, to), 0.5);
+        assert_eq!(nearest_between(to, to), to.norm());
+        assert_eq!(nearest_between(to, to * 2.0), to.norm());
+    }
+
+    #[test]
+    fn a_state_and_its_code_belong_together() {
+        for (code, state) in (0_u8..).zip(State::ALL) {
+            assert_eq!(state.code(), code);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What an environment is told, shows and rewards.
+
+use crate::crowd::environments::Layout;
+use crate::crowd::world::CrowdWorld;
+use crate::error::{Failure, Given, Result, at_most, finite, not_negative, positive};
+
+/// Most people and lidar rays of an observation.
+const MOST_SEEN: usize = 10_000;
+
+/// How an action drives the robot; its numbers are shares of the greatest values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// A velocity, shortened to the greatest speed.
+    Velocity,
+    /// An acceleration.
+    Acceleration,
+    /// A speed, backward below 0, and a turn rate.
+    Unicycle,
+}
+
+/// Axes of the vectors of an observation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the world.
+    World,
+    /// The x axis points from the robot to its goal.
+    Goal,
+}
+
+/// What comes after the end of an episode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The next step starts the next episode, whatever the action.
+    NextStep,
+    /// The same step starts it.
+    SameStep,
+    /// The caller starts it.
+    Disabled,
+}
+
+/// Rewards beside those of arrival and contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rewards {
+    /// For each meter that the goal comes nearer.
+    pub progress: f64,
+    /// For each step.
+    pub step: f64,
+}
+
+/// What all environments of a set have in common.
+#[derive(Clone)]
+pub struct Settings {
+    /// The world of an episode, one of whose robots, the first, is driven.
+    pub world: CrowdWorld,
+    /// What differs between episodes.
+    pub layout: Layout,
+    /// How it is driven.
+    pub action: Action,
+    /// Greatest acceleration, in m/s^2.
+    pub max_acceleration: f64,
+    /// Greatest turn rate, in rad/s.
+    pub max_turn_rate: f64,
+    /// How many people it sees.
+    pub people: usize,
+    /// Number of lidar rays.
+    pub rays: usize,
+    /// Axes of what it sees.
+    pub axes: Axes,
+    /// What it is rewarded for.
+    pub rewards: Rewards,
+    /// What comes after an episode.
+    pub autoreset: Autoreset,
+    /// Whether positions are kept to score each episode at its end.
+    pub metrics: bool,
+}
+
+impl Settings {
+    /// Returns the settings if they obey their rules.
+    ///
+    /// # Errors
+    /// Names the argument that does not.
+    pub fn checked(self) -> Result<Self> {
+        let world = self.world.checked()?;
+        if world.robots.is_empty() {
+            let given = Given::Found("none".into());
+            return Err(Failure::invalid(
+                "world.robots",
+                "hold a robot to drive",
+                given,
+            ));
+        }
+        positive("max_acceleration", self.max_acceleration)?;
+        positive("max_turn_rate", self.max_turn_rate)?;
+        at_most("people", self.people, MOST_SEEN)?;
+        at_most("lidar", self.rays, MOST_SEEN)?;
+        finite("progress", self.rewards.progress)?;
+        finite("step_reward", self.rewards.step)?;
+        if let Layout::Circle(circle) = &self.layout {
+            positive("layout.radius", circle.radius)?;
+            not_negative("layout.noise", circle.noise)?;
+            not_negative("layout.spacing", circle.spacing)?;
+        }
+        Ok(Self { world, ..self })
+    }
+
+    /// Numbers of the robot itself: goal, velocity, greatest speed, share of the time.
+    pub const OWN: usize = 6;
+    /// Numbers of a person: position, velocity, gap.
+    pub const PERSON: usize = 5;
+
+    /// Numbers of an observation.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        Self::OWN + Self::PERSON * self.people + self.rays
+    }
+}
