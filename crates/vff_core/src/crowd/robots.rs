@@ -170,6 +170,7 @@ impl CrowdRobot {
         let mut situation = Situation {
             time,
             bodies: &[],
+            ages: &[],
             robot: known,
             heading: self.drive.known_heading(),
             interval: self.interval,

@@ -80,7 +80,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         for (index, body) in bodies.iter().enumerate() {
             runs.watch(index, body, W::Number::zero(), runs.running);
         }
-        runs.watch_walls(W::Number::zero(), runs.running);
+        runs.watch_walls(R::zero(), runs.running);
         runs.remember();
         runs
     }
@@ -225,15 +225,15 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             }
         }
         if self.walls.is_some() {
-            self.watch_walls(time, self.running);
+            self.watch_walls(time.wide(), self.running);
         }
     }
 
     /// Least distance and contact of some lanes with the maps.
     #[inline(never)]
-    fn watch_walls(&mut self, time: W::Number, lanes: R::Mask) {
+    fn watch_walls(&mut self, time: R, lanes: R::Mask) {
         if let Some(walls) = &mut self.walls {
-            self.touched |= walls.watch(self.position, self.speed, time.wide(), lanes);
+            self.touched |= walls.watch(self.position, self.speed, time, lanes);
         }
     }
 
@@ -337,7 +337,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
                 self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
             }
-            self.watch_walls(instant, only);
+            self.watch_walls(R::splat(instant), only);
         }
         self.running = self.running & !arrived;
     }

@@ -197,8 +197,7 @@ impl<'a, P: Fn(usize) -> (&'a Cell, &'a [f64]) + Sync> Source<'a, P> {
     fn clearances(&self) -> Vec<f64> {
         let mut least = self.of_distances(min_clearance);
         for (row, least) in least.iter_mut().enumerate() {
-            let (strip, set) = self.place(row);
-            *least = least.min(self.strips[strip].cells[set].run.map_clearance);
+            *least = least.min((self.place)(row).0.run.map_clearance);
         }
         least
     }
