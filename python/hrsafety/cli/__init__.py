@@ -162,6 +162,24 @@ def _benchmark(options: argparse.Namespace) -> None:
     run_suite(options)
 
 
+def _init(options: argparse.Namespace) -> None:
+    from hrsafety.cli.init import write_starter
+
+    write_starter(options)
+
+
+def _validate(options: argparse.Namespace) -> None:
+    from hrsafety.cli.validate import validate_files
+
+    validate_files(options)
+
+
+def _info(_options: argparse.Namespace) -> None:
+    from hrsafety.cli.info import print_info
+
+    print_info()
+
+
 _COMMANDS = {
     "reproduce": _reproduce,
     "simulate": _simulate,
@@ -171,4 +189,7 @@ _COMMANDS = {
     "arm": _arm,
     "contact": _contact,
     "benchmark": _benchmark,
+    "init": _init,
+    "validate": _validate,
+    "info": _info,
 }

@@ -77,6 +77,30 @@ Episodes are kept in the folder as they come; the same command resumes there. Sh
 SUITE_NAMES = ("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3")
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 
+STARTERS = {
+    "scenario": "my_first_crossing.toml",
+    "foam": "foam_design.toml",
+    "gains": "gain_study.toml",
+    "sweep": "impact_sweep.toml",
+    "contact": "cell.toml",
+}
+"""Files to start from, by the word that ``hrsafety init`` takes."""
+
+_INIT_EXAMPLE = """examples:
+  hrsafety init scenario
+  hrsafety init contact my_cell.toml
+
+Every key of the file is explained in it. Nothing is overwritten.
+"""
+_VALIDATE_EXAMPLE = """examples:
+  hrsafety validate my_first_crossing.toml gain_study.toml
+  hrsafety validate robot.urdf --strict
+
+Each file is read as its command reads it, and nothing is run. The exit code is 2 if a file is invalid.
+"""
+_INFO_EXAMPLE = """example:
+  hrsafety info
+"""
 _ARM_EXAMPLE = """examples:
   hrsafety arm robot.urdf --link tool0 --joint elbow=1.2 --joint wrist=-0.4
   hrsafety arm robot.urdf --link tool0 --payload 2.0 --poses poses.csv --out masses
@@ -175,6 +199,11 @@ def parser() -> argparse.ArgumentParser:
     _add_arm(commands)
     _add_contact(commands)
     _add_benchmark(commands)
+    _add_init(commands)
+    _add_validate(commands)
+    _add_command(
+        commands, "info", summary="show versions, machine and which extras are installed", example=_INFO_EXAMPLE
+    )
     return whole
 
 
@@ -386,3 +415,20 @@ def _add_benchmark(commands: Any) -> None:
     parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), BARN or DynaBARN worlds (.json)")
     parser.add_argument("--out", metavar="DIR", help="folder for rows, tables (CSV) and a page; resumed from there")
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
+
+
+def _add_init(commands: Any) -> None:
+    parser = _add_command(commands, "init", summary="write a commented file to start from", example=_INIT_EXAMPLE)
+    parser.add_argument("kind", choices=STARTERS, metavar="KIND", help=", ".join(STARTERS))
+    parser.add_argument("file", nargs="?", metavar="FILE", help="where to write it [a name of its kind]")
+
+
+def _add_validate(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "validate",
+        summary="check scenario, study, cell and arm files without running them",
+        example=_VALIDATE_EXAMPLE,
+    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="files, .toml or .urdf")
+    _add_strict(parser)

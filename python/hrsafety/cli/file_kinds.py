@@ -1,0 +1,111 @@
+"""The files that commands read: how one is recognized and checked, and a file of each kind to start from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+from hrsafety import arms, scenarios
+from hrsafety._arguments import meant
+from hrsafety.cli import cell_file, foam_file, optimize_file, output, sweep_file
+from hrsafety.cli.parsers import STARTERS
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.plausibility import ResultWarning
+from hrsafety.scenarios import files
+
+__all__ = ["KINDS", "FileKind", "kind_of", "starter"]
+
+Warnings = tuple[ResultWarning, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FileKind:
+    """A kind of file.
+
+    Attributes
+    ----------
+    title : str
+        What it is called.
+    command : str
+        Command that reads it.
+    telling : tuple of str
+        Keys at the top of the file that no kind before it in the list has.
+    check : callable
+        Reads a file and returns its warnings.
+    later : str
+        What is checked only when the command runs; empty if nothing is.
+    """
+
+    title: str
+    command: str
+    telling: tuple[str, ...]
+    check: Callable[[str], Warnings]
+    later: str = ""
+
+
+def _scenario(path: str) -> Warnings:
+    return output.warnings_of(scenarios.load(path).scenario)
+
+
+def _foam(path: str) -> Warnings:
+    foam_file.load(path)
+    return ()
+
+
+def _gains(path: str) -> Warnings:
+    return output.warnings_of(*optimize_file.load(path).scenarios)
+
+
+def _sweep(path: str) -> Warnings:
+    sweep_file.load(path)
+    return ()
+
+
+def _cell(path: str) -> Warnings:
+    cell_file.load(path)
+    return ()
+
+
+def _arm(path: str) -> Warnings:
+    return output.warnings_of(arms.Arm.from_urdf(Path(path)))
+
+
+KINDS = {
+    "contact": FileKind("contact cell", "contact", ("contacts", "limits"), _cell, "plausibility of the contacts"),
+    "sweep": FileKind("sweep", "sweep", ("axes", "design"), _sweep),
+    "foam": FileKind("foam design", "foam", ("foams", "closing_speed"), _foam, "plausibility of the foams"),
+    "gains": FileKind("gain study", "optimize", ("scenarios", "search"), _gains, "ranges of the search"),
+    "scenario": FileKind("scenario", "simulate", ("start", "goal", "obstacles"), _scenario),
+}
+"""Kinds by the word that ``hrsafety init`` takes, in the order in which they are recognized."""
+
+ARM = FileKind("arm", "arm", (), _arm)
+
+
+def kind_of(path: str) -> FileKind:
+    """Return the kind of a file, from its ending or its keys.
+
+    Raises
+    ------
+    InvalidParameterError
+        If no command reads such a file.
+    """
+    if Path(path).suffix.lower() == ".urdf":
+        return ARM
+    keys = files.parsed(Path(path))
+    for kind in KINDS.values():
+        if any(key in keys for key in kind.telling):
+            return kind
+    known = [key for kind in KINDS.values() for key in kind.telling]
+    near = next((hint for hint in (meant(key, known) for key in keys) if hint), None)
+    rule = f"have one of the keys {', '.join(known)}"
+    raise InvalidParameterError(path, rule, Shown(", ".join(list(keys)[:5]) or "an empty file"), near)
+
+
+def starter(word: str, path: str) -> str:
+    """Return the text of a commented file to start from, which names itself by the path it is written to."""
+    name = STARTERS[word]
+    text = (resources.files("hrsafety.cli") / "data" / name).read_text(encoding="utf-8")
+    return text.replace(f"examples/{name}", path)

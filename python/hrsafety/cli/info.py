@@ -1,0 +1,68 @@
+"""``hrsafety info``: what is installed, what is missing, and what the machine offers."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import hrsafety
+from hrsafety.cli import terminal
+
+__all__ = ["print_info"]
+
+_REQUIREMENT = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?\s*([^;]*)(?:;\s*(.*))?$")
+_OF_EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
+# Extras of those who work on the package itself.
+_OWN = frozenset({"test", "dev", "docs", "all"})
+
+
+def print_info() -> None:
+    """Print versions, machine and optional extras with what each of them still needs."""
+    print("\n".join(f"{name:<10}{words}" for name, words in _facts()))
+    print()
+    rows = [
+        (extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(extra, lacks))
+        for extra, has, lacks in _extras()
+    ]
+    print(terminal.table([("extra", "installed", "missing", "to install")], rows, left=(0, 1, 2, 3)))
+
+
+def _facts() -> Iterator[tuple[str, str]]:
+    numpy = importlib.metadata.version("numpy")
+    yield "hrsafety", f"{hrsafety.__version__} in {Path(hrsafety.__file__).parent}"
+    yield "python", f"{platform.python_version()}, numpy {numpy}"
+    yield "machine", f"{platform.system()} {platform.machine()}, {_cores()} cores for this process"
+
+
+def _cores() -> int:
+    """Return the cores that this process may use, which are fewer than the machine has in many containers."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _command(extra: str, lacks: list[str]) -> str:
+    return f'pip install "hrsafety[{extra}]"' if lacks else "-"
+
+
+def _extras() -> Iterator[tuple[str, list[str], list[str]]]:
+    """Yield each extra with the packages that are there, and those that are missing."""
+    packages: dict[str, list[str]] = {}
+    for line in importlib.metadata.requires("hrsafety") or ():
+        parts = _REQUIREMENT.match(line)
+        extra = _OF_EXTRA.search(line)
+        if parts and extra and extra[1] not in _OWN:
+            packages.setdefault(extra[1], []).append(parts[1])
+    for extra, names in packages.items():
+        versions = {name: _version(name) for name in names}
+        has = [f"{name} {version}" for name, version in versions.items() if version]
+        yield extra, has, [name for name, version in versions.items() if not version]
+
+
+def _version(name: str) -> str | None:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return None

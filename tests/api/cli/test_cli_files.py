@@ -1,0 +1,99 @@
+"""``hrsafety init``, ``validate`` and ``info``."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+import hrsafety
+from hrsafety.cli import exit_codes, main
+from hrsafety.cli.file_kinds import KINDS
+from hrsafety.cli.parsers import STARTERS
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+URDF = """<robot name="arm"><link name="base"/><link name="upper"><inertial><mass value="3"/>
+<origin xyz="0.2 0 0"/><inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="10" velocity="1"/></joint></robot>
+"""
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("kind", STARTERS)
+def test_a_file_to_start_from_is_valid_and_names_itself(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", kind, "mine.toml"]) == 0
+    written = capsys.readouterr().out.splitlines()
+    assert written == ["wrote mine.toml", f"next  hrsafety {KINDS[kind].command} mine.toml --out mine"]
+    assert "examples/" not in Path("mine.toml").read_text(encoding="utf-8").splitlines()[2]
+    assert main(["validate", "mine.toml", "--strict"]) == 0
+    assert capsys.readouterr().out.startswith(f"mine.toml: {KINDS[kind].title} file, valid")
+
+
+def test_files_to_start_from_are_the_examples() -> None:
+    folder = resources.files("hrsafety.cli") / "data"
+    shared = [name for name in STARTERS.values() if (EXAMPLES / name).exists()]
+    assert len(shared) == len(STARTERS) - 1
+    for name in shared:
+        assert (folder / name).read_bytes() == (EXAMPLES / name).read_bytes(), name
+
+
+def test_nothing_is_overwritten(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("my_first_crossing.toml").write_text("mine", encoding="utf-8")
+    assert main(["init", "scenario"]) == exit_codes.ERROR
+    assert "FILE must not exist" in capsys.readouterr().err
+    assert Path("my_first_crossing.toml").read_text(encoding="utf-8") == "mine"
+
+
+def test_every_example_is_valid(capsys: pytest.CaptureFixture[str]) -> None:
+    files = sorted(str(path) for path in EXAMPLES.glob("*.toml"))
+    assert main(["validate", *files]) == 0
+    assert capsys.readouterr().out.count("\n") == len(files) >= 5
+
+
+def test_every_file_is_checked_whatever_became_of_others(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("good.toml").write_text("start = [0.0, 0.0]\ngoal = [4.0, 0.0]\n", encoding="utf-8")
+    Path("bad.toml").write_text("start = [0.0, 0.0]\ngoal = [4.0]\n", encoding="utf-8")
+    Path("odd.toml").write_text("strat = [0.0, 0.0]\n", encoding="utf-8")
+    assert main(["validate", "bad.toml", "odd.toml", "none.toml", "good.toml"]) == exit_codes.ERROR
+    captured = capsys.readouterr()
+    bad, odd, none = captured.err.splitlines()
+    assert bad.startswith("hrsafety: error: bad.toml: goal must ")
+    assert odd.startswith("hrsafety: error: odd.toml must have one of the keys")
+    assert odd.endswith('did you mean "start"?')
+    assert "none.toml" in none
+    assert captured.out == "good.toml: scenario file, valid\n"
+
+
+def test_warnings_count_with_strict(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("odd.toml").write_text("start = [0.0, 0.0]\ngoal = [4.0, 0.0]\nheading = 90.0\n", encoding="utf-8")
+    assert main(["validate", "odd.toml"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == "odd.toml: scenario file, 1 warning\n"
+    assert "heading" in captured.err
+    assert main(["validate", "odd.toml", "--strict"]) == exit_codes.WARNED
+
+
+def test_an_arm_is_checked_too(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("arm.urdf").write_text(URDF, encoding="utf-8")
+    assert main(["validate", "arm.urdf"]) == 0
+    assert capsys.readouterr().out.startswith("arm.urdf: arm file, ")
+    Path("arm.urdf").write_text(URDF.replace('value="3"', 'value="-3"'), encoding="utf-8")
+    assert main(["validate", "arm.urdf"]) == exit_codes.ERROR
+    assert "-3" in capsys.readouterr().err
+
+
+def test_info_names_versions_and_every_extra(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info"]) == 0
+    shown = capsys.readouterr().out
+    assert f"hrsafety  {hrsafety.__version__} in " in shown
+    assert f"numpy {importlib.metadata.version('numpy')}" in shown
+    for extra in ("plot", "report", "cli", "sweep", "signal", "distributed"):
+        assert f"\n{extra} " in shown, extra
+    assert "test" not in {line.split(" ")[0] for line in shown.splitlines()}
