@@ -38,6 +38,10 @@ class Share:
     low: float
     high: float
 
+    def __str__(self) -> str:
+        """Return the share in percent with its interval, and what it was counted in."""
+        return f"{self.value:.1%} ({self.low:.1%} to {self.high:.1%}), {self.count} of {self.runs}"
+
 
 def wilson(count: int, runs: int) -> Share:
     """Return a share with its 95 % Wilson score interval.
@@ -60,8 +64,8 @@ def wilson(count: int, runs: int) -> Share:
     Examples
     --------
     >>> from hrsafety._statistics import wilson
-    >>> round(wilson(0, 200).high, 3)
-    0.019
+    >>> print(wilson(0, 200))
+    0.0% (0.0% to 1.9%), 0 of 200
     """
     whole("runs", runs)
     if whole("count", count, least=0) > runs:
@@ -146,6 +150,10 @@ class Mean:
     low: float
     high: float
 
+    def __str__(self) -> str:
+        """Return the mean with its interval, and of how many runs."""
+        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}), {self.runs} runs"
+
 
 def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0) -> Mean:
     """Return a mean with its 95 % percentile bootstrap interval.
@@ -176,6 +184,8 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
     >>> from hrsafety._statistics import mean_interval
     >>> mean_interval([1.0, 1.0, 1.0])
     Mean(runs=3, value=1.0, low=1.0, high=1.0)
+    >>> print(mean_interval([1.0, 1.0, 1.0]))
+    1 (1 to 1), 3 runs
     """
     whole("resamples", resamples, most=MOST_RESAMPLES)
     given = vector("values", values)

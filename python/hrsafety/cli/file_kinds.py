@@ -73,7 +73,7 @@ def _arm(path: str) -> Warnings:
 
 
 KINDS = {
-    "contact": FileKind("contact cell", "contact", ("contacts", "limits"), _cell, "plausibility of the contacts"),
+    "contact": FileKind("contact cell", "contact", ("contacts", "coverings"), _cell, "plausibility of the contacts"),
     "sweep": FileKind("sweep", "sweep", ("axes", "design"), _sweep),
     "foam": FileKind("foam design", "foam", ("foams", "closing_speed"), _foam, "plausibility of the foams"),
     "gains": FileKind("gain study", "optimize", ("scenarios", "search"), _gains, "ranges of the search"),
