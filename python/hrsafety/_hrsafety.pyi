@@ -877,12 +877,12 @@ def impact_metrics_batch(
     given: Mapping[str, float | _Array],
     *,
     horizon: float | None,
-    peaks_only: bool,
+    outputs: Sequence[str],
     threads: int | None,
     lanes: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, npt.NDArray[Any]]:
-    """Return columns of metrics, those that were asked for."""
+    """Return columns of metrics, those that are asked for by their names."""
 
 def stopping_segments(*, manipulator_speed: float, detection: float, rest: float) -> list[_Pair]:
     """Return the segments of a stop after detection."""

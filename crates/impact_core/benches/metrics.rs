@@ -52,7 +52,7 @@ fn many_impacts(criterion: &mut Criterion) {
     group
         .throughput(Throughput::Elements(ROWS as u64))
         .sample_size(20);
-    for (name, fields) in [("all", FieldSet::All), ("peaks", FieldSet::Peaks)] {
+    for (name, fields) in [("all", FieldSet::all()), ("peaks", FieldSet::peaks())] {
         for width in [Width::One, Width::Eight] {
             let options = BatchOptions {
                 threads: Some(1),

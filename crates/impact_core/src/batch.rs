@@ -7,6 +7,7 @@ use std::ops::Deref;
 use numeric::threads::{Interrupted, on_threads, try_each};
 
 use crate::columns::Columns;
+use crate::criteria::Searches;
 use crate::error::{Failure, Given, Result};
 use crate::metrics::{Criterion, Loads, MetricOptions, Metrics, Status};
 use crate::parameters::GRAVITY;
@@ -14,13 +15,39 @@ use crate::parameters::GRAVITY;
 /// Rows of a task; the bits of a row do not depend on it.
 const BLOCK: usize = 1024;
 
-/// Which fields a batch fills.
+/// Which criteria a batch computes, besides the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FieldSet {
+pub struct FieldSet(Loads<bool>);
+
+impl FieldSet {
     /// All of them.
-    All,
-    /// Peaks of acceleration, force and compression, impact duration and status.
-    Peaks,
+    #[must_use]
+    pub fn all() -> Self {
+        Self::of(|_| true)
+    }
+
+    /// Peaks of acceleration, force and compression, and the impact duration.
+    #[must_use]
+    pub fn peaks() -> Self {
+        Self::of(|criterion| criterion.is_peak)
+    }
+
+    /// Those that a function chooses.
+    #[must_use]
+    pub fn of(asked: impl FnMut(&Criterion) -> bool) -> Self {
+        Self(Loads::of(asked))
+    }
+
+    /// What has to be searched for them.
+    pub(crate) fn searches(&self) -> Searches {
+        let asked = &self.0;
+        Searches {
+            mean: asked.mean_head_acceleration_g,
+            injury: [asked.hic15, asked.hic36],
+            held: asked.average_3ms_g || asked.clip_3ms_g,
+            powers: asked.peak_power_manipulator || asked.peak_power_foam,
+        }
+    }
 }
 
 /// Number of impacts side by side.
@@ -77,7 +104,7 @@ impl Default for BatchOptions {
             gravity: GRAVITY,
             threads: None,
             width: None,
-            fields: FieldSet::All,
+            fields: FieldSet::all(),
         }
     }
 }
@@ -124,10 +151,11 @@ fn code(status: Status) -> u8 {
 
 impl MetricColumns {
     fn sized(rows: usize, fields: FieldSet) -> Self {
-        let asked = |criterion: &Criterion| fields == FieldSet::All || criterion.is_peak;
         Self {
             rows,
-            loads: Loads::of(|criterion| vec![0.0; if asked(criterion) { rows } else { 0 }]),
+            loads: fields
+                .0
+                .map(|asked| vec![0.0; if asked { rows } else { 0 }]),
             status: vec![0; rows],
         }
     }

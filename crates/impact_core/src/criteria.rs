@@ -49,6 +49,41 @@ pub struct Findings {
     pub foam_power: Peak,
 }
 
+/// What is searched on a response besides its peaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Searches {
+    /// Mean acceleration.
+    pub mean: bool,
+    /// Windows of the injury criteria.
+    pub injury: [bool; 2],
+    /// Windows of 3 ms.
+    pub held: bool,
+    /// Powers.
+    pub powers: bool,
+}
+
+impl Searches {
+    /// Everything.
+    pub const ALL: Self = Self {
+        mean: true,
+        injury: [true; 2],
+        held: true,
+        powers: true,
+    };
+
+    /// Whether nothing but peaks is wanted.
+    #[must_use]
+    pub fn only_peaks(self) -> bool {
+        !(self.mean || self.windows() || self.powers)
+    }
+
+    /// Whether any window is wanted.
+    #[must_use]
+    pub fn windows(self) -> bool {
+        self.held || self.injury != [false; 2]
+    }
+}
+
 /// A response on which metrics are searched.
 pub struct Impact {
     motion: Motion<f64>,
@@ -237,6 +272,12 @@ impl Impact {
     /// Everything, for a speed of the manipulator.
     #[must_use]
     pub fn findings(&self, manipulator_speed: f64) -> Findings {
+        self.findings_of(manipulator_speed, Searches::ALL)
+    }
+
+    /// The peaks and what is searched for, NaN for the rest.
+    #[must_use]
+    pub fn findings_of(&self, manipulator_speed: f64, searches: Searches) -> Findings {
         let head = |time: f64| self.motion.head(time);
         let manipulator_power = |time: f64| {
             let [rate, first, second, _] = self.motion.lag_rate(time);
@@ -255,22 +296,40 @@ impl Impact {
             start: f64::NAN,
             end: f64::NAN,
         };
+        let no_peak = Peak {
+            value: f64::NAN,
+            time: f64::NAN,
+        };
+        let power = |function: &dyn Fn(f64) -> [f64; 3]| {
+            if searches.powers {
+                self.maximum(function)
+            } else {
+                no_peak
+            }
+        };
+        // A head that cannot move has no acceleration to look at.
         let free = !self.constrained;
         Findings {
             peaks: self.peaks(),
-            mean: if free {
+            mean: if free && searches.mean {
                 head(self.end)[0] / self.end
             } else {
                 f64::NAN
             },
-            injury: if free {
-                INJURY_WINDOWS.map(|width| self.injury(width))
+            injury: [0, 1].map(|window| {
+                if free && searches.injury[window] {
+                    self.injury(INJURY_WINDOWS[window])
+                } else {
+                    nothing
+                }
+            }),
+            held: if free && searches.held {
+                held(head, self.end, HELD_WINDOW, self.pieces)
             } else {
-                [nothing; 2]
+                None
             },
-            held: held(head, self.end, HELD_WINDOW, self.pieces).filter(|_| free),
-            manipulator_power: self.maximum(manipulator_power),
-            foam_power: self.maximum(foam_power),
+            manipulator_power: power(&manipulator_power),
+            foam_power: power(&foam_power),
         }
     }
 }

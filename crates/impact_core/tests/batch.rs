@@ -156,7 +156,7 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
         assert_eq!(format!("{:?}", run(&inputs, &options)), format!("{base:?}"));
     }
     let options = BatchOptions {
-        fields: FieldSet::Peaks,
+        fields: FieldSet::peaks(),
         ..BatchOptions::default()
     };
     let peaks = run(&inputs, &options);

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, count, instance, numbers, positive, thread_count, word
+from hrsafety._arguments import Array, callback, count, instance, numbers, positive, sequence, thread_count, word
 from hrsafety._bounds import MOST_LANES
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria.declared import CRITERIA, Loads, with_criteria
@@ -135,6 +135,7 @@ def metrics_batch(
     head_stiffness: npt.ArrayLike | None = None,
     horizon: float | None = None,
     fields: Literal["all", "peaks"] = "all",
+    outputs: Sequence[str] | None = None,
     threads: int | None = None,
     lanes: int | None = None,
     progress: Callable[[int, int], object] | None = None,
@@ -172,6 +173,10 @@ def metrics_batch(
     fields : str
         ``"all"``, or ``"peaks"`` for acceleration, force, compression and impact period only;
         the other fields are NaN then, and the call is faster.
+    outputs : sequence of str or None
+        Names of the criteria to compute; those of ``fields`` when ``None``, the status alone when empty.
+        The others are NaN and are neither searched for nor kept. What is computed agrees with a call for
+        all criteria to rounding.
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
     lanes : int or None
@@ -187,7 +192,8 @@ def metrics_batch(
     Raises
     ------
     InvalidParameterError
-        If a number is missing or is no number, or an option is out of range.
+        If a number is missing or is no number, an option is out of range, or a criterion is unknown or
+        not among ``fields``.
     ShapeError
         If the arrays do not broadcast.
     KeyboardInterrupt
@@ -205,7 +211,17 @@ def metrics_batch(
     ... )
     >>> found.shape, found.peak_head_acceleration_g[0].round(3).tolist()
     ((12, 4), [2.598, 2.372, 2.922, 4.345])
+
+    The same for two criteria only:
+
+    >>> few = impact.metrics_batch(
+    ...     manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum(),
+    ...     closing_speed=[0.4, 1.25], outputs=["hic15", "peak_contact_force"],
+    ... )
+    >>> few.hic15.round(2).tolist(), few.clip_3ms_g.tolist()
+    ([0.04, 0.73], [nan, nan])
     """
+    asked = _asked(fields, outputs)
     constrained = isinstance(head, ConstrainedHead)
     given = _given_numbers(locals(), constrained)
     shape = _broadcast_shape(given)
@@ -215,7 +231,7 @@ def metrics_batch(
     result = _hrsafety.impact_metrics_batch(
         {name: _column(array, shape) for name, array in possible.items()},
         horizon=None if horizon is None else positive("horizon", horizon),
-        peaks_only=word("fields", fields, ("all", "peaks")) == "peaks",
+        outputs=[*asked, "max_compression"],  # tells whether the foam was crushed
         threads=_threads(threads),
         lanes=None if lanes is None else count("lanes", lanes, most=MOST_LANES),
         progress=callback("progress", progress),
@@ -231,12 +247,22 @@ def metrics_batch(
     if not (np.isfinite(thick) & (thick > 0.0)).all():
         code[np.broadcast_to(~(np.isfinite(thick) & (thick > 0.0)), shape)] = _INVALID_THICKNESS
     return ImpactMetricsBatch(
-        **{name: columns.get(name, missing) for name in CRITERIA},
+        **{name: columns[name] if name in asked else missing for name in CRITERIA},
         beyond_linear_range=beyond,
         _status_code=code,
         _bottomed=bottomed,
         _warnings=doubts,
     )
+
+
+def _asked(fields: str, outputs: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the names of the criteria to compute."""
+    every = word("fields", fields, ("all", "peaks")) == "all"
+    possible = tuple(name for name, criterion in CRITERIA.items() if every or criterion.is_peak)
+    if outputs is None:
+        return possible
+    names = sequence("outputs", "be a sequence of names of criteria", outputs)
+    return tuple(dict.fromkeys(word(f"outputs[{index}]", name, possible) for index, name in enumerate(names)))
 
 
 def _given_numbers(arguments: dict[str, Any], constrained: bool) -> dict[str, Array]:

@@ -150,6 +150,7 @@ class ImpactStudy(Study):
             head=self.head,
             horizon=self.horizon,
             fields=self.fields,
+            outputs=None if self.outputs is None else [name for name in self.outputs if name in CRITERIA],
             threads=threads,
             **given,
         )

@@ -233,6 +233,37 @@ def test_peaks_only_leaves_the_other_fields_nan() -> None:
     assert peaks.status.tolist() == plain.status.tolist()
 
 
+@pytest.mark.parametrize("outputs", [["hic15"], ["clip_3ms_g", "hic36"], ["peak_power_foam", "max_compression"], []])
+def test_only_the_criteria_asked_for_are_computed(outputs: list[str]) -> None:
+    plain, few = many(), many(outputs=outputs)
+    for name in NUMBERS:
+        if name in outputs:
+            assert getattr(few, name) == pytest.approx(getattr(plain, name), rel=AGREEMENT, nan_ok=True), name
+        else:
+            assert np.isnan(getattr(few, name)).all(), name
+            assert getattr(few, name).strides == (0,), name  # one number stands for all rows
+    assert few.status.tolist() == plain.status.tolist()
+    assert few.beyond_linear_range.tolist() == plain.beyond_linear_range.tolist()
+
+
+def test_every_criterion_alone_agrees_where_the_head_cannot_move() -> None:
+    fixed = {**PARTS, "head": impact.ConstrainedHead()}
+    speeds = np.linspace(0.1, 2.0, 7)
+    plain = impact.metrics_batch(**fixed, closing_speed=speeds)
+    for name in NUMBERS:
+        few = impact.metrics_batch(**fixed, closing_speed=speeds, outputs=[name])
+        np.testing.assert_array_equal(getattr(few, name), getattr(plain, name))
+
+
+def test_unknown_outputs_are_refused_with_the_nearest_name() -> None:
+    with pytest.raises(InvalidParameterError, match=r"outputs\[1\].*hic36"):
+        many(outputs=["hic15", "hic63"])
+    with pytest.raises(InvalidParameterError, match=r"outputs\[0\]"):
+        many(outputs=["hic15"], fields="peaks")
+    with pytest.raises(InvalidParameterError, match="outputs"):
+        many(outputs="hic15")
+
+
 def test_columns_are_flat_and_complete() -> None:
     found = impact.metrics_batch(**PARTS, closing_speed=[[0.4, 1.25], [1.0, -1.0]])
     table = found.columns()

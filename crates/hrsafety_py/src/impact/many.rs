@@ -138,14 +138,14 @@ fn name_bad_numbers(
     Ok(())
 }
 
-/// Columns of metrics, those that were asked for.
+/// Columns of metrics, those that are asked for by their names.
 #[pyfunction]
-#[pyo3(signature = (given, *, horizon, peaks_only, threads, lanes, progress))]
+#[pyo3(signature = (given, *, horizon, outputs, threads, lanes, progress))]
 pub fn impact_metrics_batch<'py>(
     py: Python<'py>,
     given: Given<'py>,
     horizon: Option<f64>,
-    peaks_only: bool,
+    outputs: Vec<String>,
     threads: Option<usize>,
     lanes: Option<usize>,
     progress: Option<Py<PyAny>>,
@@ -155,11 +155,7 @@ pub fn impact_metrics_batch<'py>(
         horizon,
         threads,
         width: lanes.map(Width::of).transpose().map_err(CoreError::from)?,
-        fields: if peaks_only {
-            FieldSet::Peaks
-        } else {
-            FieldSet::All
-        },
+        fields: FieldSet::of(|criterion| outputs.iter().any(|name| name == criterion.name)),
         ..BatchOptions::default()
     };
     let report = Report::new(progress.as_ref(), columns.rows().map_err(CoreError::from)?);

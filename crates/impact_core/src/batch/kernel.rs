@@ -1,6 +1,6 @@
 //! Rows of a task, several side by side.
 
-use super::{BatchOptions, Block, FieldSet, Width, code};
+use super::{BatchOptions, Block, Width, code};
 use crate::columns::{Columns, HeadColumns};
 use crate::criteria::Impact;
 use crate::fast::apart::apart;
@@ -67,17 +67,18 @@ fn by_width<S: Simd, R: Real>(
     block: &mut Block<'_>,
 ) {
     // Bodies of their own: an unoptimized build keeps room on the stack for every call.
-    match options.fields {
-        FieldSet::All => apart(
-            simd,
-            #[inline(always)]
-            || groups::<S, R, true>(simd, columns, options, block),
-        ),
-        FieldSet::Peaks => apart(
+    if options.fields.searches().only_peaks() {
+        apart(
             simd,
             #[inline(always)]
             || groups::<S, R, false>(simd, columns, options, block),
-        ),
+        );
+    } else {
+        apart(
+            simd,
+            #[inline(always)]
+            || groups::<S, R, true>(simd, columns, options, block),
+        );
     }
 }
 
@@ -96,6 +97,7 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
         horizon: options.horizon.unwrap_or(FREE_HORIZON),
         cell_angle: CELL_ANGLE,
         humps: R::WIDTH == 1,
+        searches: options.fields.searches(),
     };
     for place in (0..rows).step_by(R::WIDTH) {
         let count = R::WIDTH.min(rows - place);
@@ -143,6 +145,7 @@ fn followed<S: Simd, R: Real, const ALL: bool>(
         horizon: options.horizon.unwrap_or(FREE_HORIZON),
         cell_angle: CELL_ANGLE,
         humps: true,
+        searches: options.fields.searches(),
     };
     for places in put_off.chunks(R::WIDTH) {
         let row = |lane: usize| block.first + places[lane.min(places.len() - 1)];
@@ -175,11 +178,13 @@ fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
         horizon: options.horizon.unwrap_or(FREE_HORIZON),
         cell_angle: FINE_CELL_ANGLE,
         humps: true,
+        searches: options.fields.searches(),
     };
-    let fine = match (&columns.head, options.fields) {
+    let only_peaks = walk.searches.only_peaks();
+    let fine = match (&columns.head, only_peaks) {
         (HeadColumns::Constrained, _) => None,
-        (_, FieldSet::All) => one_row::<true>(columns, walk, options.gravity, row),
-        (_, FieldSet::Peaks) => one_row::<false>(columns, walk, options.gravity, row),
+        (_, false) => one_row::<true>(columns, walk, options.gravity, row),
+        (_, true) => one_row::<false>(columns, walk, options.gravity, row),
     };
     if let Some(metrics) = fine {
         return metrics;
@@ -187,10 +192,7 @@ fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
     let Ok(impact) = Impact::new(&system, closing_speed, options.horizon) else {
         return Metrics::none(Status::TooStiff);
     };
-    match options.fields {
-        FieldSet::All => impact
-            .findings(manipulator_speed)
-            .metrics(&system, options.gravity),
-        FieldSet::Peaks => impact.peaks().metrics(&system, options.gravity),
-    }
+    impact
+        .findings_of(manipulator_speed, walk.searches)
+        .metrics(&system, options.gravity)
 }

@@ -17,6 +17,7 @@ mod side;
 mod space;
 mod windows;
 
+use crate::criteria::Searches;
 use crate::series::Plant;
 use apart::apart;
 use modes::{Basis, Motion, Wave};
@@ -64,6 +65,8 @@ pub struct Group<R> {
     /// Whether lanes with two humps or a shelf are followed; else they are deferred: it takes so
     /// many steps that they better share them with their like.
     pub humps: bool,
+    /// What is wanted besides peaks.
+    pub searches: Searches,
 }
 
 /// Peaks and duration.
@@ -122,6 +125,8 @@ pub struct Solved<'a, S, R: Real> {
     shelf: R::Mask,
     /// Whether such lanes are followed.
     humps: bool,
+    /// What is wanted besides peaks.
+    searches: Searches,
     accepted: R::Mask,
 }
 
@@ -148,6 +153,7 @@ impl<R: Real> Group<R> {
             ragged: R::Mask::none(),
             shelf: R::Mask::none(),
             humps: self.humps,
+            searches: self.searches,
             accepted: valid,
         };
         let length = solved.motion.modes.length;
@@ -209,6 +215,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let mut velocity = R::zero();
         if POWERS {
             velocity = motion.head[0].at(basis);
+        }
+        if POWERS && self.searches.powers {
             let value = motion.compression[0].at(basis) + (motion.ramp[0] + motion.ramp[1] * time);
             let force = [stiffness * value + damping * rate, slope, curve];
             let [_, slope, curve] = product(force, self.manipulator(basis));
@@ -282,7 +290,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         found.force.look(inside, &step.piece(|node| node.force));
         let closing = step.piece(|node| node.compression);
         found.compression.look(inside, &closing);
-        if POWERS {
+        if POWERS && self.searches.powers {
             let power = step.piece(|node| node.manipulator_power);
             found.manipulator_power.look(inside, &power);
             // A foam that expands takes no power.
@@ -352,15 +360,33 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let length = self.motion.modes.length;
         let velocity = self.motion.head[0];
         let gained = velocity.at(&self.at_end) - velocity.at_contact();
-        let put_off = if self.humps {
+        let searches = self.searches;
+        let put_off = if self.humps || !searches.windows() {
             R::Mask::none()
         } else {
             self.accepted & (self.space.found.valley.found | self.shelf)
         };
         self.accepted = self.accepted & !put_off;
-        let powers = self.powers();
-        let [average, clip] = self.held(&peaks.top);
-        let injury = self.injuries();
+        let nothing = [R::splat(f64::NAN); 2];
+        let powers = if searches.powers {
+            self.powers()
+        } else {
+            nothing
+        };
+        if searches.windows() {
+            let hidden = self.space.found.acceleration.hidden.0;
+            self.accepted = self.accepted & !self.ragged & !hidden;
+        }
+        let [average, clip] = if searches.held {
+            self.held(&peaks.top)
+        } else {
+            nothing
+        };
+        let injury = if searches.injury == [false; 2] {
+            nothing
+        } else {
+            self.injuries()
+        };
         GroupRest {
             mean: gained / (self.end * length * length),
             injury,
@@ -472,6 +498,7 @@ mod tests {
                 horizon: 0.2,
                 cell_angle: CELL_ANGLE,
                 humps: true,
+                searches: Searches::ALL,
             };
             let mut solved = group.solve::<_, true>(Scalar, &mut space, true);
             let peaks = solved.peaks();

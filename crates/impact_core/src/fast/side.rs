@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
+use crate::criteria::Searches;
 use crate::metrics::{FREE_HORIZON, Loads, MetricOptions, Metrics, Status};
 use crate::parameters::{System, Target};
 use crate::series::Plant;
@@ -19,6 +20,8 @@ pub struct Walk {
     pub cell_angle: f64,
     /// Whether rows with two humps or a shelf are followed.
     pub humps: bool,
+    /// What is wanted besides peaks.
+    pub searches: Searches,
 }
 
 /// Metrics of rows side by side.
@@ -94,6 +97,7 @@ impl<R: Real> Side<R> {
             horizon: walk.horizon,
             cell_angle: walk.cell_angle,
             humps: walk.humps,
+            searches: walk.searches,
         };
         let mut solved = group.solve::<S, ALL>(simd, space, valid);
         let peaks = solved.peaks();
@@ -214,6 +218,7 @@ pub(crate) fn usual(
                 horizon,
                 cell_angle,
                 humps: true,
+                searches: Searches::ALL,
             };
             one_row::<true>(&columns, walk, options.gravity, 0)
         })

@@ -131,7 +131,6 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// Injury criteria: the window with free ends where it is not too wide, else the full one.
     #[inline(always)]
     pub(super) fn injuries(&mut self) -> [R; 2] {
-        self.accepted = self.accepted & !self.ragged & !self.space.found.acceleration.hidden.0;
         let length = self.motion.modes.length;
         let humps = self.space.found.valley.found | self.shelf;
         let plain = self.accepted & !humps;
@@ -140,10 +139,11 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let [start, end] = free.ends;
         let free_width = end - start;
         let mut values = [free.value; 2];
-        for (value, width) in values.iter_mut().zip(INJURY_WINDOWS) {
+        let asked = self.searches.injury;
+        for ((value, width), asked) in values.iter_mut().zip(INJURY_WINDOWS).zip(asked) {
             let width = R::splat(width) / length;
             let wide = free_width.gt(width) & self.accepted & !humps;
-            if !wide.any() {
+            if !asked || !wide.any() {
                 continue;
             }
             // Both ends towards each other, each as its slope tells.
