@@ -1,6 +1,14 @@
 //! Velocity obstacles of Fiorini and Shiller (1998): relative velocities that lead to a contact
 //! lie between two rays; what is left of the reachable velocities is searched exactly.
 
+mod best;
+mod lines;
+#[cfg(test)]
+mod tests;
+
+use best::Best;
+use lines::{Line, ON_THE_LIMIT, Reachable, where_circles_meet};
+
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
@@ -8,9 +16,6 @@ use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::scenario::Scenario;
 
 type Vector = Vector2<f64>;
-
-/// A velocity beyond a limit by less than this share of it is on the limit.
-const ON_THE_LIMIT: f64 = 1e-9;
 
 /// Instants of a control period at which the way to a new velocity is checked.
 const INSTANTS: u32 = 6;
@@ -91,30 +96,7 @@ pub struct VelocityObstaclePlanner {
     max_speed: f64,
     max_acceleration: f64,
     cones: Vec<Cone>,
-    candidates: Vec<Vector>,
-}
-
-/// Discs whose common part the robot can reach by the next sample.
-#[derive(Clone, Copy, Debug)]
-struct Reachable {
-    velocity: Vector,
-    change: f64,
-    max_speed: f64,
-}
-
-impl Reachable {
-    fn holds(&self, velocity: Vector) -> bool {
-        let beyond =
-            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
-        !beyond(velocity, self.max_speed) && !beyond(velocity - self.velocity, self.change)
-    }
-
-    fn circles(&self) -> [(Vector, f64); 2] {
-        [
-            (Vector::zeros(), self.max_speed),
-            (self.velocity, self.change),
-        ]
-    }
+    lines: Vec<Line>,
 }
 
 impl VelocityObstaclePlanner {
@@ -129,7 +111,7 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
-            candidates: Vec::new(),
+            lines: Vec::new(),
         }
     }
 
@@ -145,7 +127,6 @@ impl VelocityObstaclePlanner {
     #[must_use]
     pub fn best_free(&mut self, situation: &Situation<'_, f64>) -> Option<[f64; 2]> {
         self.look(situation, self.settings.margin);
-        self.propose(situation);
         self.select(situation).map(|best| best.lane(0))
     }
 
@@ -222,49 +203,67 @@ impl VelocityObstaclePlanner {
         })
     }
 
-    /// Every velocity at which a rule of selection can have its optimum.
-    fn propose(&mut self, situation: &Situation<'_, f64>) {
-        let reachable = self.reachable(situation);
-        let aim = self.direction_to_goal(situation);
-        let mut rays: Vec<(Vector, Vector)> = Vec::with_capacity(2 * self.cones.len() + 3);
+    /// Draws every line on which a rule of selection can have its optimum.
+    fn draw_lines(&mut self, aim: Vector) {
+        let lines = &mut self.lines;
+        lines.clear();
         for cone in &self.cones {
             if let Some(legs) = cone.legs {
-                rays.push((cone.outline.velocity, legs.left));
-                rays.push((cone.outline.velocity, legs.right));
+                let from = cone.outline.velocity;
+                lines.extend([legs.left, legs.right].map(|along| Line { from, along }));
             }
         }
-        rays.push((Vector::zeros(), aim));
+        let mut ahead = |along| {
+            let from = Vector::zeros();
+            lines.push(Line { from, along });
+        };
+        ahead(aim);
         if let Selection::Fastest { sector } = self.settings.selection {
             let (sine, cosine) = sector.sin_cos();
             for side in [sine, -sine] {
-                rays.push((Vector::zeros(), aim * cosine + aim.left_normal() * side));
+                ahead(aim * cosine + aim.left_normal() * side);
             }
         }
+    }
+
+    /// The velocity that reaches the goal soonest, if nothing is in between.
+    fn wanted(&self, situation: &Situation<'_, f64>, aim: Vector) -> Vector {
         let to_goal = self.goal - situation.robot.position;
-        let wanted = aim
-            * (self
-                .max_speed
-                .min(to_goal.dot(&to_goal).sqrt() / situation.interval));
-        let candidates = &mut self.candidates;
-        candidates.clear();
-        candidates.extend([wanted, situation.robot.velocity, Vector::zeros()]);
-        for (index, &(from, along)) in rays.iter().enumerate() {
-            candidates.push(from + along * (along.dot(&(wanted - from)).max(0.0)));
-            for (center, radius) in reachable.circles() {
-                candidates.extend(on_circle(from, along, center, radius).into_iter().flatten());
+        let soonest = to_goal.dot(&to_goal).sqrt() / situation.interval;
+        aim * self.max_speed.min(soonest)
+    }
+
+    /// Velocities that may be the best without being on a line: what is wanted, what is driven, rest.
+    fn first_candidates(&self, situation: &Situation<'_, f64>, aim: Vector) -> [Vector; 3] {
+        let wanted = self.wanted(situation, aim);
+        [wanted, situation.robot.velocity, Vector::zeros()]
+    }
+
+    /// The farthest reachable velocities toward the goal, and where both limits meet.
+    fn last_candidates(reachable: &Reachable, aim: Vector) -> impl Iterator<Item = Vector> {
+        let farthest = reachable
+            .circles()
+            .map(|(center, radius)| center + aim * radius);
+        let meet = where_circles_meet(reachable).into_iter().flatten();
+        farthest.into_iter().chain(meet)
+    }
+
+    /// Every velocity at which a rule of selection can have its optimum.
+    fn candidates(&self, situation: &Situation<'_, f64>) -> Vec<Vector> {
+        let reachable = self.reachable(situation);
+        let aim = self.direction_to_goal(situation);
+        let wanted = self.wanted(situation, aim);
+        let mut found = self.first_candidates(situation, aim).to_vec();
+        for (index, line) in self.lines.iter().enumerate() {
+            if reachable.chord(line).is_none() {
+                continue;
             }
-            for &(other, direction) in &rays[..index] {
-                let sine = along.perp(&direction);
-                if sine != 0.0 {
-                    let share = (other - from).perp(&direction) / sine;
-                    candidates.push(from + along * share);
-                }
-            }
+            found.extend(line.own(wanted, &reachable).into_iter().flatten());
+            let crossings = self.lines[..index].iter();
+            found.extend(crossings.filter_map(|other| line.crossing(other)));
         }
-        for (center, radius) in reachable.circles() {
-            candidates.push(center + aim * radius);
-        }
-        candidates.extend(where_circles_meet(&reachable).into_iter().flatten());
+        found.extend(Self::last_candidates(&reachable, aim));
+        found
     }
 
     fn direction_to_goal(&self, situation: &Situation<'_, f64>) -> Vector {
@@ -276,6 +275,24 @@ impl VelocityObstaclePlanner {
         to_goal * (1.0 / distance)
     }
 
+    /// Speeds that differ by roundings have the same rank.
+    fn rank(&self, speed: f64) -> f64 {
+        (speed / (self.max_speed * ON_THE_LIMIT)).round()
+    }
+
+    /// Time to the goal at full speed after a control period at a velocity, in s.
+    fn time_left(&self, situation: &Situation<'_, f64>, velocity: Vector) -> f64 {
+        let left = self.goal - situation.robot.position - velocity * situation.interval;
+        left.dot(&left).sqrt() / self.max_speed
+    }
+
+    /// The least such time of all velocities with no larger component toward the goal.
+    fn least_time_left(&self, situation: &Situation<'_, f64>, forward: f64) -> f64 {
+        let to_goal = self.goal - situation.robot.position;
+        let left = to_goal.dot(&to_goal).sqrt() - forward * situation.interval;
+        left.max(0.0) / self.max_speed
+    }
+
     /// What a rule prefers: larger is better, then by the second number.
     fn worth(&self, situation: &Situation<'_, f64>, aim: Vector, velocity: Vector) -> (f64, f64) {
         let forward = velocity.dot(&aim);
@@ -284,8 +301,7 @@ impl VelocityObstaclePlanner {
             Selection::ToGoal => (forward, speed),
             Selection::Fastest { sector } => {
                 let within = forward >= speed * (sector.cos() - ON_THE_LIMIT);
-                // Speeds that differ by roundings are equal.
-                let rank = (speed / (self.max_speed * ON_THE_LIMIT)).round();
+                let rank = self.rank(speed);
                 (
                     if within {
                         rank
@@ -296,39 +312,63 @@ impl VelocityObstaclePlanner {
                 )
             }
             Selection::TimeAndRisk { risk } => {
-                let left = self.goal - situation.robot.position - velocity * situation.interval;
-                let time = left.dot(&left).sqrt() / self.max_speed;
+                let time = self.time_left(situation, velocity);
                 (-(time + risk / self.time_to_contact(velocity)), forward)
             }
         }
     }
 
-    fn select(&self, situation: &Situation<'_, f64>) -> Option<Vector> {
+    /// The best free velocity by the rule, the first one among equals in the order of
+    /// [`Self::candidates`]. Lines come by what they promise: those that promise less than what is
+    /// found, and their crossings, are not looked at.
+    fn select(&mut self, situation: &Situation<'_, f64>) -> Option<Vector> {
         let reachable = self.reachable(situation);
         let aim = self.direction_to_goal(situation);
-        let mut best: Option<((f64, f64), Vector)> = None;
-        for &velocity in &self.candidates {
-            if !reachable.holds(velocity) {
-                continue;
+        self.draw_lines(aim);
+        let wanted = self.wanted(situation, aim);
+        let mut best = Best::new(self, situation, (reachable, aim));
+        for (number, velocity) in self
+            .first_candidates(situation, aim)
+            .into_iter()
+            .enumerate()
+        {
+            best.offer((0, number), velocity);
+        }
+        let last = Self::last_candidates(&reachable, aim).enumerate();
+        for (number, velocity) in last {
+            best.offer((usize::MAX, number), velocity);
+        }
+        let promising = best.promising(&self.lines);
+        for (rank, &(promise, index)) in promising.iter().enumerate() {
+            if best.is_better_than(promise) {
+                break;
             }
-            let worth = self.worth(situation, aim, velocity);
-            let better = best.is_none_or(|(known, _)| worth > known);
-            if better && self.free(situation, velocity) {
-                best = Some((worth, velocity));
+            let own = self.lines[index].own(wanted, &reachable);
+            for (number, velocity) in own.into_iter().enumerate() {
+                if let Some(velocity) = velocity {
+                    best.offer((1 + index, number), velocity);
+                }
+            }
+            for &(_, other) in &promising[..rank] {
+                let (later, earlier) = (index.max(other), index.min(other));
+                if let Some(velocity) = self.lines[later].crossing(&self.lines[earlier]) {
+                    best.offer((1 + later, best::OWN + earlier), velocity);
+                }
             }
         }
-        best.map(|(_, velocity)| velocity)
+        best.velocity()
     }
 
     /// The reachable velocity with the latest contact, for want of a free one.
-    fn latest_contact(&mut self, situation: &Situation<'_, f64>) -> Vector {
+    fn latest_contact(&self, situation: &Situation<'_, f64>) -> Vector {
         let reachable = self.reachable(situation);
+        let mut candidates = self.candidates(situation);
         for direction in 0..DIRECTIONS {
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let (sine, cosine) = angle.sin_cos();
             for (center, radius) in reachable.circles() {
                 let outward = Vector2::new(cosine, sine);
-                self.candidates.push(center + outward * radius);
+                candidates.push(center + outward * radius);
             }
         }
         // A robot far above its limits can reach nothing that it may have: it slows down.
@@ -337,12 +377,20 @@ impl VelocityObstaclePlanner {
         let slowest = velocity * ((reachable.max_speed / speed).min(1.0));
         let still = Vector2::select(speed > 0.0, slowest, velocity);
         let mut best = (f64::NEG_INFINITY, still);
-        for &velocity in &self.candidates {
-            if reachable.holds(velocity) {
-                let time = self.time_to_contact(velocity);
-                if time > best.0 {
-                    best = (time, velocity);
+        for velocity in candidates {
+            if !reachable.holds(velocity) {
+                continue;
+            }
+            // One contact that is not later than the latest known one is enough.
+            let mut time = f64::INFINITY;
+            for cone in &self.cones {
+                time = time.min(cone.time_to_contact(velocity));
+                if time <= best.0 {
+                    break;
                 }
+            }
+            if time > best.0 {
+                best = (time, velocity);
             }
         }
         best.1
@@ -355,7 +403,6 @@ impl Planner for VelocityObstaclePlanner {
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
         for margin in [self.settings.margin, 0.0] {
             self.look(situation, margin);
-            self.propose(situation);
             if let Some(best) = self.select(situation) {
                 return best.lane(0);
             }
@@ -366,33 +413,4 @@ impl Planner for VelocityObstaclePlanner {
     fn aim(&mut self, goal: [f64; 2]) {
         self.goal = Vector::splat(goal);
     }
-}
-
-/// Where a ray meets a circle.
-fn on_circle(from: Vector, along: Vector, center: Vector, radius: f64) -> [Option<Vector>; 2] {
-    let offset = from - center;
-    let foot = -offset.dot(&along);
-    let square = foot * foot + radius * radius - offset.dot(&offset);
-    if square < 0.0 {
-        return [None, None];
-    }
-    let half = square.sqrt();
-    [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
-}
-
-/// Where the circle of the speed meets the circle of the change.
-fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
-    let center = reachable.velocity;
-    let square = center.dot(&center);
-    if square == 0.0 {
-        return [None, None];
-    }
-    let (speed, change) = (reachable.max_speed, reachable.change);
-    let share = 0.5 * (1.0 + (speed * speed - change * change) / square);
-    let across = speed * speed / square - share * share;
-    if across < 0.0 {
-        return [None, None];
-    }
-    let half = across.sqrt();
-    [half, -half].map(|side| Some(center * share + center.left_normal() * side))
 }

@@ -1,0 +1,103 @@
+//! The best velocity so far, and what a line of velocities may still promise.
+
+use super::lines::{Line, Reachable};
+use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
+
+/// Numbers of the candidates of a line by itself; its crossings follow.
+pub(super) const OWN: usize = 5;
+
+/// A promise is worth this much more than it says, relative to it: well above all roundings.
+const SLACK: f64 = 1e-6;
+
+/// Place of a candidate in the order of all: the line, and its number there.
+type Place = (usize, usize);
+
+/// The best free velocity of those that were offered, in any order: the same as in the order of
+/// their places.
+pub(super) struct Best<'a> {
+    planner: &'a VelocityObstaclePlanner,
+    situation: &'a Situation<'a, f64>,
+    reachable: Reachable,
+    aim: Vector,
+    found: Option<((f64, f64), Place, Vector)>,
+}
+
+impl<'a> Best<'a> {
+    pub fn new(
+        planner: &'a VelocityObstaclePlanner,
+        situation: &'a Situation<'a, f64>,
+        (reachable, aim): (Reachable, Vector),
+    ) -> Self {
+        Self {
+            planner,
+            situation,
+            reachable,
+            aim,
+            found: None,
+        }
+    }
+
+    pub fn velocity(&self) -> Option<Vector> {
+        self.found.map(|(_, _, velocity)| velocity)
+    }
+
+    /// Takes a velocity if it is reachable, better than the one before, and free.
+    #[inline]
+    pub fn offer(&mut self, place: Place, velocity: Vector) {
+        if self
+            .found
+            .is_some_and(|(known, ..)| self.at_most(velocity) < known.0)
+            || !self.reachable.holds(velocity)
+        {
+            return;
+        }
+        let worth = self.planner.worth(self.situation, self.aim, velocity);
+        let better = self
+            .found
+            .is_none_or(|(known, earlier, _)| worth > known || (worth == known && place < earlier));
+        if better && self.planner.free(self.situation, velocity) {
+            self.found = Some((worth, place, velocity));
+        }
+    }
+
+    /// What a velocity is worth at most, without a look at the obstacles.
+    #[inline]
+    fn at_most(&self, velocity: Vector) -> f64 {
+        match self.planner.settings.selection {
+            Selection::ToGoal => velocity.dot(&self.aim),
+            Selection::Fastest { .. } => f64::INFINITY,
+            Selection::TimeAndRisk { .. } => -self.planner.time_left(self.situation, velocity),
+        }
+    }
+
+    /// Lines that anything reachable lies on, with what they promise at most, the most promising
+    /// first.
+    pub fn promising(&self, lines: &[Line]) -> Vec<(f64, usize)> {
+        let promise = |(index, line): (usize, &Line)| {
+            let ends = self.reachable.chord(line)?;
+            Some((self.promise(ends), index))
+        };
+        let mut found: Vec<_> = lines.iter().enumerate().filter_map(promise).collect();
+        found.sort_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        found
+    }
+
+    /// What the velocities between two are worth at most.
+    fn promise(&self, ends: [Vector; 2]) -> f64 {
+        let largest = |value: &dyn Fn(Vector) -> f64| value(ends[0]).max(value(ends[1]));
+        let exact = match self.planner.settings.selection {
+            Selection::ToGoal => largest(&|velocity| velocity.dot(&self.aim)),
+            Selection::Fastest { .. } => self.planner.rank(largest(&|velocity| velocity.norm())),
+            Selection::TimeAndRisk { .. } => {
+                let forward = largest(&|velocity| velocity.dot(&self.aim));
+                -self.planner.least_time_left(self.situation, forward)
+            }
+        };
+        exact + SLACK * (1.0 + exact.abs())
+    }
+
+    /// Whether what was found is worth more than a promise.
+    pub fn is_better_than(&self, promise: f64) -> bool {
+        self.found.is_some_and(|(known, ..)| known.0 > promise)
+    }
+}

@@ -1,0 +1,116 @@
+//! Lines of velocities on which a rule of selection can have its optimum: legs of cones and
+//! directions to the goal, with what is reachable on each.
+
+use crate::lanes::{Planar, Vector2};
+
+type Vector = Vector2<f64>;
+
+/// A velocity beyond a limit by less than this share of it is on the limit.
+pub(super) const ON_THE_LIMIT: f64 = 1e-9;
+
+/// The same where a line that nothing reachable lies on is left out: well above all roundings.
+const BESIDE: f64 = 1e-7;
+
+/// Discs whose common part the robot can reach by the next sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reachable {
+    pub velocity: Vector,
+    pub change: f64,
+    pub max_speed: f64,
+}
+
+impl Reachable {
+    pub fn holds(&self, velocity: Vector) -> bool {
+        let beyond =
+            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
+        !beyond(velocity, self.max_speed) && !beyond(velocity - self.velocity, self.change)
+    }
+
+    pub fn circles(&self) -> [(Vector, f64); 2] {
+        [
+            (Vector::zeros(), self.max_speed),
+            (self.velocity, self.change),
+        ]
+    }
+
+    /// Ends of the part of a line that is reachable, generously; `None` without one.
+    pub fn chord(&self, line: &Line) -> Option<[Vector; 2]> {
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (center, radius) in self.circles() {
+            let offset = line.from - center;
+            let foot = -offset.dot(&line.along);
+            let across = offset.perp(&line.along);
+            let wide = radius * (1.0 + BESIDE) + BESIDE;
+            let square = wide * wide - across * across;
+            // Also where a number is not one: such a line is kept.
+            if square < 0.0 {
+                return None;
+            }
+            let half = square.sqrt();
+            (low, high) = (low.max(foot - half), high.min(foot + half));
+        }
+        let at = |share: f64| line.from + line.along * share;
+        (low <= high).then(|| [at(low), at(high)])
+    }
+}
+
+/// Velocities from a point on along a direction of length 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub from: Vector,
+    pub along: Vector,
+}
+
+impl Line {
+    /// Its velocities that by themselves may be the best: nearest to a wanted one, and on the
+    /// circles that bound what is reachable.
+    pub fn own(&self, wanted: Vector, reachable: &Reachable) -> [Option<Vector>; 5] {
+        let Self { from, along } = *self;
+        let nearest = from + along * (along.dot(&(wanted - from)).max(0.0));
+        let [slow, near] = reachable.circles();
+        let [a, b] = self.on_circle(slow);
+        let [c, d] = self.on_circle(near);
+        [Some(nearest), a, b, c, d]
+    }
+
+    /// Where it meets a circle.
+    fn on_circle(&self, (center, radius): (Vector, f64)) -> [Option<Vector>; 2] {
+        let Self { from, along } = *self;
+        let offset = from - center;
+        let foot = -offset.dot(&along);
+        let square = foot * foot + radius * radius - offset.dot(&offset);
+        if square < 0.0 {
+            return [None, None];
+        }
+        let half = square.sqrt();
+        [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
+    }
+
+    /// Where it crosses the whole line of another one.
+    #[inline]
+    pub fn crossing(&self, other: &Self) -> Option<Vector> {
+        let sine = self.along.perp(&other.along);
+        if sine == 0.0 {
+            return None;
+        }
+        let share = (other.from - self.from).perp(&other.along) / sine;
+        Some(self.from + self.along * share)
+    }
+}
+
+/// Where the circle of the speed meets the circle of the change.
+pub(super) fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
+    let center = reachable.velocity;
+    let square = center.dot(&center);
+    if square == 0.0 {
+        return [None, None];
+    }
+    let (speed, change) = (reachable.max_speed, reachable.change);
+    let share = 0.5 * (1.0 + (speed * speed - change * change) / square);
+    let across = speed * speed / square - share * share;
+    if across < 0.0 {
+        return [None, None];
+    }
+    let half = across.sqrt();
+    [half, -half].map(|side| Some(center * share + center.left_normal() * side))
+}
