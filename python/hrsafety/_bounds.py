@@ -16,6 +16,7 @@ __all__ = [
     "MOST_EVALUATIONS",
     "MOST_FRAMES",
     "MOST_INSTANTS",
+    "MOST_INTERVAL",
     "MOST_LANES",
     "MOST_LAYOUTS",
     "MOST_LOCAL_STARTS",
@@ -63,6 +64,8 @@ MOST_LAYOUTS = 10**7
 MOST_SEEDS = 10**6
 # Rows of a table of runs: about half a kilobyte each while it is made.
 MOST_TABLE_ROWS = 10**7
+# Motion steps from one row of a recorded run to the next.
+MOST_INTERVAL = 10**7
 # Numbers of the paths of a table of runs: 1.6 GB, about three times that while they are put side by side.
 MOST_PATH_NUMBERS = 2 * 10**8
 # Runs of all sources together: their delays fill 1.6 GB.

@@ -6,7 +6,7 @@ unknown one and quotes its rule.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, Self, TypedDict, final
+from typing import Any, Literal, NotRequired, Self, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt
@@ -192,13 +192,13 @@ class _TrajectoryFields(TypedDict):
     time: _Array
     position: _Array
     velocity: _Array
-    force: _Array
-    stabilizing: _Array
-    lyapunov: _Array
+    force: NotRequired[_Array]
+    stabilizing: NotRequired[_Array]
+    lyapunov: NotRequired[_Array]
     heading: _Array
-    wheel_current: _Array
-    obstacle_position: _Array
-    distance: _Array
+    wheel_current: NotRequired[_Array]
+    obstacle_position: NotRequired[_Array]
+    distance: NotRequired[_Array]
     outcome: _Outcome
     arrival_time: float
     energy: float
@@ -487,12 +487,9 @@ def run_outcomes() -> list[tuple[str, str]]:
 def simulate(
     scenario: Scenario,
     law: Law,
-    integrator: str,
-    step: float,
-    hold: bool,
-    stop_on_contact: bool,
+    **given: object,
 ) -> _TrajectoryFields:
-    """Run once and return the fields of a trajectory."""
+    """Run once and return the fields of a trajectory, those that are kept."""
 
 def evaluate(
     scenario: Scenario,

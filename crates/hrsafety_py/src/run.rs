@@ -6,12 +6,13 @@ use pyo3::types::PyDict;
 use vff_core::laws::FieldTerms;
 use vff_core::run::metrics::{self, Weights};
 use vff_core::run::{
-    Contact, Integrator, Options, Outcome, RunSummary, Trajectory, command_at,
+    Contact, Integrator, Kept, Options, Outcome, RunSummary, Trajectory, command_at,
     simulate as run_once, terms_at,
 };
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, InvalidParameterError};
+use crate::keywords::Keywords;
 use crate::laws::Law;
 use crate::parameters::{Scenario, word};
 use crate::python_law::raised;
@@ -42,6 +43,7 @@ pub fn run_options(
         step,
         hold,
         stop_on_contact,
+        kept: Kept::default(),
     })
 }
 
@@ -70,17 +72,24 @@ pub fn trajectory_fields<'py>(
     fields.vector("time", columns.time)?;
     fields.matrix("position", columns.position, rows, 2)?;
     fields.matrix("velocity", columns.velocity, rows, 2)?;
-    fields.matrix("force", columns.force, rows, 2)?;
-    fields.matrix("stabilizing", columns.stabilizing, rows, 2)?;
-    fields.vector("lyapunov", columns.lyapunov)?;
     fields.vector("heading", vec![rules_heading; rows])?;
-    fields.matrix("wheel_current", columns.wheel_current, rows, 3)?;
-    fields.cube(
-        "obstacle_position",
-        columns.obstacle_position,
-        [rows, obstacles, 2],
-    )?;
-    fields.matrix("distance", columns.distance, rows, obstacles)?;
+    let matrix = |name: &str, values: Vec<f64>, width: usize| {
+        if values.len() == rows * width {
+            fields.matrix(name, values, rows, width)?;
+        }
+        Ok::<_, PyErr>(())
+    };
+    matrix("force", columns.force, 2)?;
+    matrix("stabilizing", columns.stabilizing, 2)?;
+    matrix("wheel_current", columns.wheel_current, 3)?;
+    matrix("distance", columns.distance, obstacles)?;
+    if columns.lyapunov.len() == rows {
+        fields.vector("lyapunov", columns.lyapunov)?;
+    }
+    if columns.obstacle_position.len() == 2 * rows * obstacles {
+        let shape = [rows, obstacles, 2];
+        fields.cube("obstacle_position", columns.obstacle_position, shape)?;
+    }
     fields.value("outcome", summary.outcome.word())?;
     fields.value("arrival_time", summary.arrival_time.unwrap_or(f64::NAN))?;
     fields.value("energy", summary.energy)?;
@@ -106,18 +115,22 @@ pub fn trajectory_fields<'py>(
     Ok(fields.finish())
 }
 
-/// One run: fields of a trajectory.
+/// One run: fields of a trajectory, those that are kept.
 #[pyfunction]
+#[pyo3(signature = (scenario, law, **given))]
 pub fn simulate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     law: &Law,
-    integrator: &Bound<'py, PyAny>,
-    step: f64,
-    hold: bool,
-    stop_on_contact: bool,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = run_options(integrator, step, hold, stop_on_contact)?;
+    let given = given.unwrap_or_default();
+    let integrator: Bound<'py, PyAny> = given.take("integrator")?;
+    let (step, hold) = (given.take("step")?, given.take("hold")?);
+    let mut options = run_options(&integrator, step, hold, given.take("stop_on_contact")?)?;
+    let names: Vec<String> = given.take("record")?;
+    options.kept = Kept::new(given.take("every")?, &names).map_err(CoreError::from)?;
+    given.done()?;
     let (summary, columns) = run(py, &scenario.0, law, &options)?;
     trajectory_fields(py, &scenario.0, summary, columns)
 }

@@ -6,14 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import flag, instance, number
+from hrsafety._arguments import count, flag, instance, number, sequence, word
+from hrsafety._bounds import MOST_INTERVAL
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import Performance, check_weights
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.trajectory import Integrator, Trajectory, without_obstacles
+from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Integrator, Trajectory, without_obstacles
 
 __all__ = ["as_built", "evaluate", "simulate"]
 
@@ -27,6 +28,8 @@ def simulate(
     step: float = 0.01,
     hold: bool = True,
     stop_on_contact: bool = False,
+    record: Sequence[str] | None = None,
+    every: int = 1,
 ) -> Trajectory:
     """Run one robot from start to goal.
 
@@ -54,6 +57,13 @@ def simulate(
         ``built``, which also need ``"semi_implicit_euler"``.
     stop_on_contact : bool
         Whether the run ends at the first contact.
+    record : sequence of str or None
+        Columns to keep besides time, position, velocity and heading, for long runs: ``"force"``,
+        ``"stabilizing"``, ``"lyapunov"``, ``"wheel_current"``, ``"obstacle_position"``, ``"distance"``; all
+        when ``None``. The others are ``None`` in the result, which pictures then refuse.
+    every : int
+        Motion steps from one kept row to the next, up to ten million; the start and the end are kept always.
+        Distances, contacts and energy are those of all steps. This and ``record`` are for point masses.
 
     Returns
     -------
@@ -81,11 +91,23 @@ def simulate(
     ... )
     >>> run.outcome, run.wheel_speed.shape[1]
     ('arrived', 2)
+
+    One row a control period, without what can be computed again:
+
+    >>> scene = scenarios.configuration("c1")
+    >>> run = nav.simulate(scene, nav.VirtualForceField(), record=["distance"], every=6)
+    >>> len(run.time), run.force is None, round(float(run.min_distance[0]), 3)
+    (112, True, 0.536)
     """
     instance("scenario", scenario, Scenario)
     law = as_law(law)
+    names, rows = _kept(record), count("every", every, most=MOST_INTERVAL)
     robot = as_built([scenario], built, integrator, hold=hold)
     if robot is not None:
+        if record is not None or rows > 1:
+            name, given = ("every", every) if record is None else ("record", record)
+            rule = "be None for robots as built" if name == "record" else "be 1 for robots as built"
+            raise InvalidParameterError(name, rule, given, "only the loop of point masses leaves out rows and columns")
         columns = _hrsafety.built_simulate(
             scenario._native,
             law._native,
@@ -97,12 +119,22 @@ def simulate(
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
-        integrator,
-        number("step", step),
-        flag("hold", hold),
-        flag("stop_on_contact", stop_on_contact),
+        integrator=integrator,
+        step=number("step", step),
+        hold=flag("hold", hold),
+        stop_on_contact=flag("stop_on_contact", stop_on_contact),
+        record=names,
+        every=rows,
     )
     return Trajectory(scenario=scenario, law=law, **fields)
+
+
+def _kept(record: Sequence[str] | None) -> list[str]:
+    """Return the names of the columns to keep of those that may be left out."""
+    if record is None:
+        return list(OPTIONAL_COLUMNS)
+    names = sequence("record", "be a sequence of names of columns", record)
+    return [word(f"record[{index}]", name, OPTIONAL_COLUMNS) for index, name in enumerate(names)]
 
 
 def evaluate(

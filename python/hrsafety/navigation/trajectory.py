@@ -24,6 +24,8 @@ from hrsafety.tables import Columns, Table, each, plane, with_units
 __all__ = ["Integrator", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
+OPTIONAL_COLUMNS = ("force", "stabilizing", "lyapunov", "wheel_current", "obstacle_position", "distance")
+"""Columns that a run may leave out, see ``record`` of `simulate`."""
 
 
 class Followed(Protocol):
@@ -37,10 +39,10 @@ class Followed(Protocol):
 class Trajectory(Table):
     """One run of a robot: n instants, m obstacles, w wheels.
 
-    The rows are the motion steps and, last, the instant of arrival (linear inside its step). What a run
-    does not know is ``None``, and its table does not have the column: wheels and sensors of ideal point
-    masses; scenario, law, forces, currents, energy and outcome of a run after a reference
-    (`tracking.track`), which ends after its duration.
+    The rows are the motion steps, or every so many of them, and, last, the instant of arrival (linear inside
+    its step). What a run does not know or did not keep is ``None``, and its table does not have the column:
+    wheels and sensors of ideal point masses; scenario, law, forces, currents, energy and outcome of a run
+    after a reference (`tracking.track`), which ends after its duration.
 
     Attributes
     ----------
@@ -130,8 +132,8 @@ class Trajectory(Table):
     force: Array | Any = None
     heading: Array
     wheel_current: Array | Any = None
-    obstacle_position: Array
-    distance: Array
+    obstacle_position: Array | Any = None
+    distance: Array | Any = None
     outcome: Outcome | Literal["running"] | Any = None
     arrival_time: float | Any = None
     energy: float | Any = None
@@ -196,11 +198,13 @@ class Trajectory(Table):
         found |= {} if self.force is None else plane("force_{}", self.force, "N")
         found["heading_rad"] = self.heading
         found |= {} if self.wheel_current is None else each("current_{}", self.wheel_current, "A")
-        for index in range(self.distance.shape[1]):
-            found |= plane(f"obstacle_{index}_{{}}", self.obstacle_position[:, index], "m")
-            found[f"distance_{index}_m"] = self.distance[:, index]
-        if self.stabilizing is not None:
-            found |= {**plane("stabilizing_{}", self.stabilizing, "N"), "lyapunov_N2": self.lyapunov}
+        for index in range(len(self.min_distance)):
+            if self.obstacle_position is not None:
+                found |= plane(f"obstacle_{index}_{{}}", self.obstacle_position[:, index], "m")
+            if self.distance is not None:
+                found[f"distance_{index}_m"] = self.distance[:, index]
+        found |= {} if self.stabilizing is None else plane("stabilizing_{}", self.stabilizing, "N")
+        found |= {} if self.lyapunov is None else {"lyapunov_N2": self.lyapunov}
         if self.wheel_speed is not None:
             found |= each("wheel_{}_speed", self.wheel_speed, "rad/s")
         if self.energy_used is not None:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hrsafety._arguments import word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Trajectory
 from hrsafety.plotting.style import Limits
 
 VIEWS = ("scene", "paths")
@@ -24,6 +24,10 @@ def checked_trajectory(name: str, value: object) -> Trajectory:
     if value.scenario is None:
         remedy = "`plotting.robots.tracking_paths` and `tracking_errors` draw it"
         raise InvalidParameterError(name, "be the run of a scenario", Shown("a run after a reference"), remedy)
+    missing = [column for column in OPTIONAL_COLUMNS if getattr(value, column) is None]
+    if missing:
+        found = Shown(f"a run without {', '.join(missing)}")
+        raise InvalidParameterError(name, "hold all columns of a run", found, "simulate without `record`")
     return value
 
 

@@ -300,7 +300,7 @@ impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
     ) -> Result<(RunSummary, Trajectory)> {
         let mut team = [Member {
             law: self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?,
-            recorder: TrajectoryRecorder::new(scenario),
+            recorder: TrajectoryRecorder::keeping(options.kept, scenario),
         }];
         let mut summary = None;
         run_team(

@@ -30,7 +30,7 @@ pub(crate) use episode::Parts;
 pub use group::AnyLaw;
 pub use navigation::{Navigation, Request};
 pub(crate) use options::Clock;
-pub use options::{Integrator, Options};
+pub use options::{Integrator, Kept, Options};
 pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};

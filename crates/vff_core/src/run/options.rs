@@ -29,6 +29,8 @@ pub struct Options {
     pub hold: bool,
     /// End the run at the first contact.
     pub stop_on_contact: bool,
+    /// What a recorded run keeps.
+    pub kept: Kept,
 }
 
 impl Default for Options {
@@ -39,6 +41,64 @@ impl Default for Options {
             step: 0.01,
             hold: true,
             stop_on_contact: false,
+            kept: Kept::default(),
+        }
+    }
+}
+
+/// Rows and columns that a recorded run keeps, besides time, position and velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Every so many motion steps, from the start on; the end is kept always.
+    pub every: usize,
+    /// Which of [`Kept::COLUMNS`].
+    columns: [bool; Kept::COLUMNS.len()],
+}
+
+impl Kept {
+    /// Columns that may be left out.
+    pub const COLUMNS: [&'static str; 6] = [
+        "force",
+        "stabilizing",
+        "lyapunov",
+        "wheel_current",
+        "obstacle_position",
+        "distance",
+    ];
+
+    /// Every so many rows, and the columns of some names.
+    ///
+    /// # Errors
+    /// No row is kept, or there is no such column.
+    pub fn new(every: usize, names: &[String]) -> Result<Self> {
+        if every == 0 {
+            return Err(Failure::invalid("every", "be positive", Given::Count(0)));
+        }
+        if let Some(unknown) = names.iter().find(|name| !Self::COLUMNS.contains(&&***name)) {
+            let rule = format!("be among {}", Self::COLUMNS.join(", "));
+            return Err(Failure::invalid(
+                "record",
+                rule,
+                Given::Word(unknown.clone()),
+            ));
+        }
+        let columns = Self::COLUMNS.map(|column| names.iter().any(|name| name == column));
+        Ok(Self { every, columns })
+    }
+
+    /// Whether a column is kept.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        let place = Self::COLUMNS.iter().position(|column| *column == name);
+        place.is_some_and(|place| self.columns[place])
+    }
+}
+
+impl Default for Kept {
+    /// Everything.
+    fn default() -> Self {
+        Self {
+            every: 1,
+            columns: [true; Self::COLUMNS.len()],
         }
     }
 }

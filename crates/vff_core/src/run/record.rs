@@ -2,6 +2,7 @@
 
 use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::Command;
+use crate::run::options::Kept;
 use crate::world::geometry::Body;
 use crate::world::scenario::Scenario;
 
@@ -76,7 +77,8 @@ impl<R: Real> Recorder<R> for DescentCounter<R> {
     }
 }
 
-/// Columns of a recorded run; vectors of the plane are interleaved, obstacles vary fastest.
+/// Columns of a recorded run; vectors of the plane are interleaved, obstacles vary fastest. Columns
+/// that were not kept are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
     /// Instants in s.
@@ -99,37 +101,76 @@ pub struct Trajectory {
     pub distance: Vec<f64>,
 }
 
-/// Keeps everything of one run.
+/// Keeps one run.
 #[derive(Clone, Debug)]
 pub struct TrajectoryRecorder {
     columns: Trajectory,
     command: Command<f64>,
+    wanted: Wanted,
+    /// Motion steps between two rows, and until the next one.
+    every: usize,
+    left: usize,
+}
+
+/// Which columns are kept.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::struct_excessive_bools)] // independent of each other
+struct Wanted {
+    force: bool,
+    stabilizing: bool,
+    lyapunov: bool,
+    wheel_current: bool,
+    obstacle_position: bool,
+    distance: bool,
 }
 
 impl TrajectoryRecorder {
-    /// Recorder for a scenario.
+    /// Recorder of everything for a scenario.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
+        Self::keeping(Kept::default(), scenario)
+    }
+
+    /// Recorder of some rows and columns for a scenario.
+    #[must_use]
+    pub fn keeping(kept: Kept, scenario: &Scenario) -> Self {
+        let wanted = Wanted {
+            force: kept.has("force"),
+            stabilizing: kept.has("stabilizing"),
+            lyapunov: kept.has("lyapunov"),
+            wheel_current: kept.has("wheel_current"),
+            obstacle_position: kept.has("obstacle_position"),
+            distance: kept.has("distance"),
+        };
         // Room for an ordinary run, so that it does not grow in the loop.
-        let rows = 1200;
+        let rows = 1200 / kept.every;
+        let room = |wanted: bool, width: usize| -> Vec<f64> {
+            Vec::with_capacity(if wanted { width * rows } else { 0 })
+        };
         let obstacles = scenario.obstacle_count();
         let columns = Trajectory {
-            time: Vec::with_capacity(rows),
-            position: Vec::with_capacity(2 * rows),
-            velocity: Vec::with_capacity(2 * rows),
-            force: Vec::with_capacity(2 * rows),
-            stabilizing: Vec::with_capacity(2 * rows),
-            lyapunov: Vec::with_capacity(rows),
-            wheel_current: Vec::with_capacity(3 * rows),
-            obstacle_position: Vec::with_capacity(2 * rows * obstacles),
-            distance: Vec::with_capacity(rows * obstacles),
+            time: room(true, 1),
+            position: room(true, 2),
+            velocity: room(true, 2),
+            force: room(wanted.force, 2),
+            stabilizing: room(wanted.stabilizing, 2),
+            lyapunov: room(wanted.lyapunov, 1),
+            wheel_current: room(wanted.wheel_current, 3),
+            obstacle_position: room(wanted.obstacle_position, 2 * obstacles),
+            distance: room(wanted.distance, obstacles),
         };
         let command = Command {
             force: Vector2::zeros(),
             stabilizing: Vector2::zeros(),
             lyapunov: f64::NAN,
         };
-        Self { columns, command }
+        Self {
+            columns,
+            command,
+            wanted,
+            every: kept.every,
+            left: 0,
+        }
     }
 
     /// The columns.
@@ -155,6 +196,7 @@ impl Recorder<f64> for TrajectoryRecorder {
         bodies: impl FnOnce() -> Vec<Body>,
     ) {
         let command = self.command;
+        self.left = 0;
         self.row(time, position, velocity, currents, &command, &bodies());
     }
 
@@ -167,25 +209,54 @@ impl Recorder<f64> for TrajectoryRecorder {
         command: &Command<f64>,
         bodies: &[Body],
     ) {
-        let columns = &mut self.columns;
+        if self.left > 0 {
+            self.left -= 1;
+            return;
+        }
+        self.left = self.every - 1;
+        let (columns, wanted) = (&mut self.columns, self.wanted);
         columns.time.push(time);
         columns.position.extend(position.lane(0));
         columns.velocity.extend(velocity.lane(0));
-        columns.force.extend(command.force.lane(0));
-        columns.stabilizing.extend(command.stabilizing.lane(0));
-        columns.lyapunov.push(command.lyapunov);
-        columns.wheel_current.extend(currents);
-        for body in bodies {
-            if body.state.present {
-                columns.obstacle_position.extend(body.state.position);
-                columns
-                    .distance
-                    .push(body.offset(position).distance_squared.sqrt());
-            } else {
-                columns.obstacle_position.extend([f64::NAN; 2]);
-                columns.distance.push(f64::NAN);
-            }
+        if wanted.force {
+            columns.force.extend(command.force.lane(0));
         }
+        if wanted.stabilizing {
+            columns.stabilizing.extend(command.stabilizing.lane(0));
+        }
+        if wanted.lyapunov {
+            columns.lyapunov.push(command.lyapunov);
+        }
+        if wanted.wheel_current {
+            columns.wheel_current.extend(currents);
+        }
+        if wanted.obstacle_position {
+            columns
+                .obstacle_position
+                .extend(bodies.iter().flat_map(place_of));
+        }
+        if wanted.distance {
+            let distances = bodies.iter().map(|body| distance_of(body, position));
+            columns.distance.extend(distances);
+        }
+    }
+}
+
+/// Position of an obstacle in m; NaN while it is absent.
+fn place_of(body: &Body) -> [f64; 2] {
+    if body.state.present {
+        body.state.position
+    } else {
+        [f64::NAN; 2]
+    }
+}
+
+/// Distance `d` of an obstacle in m; NaN while it is absent.
+fn distance_of(body: &Body, position: Vector2<f64>) -> f64 {
+    if body.state.present {
+        body.offset(position).distance_squared.sqrt()
+    } else {
+        f64::NAN
     }
 }
 

@@ -7,6 +7,7 @@ from hrsafety.navigation.gains.results import Flatness, GainSearch, LocalSearch,
 from hrsafety.navigation.gains.search import optimize_gains
 from hrsafety.navigation.gains.settings import GainConstraint, SearchSettings
 from hrsafety.navigation.gains.slopes import GainGradient, gain_gradient
+from hrsafety.navigation.gains.stream import stream_batch
 
 __all__ = [
     "Confidence",
@@ -23,4 +24,5 @@ __all__ = [
     "gain_sensitivity",
     "optimize_gains",
     "pareto_front",
+    "stream_batch",
 ]
