@@ -485,6 +485,22 @@ def test_global_search_keeps_its_budget_and_its_seed(method: Any) -> None:
     assert one.convergence[-1].tolist() == [one.evaluations, one.best_value]
 
 
+def test_auto_reaches_the_optimum_of_the_source_with_each_of_ten_seeds() -> None:
+    found = [nav.optimize_gains(SCENES, method="auto", seed=seed, time_limit=10.0) for seed in range(10)]
+    assert {each.settings.evaluations for each in found} == {10_000}
+    assert min(each.best_value for each in found) >= OPTIMUM
+    assert all(each.valid for each in found)
+
+
+def test_auto_is_an_evolution_strategy_whose_budget_follows_the_free_gains() -> None:
+    held = {"repulsive_gain": (100.0, 100.0), "detour_gain": (400.0, 400.0), "gain_ratio": (0.8, 0.8)}
+    auto = nav.optimize_gains(SCENES[:1], bounds=held, method="auto", seed=3)
+    assert auto.settings.evaluations == 2500
+    assert_same(auto, nav.optimize_gains(SCENES[:1], bounds=held, method="cma_es", evaluations=2500, seed=3))
+    few = nav.optimize_gains(SCENES[:1], method="auto", evaluations=300, seed=3)
+    assert few.settings.evaluations == 300
+
+
 def test_scipy_finds_nothing_better_with_as_many_evaluations(search: nav.GainSearch) -> None:
     found = optimize.differential_evolution(
         lambda points: -mean_scores(points.T),
