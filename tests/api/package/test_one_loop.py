@@ -19,7 +19,8 @@ WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}
 WITHIN_A_STEP = {"robots/drives/driven.rs"}
 # A loop over steps or instants: counted, or as long as something runs.
 TIME_LOOP = re.compile(
-    r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\.|\bfor \w+ in [^{]*\.\.[^{]*\b(?:steps|periods)(?:_per_\w+)?\b"
+    r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\."
+    r"|\bfor \w+ in [^{]*\.\.[^{]*\b(?:steps|periods)(?:_per_\w+)?\b"
     r"|\bstep \+= 1\b|\bwhile !?[\w.]*(?:time|step|finished|ended)\b"
 )
 PARTS = re.compile(r"\bimpl\b[^{;]*\bParts for (\w+)")
