@@ -54,7 +54,7 @@ impl SceneBatch<'_> {
         for (set, gains) in points.chunks_exact(dimension).enumerate() {
             let row = |scene: usize| set * count + scene;
             let nominal = self.nominal(gains, &ways.scenarios, &free);
-            let nominal = nominal.map_err(|error| error.of_run(|_| row(0)))?;
+            let nominal = nominal.map_err(|error| error.of_run(|way| ways.run_of(way, set)))?;
             let done = try_map(tasks.len(), |task| {
                 let task = &tasks[task];
                 let free = |scene: usize| nominal[ways.of(scene)];
@@ -77,7 +77,7 @@ impl SceneBatch<'_> {
         ))
     }
 
-    /// Runs without obstacles along every way.
+    /// Runs without obstacles along every way, which errors count.
     fn nominal(&self, gains: &[f64], ways: &[Scenario], tasks: &[Task]) -> Result<Vec<Nominal>> {
         let parts = try_map(tasks.len(), |task| {
             let task = &tasks[task];
@@ -87,7 +87,8 @@ impl SceneBatch<'_> {
                     arrival_time: totals.arrival_time,
                     energy: totals.energy,
                 });
-            })?;
+            })
+            .map_err(|error| error.of_run(|run| task.scenes[run]))?;
             Ok(found)
         })?;
         let unset = Nominal {
