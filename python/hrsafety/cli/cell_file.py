@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from hrsafety import contact, standards
 from hrsafety._words import meant
@@ -190,6 +192,7 @@ def load(path: str) -> Cell:
         "draws": draws,
         "seed": seed,
         "contacts": [_input(each) for each in contacts],
+        "coverings": [{"name": name, **_numbers(pad)} for name, pad in coverings.items()],
         "robot": {**given["robot"], **robot.inputs},
     }
     if separation is not None:
@@ -235,6 +238,17 @@ def _input(planned: Planned) -> dict[str, Any]:
         "covering": planned.covering,
         "contact_area": planned.area,
     }
+
+
+def _numbers(pad: contact.Covering) -> dict[str, Any]:
+    """Return everything that a covering is, defaults included."""
+    law = pad.material
+    if isinstance(law, contact.StressTable):
+        numbers: dict[str, Any] = {"strain": np.asarray(law.strain).tolist(), "stress": np.asarray(law.stress).tolist()}
+    else:
+        numbers = dict(zip(law.keys.values(), law.numbers, strict=True))
+    shape = {each.name: getattr(pad, each.name) for each in fields(pad) if each.name != "material"}
+    return {"material": {"law": law.law, **numbers}, **shape}
 
 
 def _limits(given: str, folder: Path, read: dict[str, str]) -> standards.LimitSet:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from hrsafety.cli.cell_pictures import Drawing
+from hrsafety.cli.cell_pictures import PARTS, Drawing
 from hrsafety.cli.cell_report import at_path
 from hrsafety.pages import DASH, shown, written
 from hrsafety.standards.verdicts import VERDICT_WORDS
@@ -51,16 +51,16 @@ def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
         if value is None:
             words = DASH
         elif isinstance(value, (str, bool)):
-            words = str(value).replace("_", " ")
+            words = str(value).replace("_", " ") if spec else str(value)
         else:
-            words = shown(scale * value, spec)
+            words = shown(scale * value, spec) if spec else repr(value)
         held = "" if value is None else value
         template = Markup('<data value="{}" data-path="{}" title="{}">{}</data>')
         return template.format(escape(held), escape(path), escape(path), escape(words))
 
-    by_part: dict[str, list[Drawing]] = {}
+    by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
     for each in drawings:
-        by_part.setdefault(each.part, []).append(each)
+        by_part[each.part].append(each)
     return written(
         "cell.html",
         title=report["title"],
@@ -72,17 +72,17 @@ def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
         status_words=STATUS_WORDS,
         contact_words=CONTACT_WORDS,
         good="within_limits",
-        inputs=list(_flat(report["inputs"], "inputs")),
+        inputs=list(_paths(report["inputs"], "inputs")),
     )
 
 
-def _flat(value: Any, path: str) -> Any:
+def _paths(value: Any, path: str) -> Iterator[str]:
     """Yield the path of every single value."""
     if isinstance(value, dict):
         for key in sorted(value):
-            yield from _flat(value[key], f"{path}.{key}")
-    elif isinstance(value, list) and not all(isinstance(each, (int, float)) for each in value):
+            yield from _paths(value[key], f"{path}.{key}")
+    elif isinstance(value, list):
         for index, each in enumerate(value):
-            yield from _flat(each, f"{path}[{index}]")
+            yield from _paths(each, f"{path}[{index}]")
     else:
-        yield path, ", ".join(map(str, value)) if isinstance(value, list) else DASH if value is None else str(value)
+        yield path

@@ -18,7 +18,10 @@ from hrsafety.contact import ContactImpact
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Drawing", "drawings"]
+__all__ = ["PARTS", "Drawing", "drawings"]
+
+PARTS = ("force_over_time", "force_over_speed", "map", "speed_over_distance", "sensitivity")
+"""Kinds of pictures."""
 
 STRENGTHS = {"modulus": "modulus (Pa)", "plateau": "plateau stress (Pa)", "b": "stress b (Pa)"}
 CLASSES = {"quasi_static": "clamped", "transient": "free"}
@@ -32,7 +35,7 @@ class Drawing(NamedTuple):
     name : str
         Anchor.
     part : str
-        ``"force_over_time"``, ``"force_over_speed"``, ``"map"``, ``"speed_over_distance"`` or ``"sensitivity"``.
+        One of `PARTS`.
     path : str
         Where its numbers stand in report.json.
     caption : str

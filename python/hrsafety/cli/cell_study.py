@@ -1,4 +1,4 @@
-"""What a cell file asks for, computed: verdicts, loads, curves, sensitivities, chances, as the fields of report.json."""
+"""What a cell file asks for, computed: verdicts, loads, curves, sensitivities and chances as fields of the report."""
 
 from __future__ import annotations
 
@@ -246,7 +246,8 @@ def _limits(cell: Cell) -> dict[str, Any]:
             row[f"{name}_sources"] = None if quantity is None else list(quantity.sources)
         rows.append(row)
     found = cell.limits
-    return {"id": found.id, "title": found.title, "edition": found.edition, "note": found.note, "rows": rows}
+    header = {name: getattr(found, name) for name in ("id", "title", "edition", "note")}
+    return {**header, "sources": dict(found.sources), "rows": rows}
 
 
 # ---- loads --------------------------------------------------------------------------------------

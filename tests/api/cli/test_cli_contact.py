@@ -1,0 +1,303 @@
+"""``hrsafety contact``: the verdicts, the page and its numbers, the same bytes, what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+from hrsafety import arms, contact, standards
+from hrsafety.cli import cell_report, main
+from hrsafety.cli.cell_file import load
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+ARM, BASE = EXAMPLES / "contact_arm.toml", EXAMPLES / "contact_base.toml"
+SMALL = """
+speed = 0.25
+contact_area = 1e-4
+covering = "pad"
+[robot]
+mass = 16.35
+[[coverings]]
+name = "pad"
+material = { law = "gibson_ashby", E = 3e5, plateau = 15e3, e_D = 0.9 }
+thickness = 0.02
+area = 4e-3
+[[contacts]]
+region = "hand_finger"
+[[contacts]]
+region = "face"
+speed = 0.05
+"""
+NUMBER = re.compile(r"\d")
+
+
+class Numbers(HTMLParser):
+    """Text of every `data` element by its path, and what of a page is outside of one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, str, str]] = []
+        self.open: tuple[str, str] | None = None
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.links += [value for name, value in attrs if name in ("src", "href") and value]
+        if tag == "data":
+            self.open = (str(given["data-path"]), str(given["value"]))
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag == "data":
+            self.open = None
+
+    def handle_data(self, data: str) -> None:
+        if self.open is not None:
+            self.found.append((*self.open, data))
+
+
+@pytest.fixture
+def judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[dict[str, Any], str]]:
+    """Return a function that makes a report and returns its JSON and its page."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+
+    def made(cell: str | Path, *options: str) -> tuple[dict[str, Any], str]:
+        if isinstance(cell, str):
+            Path("cell.toml").write_text(cell, encoding="utf-8")
+            cell = Path("cell.toml")
+        assert main(["contact", str(cell), "--out", "report", *options]) == 0
+        report = json.loads(Path("report/report.json").read_text(encoding="utf-8"))
+        return report, Path("report/report.html").read_text(encoding="utf-8")
+
+    return made
+
+
+def test_speeds_of_the_specification(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    report, page = judged(SMALL)
+    found = {(row["region"], row["contact"]): row for row in report["verdicts"]}
+    assert found["hand_finger", "quasi_static"]["allowed_speed"] == pytest.approx(0.36831, abs=5e-6)
+    assert found["hand_finger", "quasi_static"]["governs"] == "force"
+    bare = {row["contact"]: row["rows"][0]["allowed_closing_speed"] for row in report["results"][:2]}
+    assert bare == pytest.approx({"transient": 1.344, "quasi_static": 0.126}, abs=5e-4)
+    assert found["face", "transient"]["verdict"] == report["verdict"] == "not_permitted"
+    assert found["face", "transient"]["allowed_speed"] is None
+    assert "A measurement on the finished machine must confirm" in page
+    assert "not permitted" in capsys.readouterr().out
+
+
+def test_speeds_of_the_robot_of_the_source(judged: Any) -> None:
+    report, _ = judged(BASE)
+    legs = {row["contact"]: row for row in report["verdicts"] if row["region"] == "lower_leg"}
+    assert legs["transient"]["allowed_speed"] == pytest.approx(0.9705, abs=5e-5)
+    assert legs["quasi_static"]["allowed_speed"] == pytest.approx(0.4716, abs=5e-5)
+    assert (legs["transient"]["verdict"], legs["quasi_static"]["verdict"]) == ("within_limits", "exceeds")
+
+
+def test_the_arm_of_the_examples(judged: Any) -> None:
+    report, page = judged(ARM)
+    assert (EXAMPLES / "cell_arm.urdf").read_text() == arms.Arm.example().urdf
+    arm = arms.Arm.example(payload=arms.Payload("tool", 2.0, center=(0.0, 0.0, 0.06)))
+    masses = arm.effective_mass(
+        {"shoulder": [0.4, 0.8, 0.2], "elbow": [1.4, 0.9, 1.9], "wrist_1": [0.0, 0.5, -0.3]},
+        link="tool",
+        direction=(1, 0, 0),
+    )
+    assert report["robot"]["directional_mass"] == masses.max()
+    assert report["robot"]["iso_mass"] == report["robot"]["mass"] == arm.iso_mass == 16.5
+    assert report["audit"]["urdf_sha256"] == arm.sha256
+    assert "no motor inertia given" in page
+    assert len({row["region"] for row in report["verdicts"]}) == 4
+
+
+def test_every_number_of_the_page_is_that_of_its_path(judged: Any) -> None:
+    for cell in (ARM, BASE):
+        report, page = judged(cell)
+        reader = Numbers()
+        reader.feed(page)
+        assert len(reader.found) > 150
+        for path, value, text in reader.found:
+            held = cell_report.at_path(report, path)
+            assert value == ("" if held is None else str(held)), path
+            if isinstance(held, float) and not path.startswith("inputs"):
+                scale = 1e-4 if "pressure" in path and "speed" not in path else 1.0
+                scale = 1e-3 if path.endswith("spring_constant") else scale
+                scale = 1e3 if path.endswith("least_thickness") else scale
+                assert float(text) == pytest.approx(scale * held, rel=2e-2, abs=6e-3), path
+        named = re.findall(r'<span class="path">([a-z_.\[\]\d]+)</span></figcaption>', page)
+        assert len(named) >= 6
+        for path in named:
+            assert cell_report.at_path(report, path)
+
+
+def test_a_page_needs_nothing_from_elsewhere(judged: Any) -> None:
+    _, page = judged(ARM)
+    reader = Numbers()
+    reader.feed(page)
+    assert [link for link in reader.links if not link.startswith("#")] == []
+    assert not re.search(r"url\((?!#)|@import|<script", page)
+    names = re.findall(r'\bid="([^"]+)"', page)
+    assert len(names) == len(set(names))
+    assert "@page { size: A4" in page
+    for number in range(1, 11):
+        assert re.search(rf"<h2>{number} ", page)
+
+
+def test_the_same_cell_gives_the_same_bytes(judged: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = judged(SMALL)
+    assert judged(SMALL) == first
+    assert "date" not in first[0]
+    assert judged(SMALL.replace("0.25", "2.5e-1").replace("16.35", "1635e-2")) == first
+    dated, page = judged(SMALL, "--date", "2026-03-31")
+    assert dated["date"] == "2026-03-31"
+    assert "2026-03-31" in page
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    assert judged(SMALL)[0]["date"] == "1970-01-02"
+    other = judged(SMALL.replace("0.25", "0.26"))[0]
+    assert other["audit"]["inputs_sha256"] != first[0]["audit"]["inputs_sha256"]
+    assert other["audit"]["limits_sha256"] == first[0]["audit"]["limits_sha256"]
+
+
+def test_a_limit_that_is_not_checked_is_not_kept(judged: Any) -> None:
+    report, page = judged(SMALL.replace('covering = "pad"\n', "").replace("contact_area = 1e-4\n", ""))
+    hand = report["verdicts"][1]
+    assert (hand["covering"], hand["verdict"]) == (None, "not_checked")
+    assert hand["allowed_speed"] > hand["planned_speed"]
+    assert "pressure is not checked" in page
+
+
+def test_an_edge_or_a_law_without_data_is_not_kept(judged: Any) -> None:
+    edge = SMALL.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.003')
+    assert "edge" in " ".join(judged(edge)[0]["warnings"])
+    assert all(row["verdict"] != "within_limits" for row in judged(edge)[0]["verdicts"])
+    table = "material = { law = 'table', strain = [0, 0.05], stress = [0, 1e3] }"
+    short = re.sub(r"material = .*", table, SMALL).replace("area = 4e-3", "area = 4e-3\nbottom = [0.04, 0.0]")
+    report, _ = judged(short)
+    assert report["results"][0]["rows"][1]["peak_force"] is None
+    assert report["verdicts"][0]["verdict"] != "within_limits"
+
+
+def test_a_robot_that_cannot_yield(judged: Any) -> None:
+    base = SMALL.replace(
+        "mass = 16.35", 'base = "differential"\nmass = 20.0\ninertia = 0.8\npoint = [0, 0]\nnormal = [0, 1]'
+    )
+    report, page = judged(base)
+    assert report["robot"]["mass"] == "unbounded"
+    clamped = report["verdicts"][0]
+    assert (clamped["allowed_speed"], clamped["verdict"], clamped["status"]) == (0.0, "exceeds", "unbounded_mass")
+    assert ">unbounded</data> kg" in page
+
+
+def test_the_robot_has_its_own_share_of_the_speed(judged: Any) -> None:
+    still = judged(SMALL)[0]["verdicts"][0]
+    met = judged("human_speed = 0.2\n" + SMALL)[0]["verdicts"][0]
+    assert met["allowed_closing_speed"] == still["allowed_closing_speed"]
+    assert met["allowed_speed"] == pytest.approx(still["allowed_speed"] - 0.2)
+    assert (still["verdict"], met["verdict"]) == ("within_limits", "exceeds")
+
+
+def test_spreads_are_around_the_number_of_each_region(judged: Any) -> None:
+    cell = SMALL.replace('covering = "pad"\n', "").replace(
+        "[robot]",
+        "[uncertain]\nstiffness = { lognormal = 0.2 }\n"
+        "robot_mass = { lognormal = 0.1 }\nforce_limit = { lognormal = 0.15 }\n[robot]",
+        1,
+    )
+    cell = cell.replace("contact_area = 1e-4", "contact_area = 1e-2\ndraws = 40_000")
+    report, _ = judged(cell.replace("speed = 0.25", "speed = 0.12"))
+    row = report["probability"][0]
+    limit = standards.limits().contact("hand_finger", "quasi_static")
+    sigma = math.sqrt(0.15**2 + (0.1**2 + 0.2**2) / 4)
+    exact = 0.5 * math.erfc(
+        -(math.log(0.12 * math.sqrt(16.35 * limit.spring_constant) / limit.force)) / sigma / math.sqrt(2)
+    )
+    assert row["interval"][0] < exact < row["interval"][1]
+    assert report["probability"][3]["reason"] == "not permitted"
+
+
+def test_materials_of_a_catalog_and_limits_of_a_file(judged: Any) -> None:
+    Path("foams.toml").write_text(
+        '[[materials]]\nname = "grey"\nsource = "press, sheet 4"\n'
+        'law = "gibson_ashby"\nE = 3e5\nplateau = 15e3\ne_D = 0.9\n'
+    )
+    Path("own.csv").write_text("region,contact,force_N,source\nhand_finger,quasi_static,100,own tests\n")
+    cell = re.sub(r"material = .*", 'material = "grey"', 'catalog = "foams.toml"\nlimits = "own.csv"\n' + SMALL)
+    cell = cell.split("[[contacts]]")[0] + '[[contacts]]\nregion = "hand_finger"\ncontact = "quasi_static"\n'
+    report, page = judged(cell)
+    assert report["verdict"] == "not_checked"
+    assert "spring constant" in report["verdicts"][0]["reasons"][0]
+    assert set(report["audit"]["files_sha256"]) == {"catalog", "limits"}
+    assert "press, sheet 4" in page
+
+
+def test_names_cannot_break_the_page(judged: Any) -> None:
+    name = '<b>$x_1$ & \\"pad\\"'
+    report, page = judged(SMALL.replace('"pad"', f'"{name}"'))
+    assert report["verdicts"][0]["covering"] == '<b>$x_1$ & "pad"'
+    assert "<b>" not in page
+
+
+def test_a_file_to_start_from(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["contact", "--init", "mine.toml"]) == 0
+    report, _ = judged(Path("mine.toml"))
+    assert report["verdict"] == "within_limits"
+    assert main(["contact", "--init", "mine.toml"]) == 2
+    assert "nothing is overwritten" in capsys.readouterr().err
+    assert main(["contact", "absent.toml"]) == 2
+    assert "--init" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("speed = 0.25", "speed = 0", "contacts[0].speed must be above 0"),
+        ("speed = 0.25", "speed = nan", "contacts[0].speed must be above 0"),
+        ("speed = 0.25", "sped = 0.25", 'did you mean "speed"?'),
+        ("mass = 16.35", "mass = -1", "robot.mass must be finite and positive"),
+        ("mass = 16.35", 'urdf = "gone.urdf"', "gone.urdf"),
+        ("thickness = 0.02", "thickness = 0", "coverings[0].covering.thickness must be finite and positive"),
+        ("plateau = 15e3", "platau = 15e3", 'did you mean "plateau"?'),
+        ("plateau = 15e3", "plateau = 15e6", "coverings[0]"),
+        ('covering = "pad"', 'covering = "pat"', "contacts[0].covering must name a covering (pad)"),
+        ('region = "face"', 'region = "fase"', "contacts[1].region"),
+        ("contact_area = 1e-4", "contact_area = -1", "contacts[0].contact_area must be above 0"),
+        ("[robot]", "[uncertain]\nforce_limit = { lognormal = [1, 2] }\n[robot]", "each region has its own"),
+        ("[robot]", "[uncertain]\nrobot_mas = { lognormal = [1, 2] }\n[robot]", "robot_mas"),
+        ("[robot]", "[uncertain]\nrobot_mass = { normal = 0.9 }\n[robot]", "be positive but for a chance"),
+        (
+            "[robot]",
+            "[separation]\nmax_speed = 1\nreaction_time = 0.1\ndeceleration = 0\n[robot]",
+            "separation.deceleration",
+        ),
+        ("[[coverings]]", "[coverings]", "write [[coverings]]"),
+    ],
+)
+def test_what_is_refused(old: str, new: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cell = tmp_path / "cell.toml"
+    assert old in SMALL
+    cell.write_text(SMALL.replace(old, new, 1))
+    assert main(["contact", str(cell), "--out", str(tmp_path / "report")]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "report").exists()
+
+
+def test_a_date_is_a_date(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cell = tmp_path / "cell.toml"
+    cell.write_text(SMALL)
+    assert main(["contact", str(cell), "--out", str(tmp_path / "report"), "--date", "31.3.2026"]) == 2
+    assert "--date must be a date" in capsys.readouterr().err
+
+
+def test_every_example_loads() -> None:
+    for path in EXAMPLES.glob("contact_*.toml"):
+        cell = load(str(path))
+        assert all(isinstance(pad, contact.Covering) for pad in cell.coverings.values())
