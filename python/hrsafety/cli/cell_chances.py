@@ -93,6 +93,7 @@ def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None
             limits={"force": limit.force, "pressure": limit.pressure},
             covering=pad,
             area=planned.area if pad is None else None,
+            max_strain=None if planned.covering is None else cell.strains[planned.covering],
             draws=cell.draws,
             seed=cell.seed,
             **given,

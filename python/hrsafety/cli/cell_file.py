@@ -61,7 +61,7 @@ _COVERING: Keys = MappingProxyType(
         "name": kind.word,
         "material": lambda path, value: value if isinstance(value, str) else kind.table(path, value),
         **dict.fromkeys(("thickness", "area", "radius", "second_radius", "length"), kind.number),
-        **dict.fromkeys(("damping", "half_width"), kind.number),
+        **dict.fromkeys(("damping", "half_width", "max_strain"), kind.number),
         "shape": kind.word,
         "rate": kind.triple,
         "unloading": kind.pair,
@@ -114,6 +114,8 @@ class Cell:
         The robot with its masses.
     coverings : dict of str to Covering
         By name.
+    strains : dict of str to float or None
+        Largest strain of a covering, its e_b when ``None``.
     materials : dict of str to str
         Source of the material of a covering that is from a catalog.
     contacts : tuple of Planned
@@ -136,6 +138,7 @@ class Cell:
     limits: standards.LimitSet
     robot: RobotFacts
     coverings: Mapping[str, contact.Covering]
+    strains: Mapping[str, float | None]
     materials: Mapping[str, str]
     contacts: tuple[Planned, ...]
     human_speed: float
@@ -174,7 +177,7 @@ def load(path: str) -> Cell:
         robot = robot_of(given["robot"], place.parent)
     if robot.file is not None:
         read["robot"] = str(robot.sha256)
-    coverings, materials = _coverings(given, place.parent, read)
+    coverings, strains, materials = _coverings(given, place.parent, read)
     human_speed = given.get("human_speed", 0.0)
     if not 0.0 <= human_speed < 20.0:
         raise InvalidParameterError("human_speed", "be at least 0 and below 20", human_speed)
@@ -192,7 +195,7 @@ def load(path: str) -> Cell:
         "draws": draws,
         "seed": seed,
         "contacts": [_input(each) for each in contacts],
-        "coverings": [{"name": name, **_numbers(pad)} for name, pad in coverings.items()],
+        "coverings": [_numbers(name, pad) | {"max_strain": strains[name]} for name, pad in coverings.items()],
         "robot": {**given["robot"], **robot.inputs},
     }
     if separation is not None:
@@ -202,6 +205,7 @@ def load(path: str) -> Cell:
         limits=limits,
         robot=robot,
         coverings=coverings,
+        strains=strains,
         materials=materials,
         contacts=contacts,
         human_speed=human_speed,
@@ -240,7 +244,7 @@ def _input(planned: Planned) -> dict[str, Any]:
     }
 
 
-def _numbers(pad: contact.Covering) -> dict[str, Any]:
+def _numbers(name: str, pad: contact.Covering) -> dict[str, Any]:
     """Return everything that a covering is, defaults included."""
     law = pad.material
     if isinstance(law, contact.StressTable):
@@ -248,7 +252,7 @@ def _numbers(pad: contact.Covering) -> dict[str, Any]:
     else:
         numbers = dict(zip(law.keys.values(), law.numbers, strict=True))
     shape = {each.name: getattr(pad, each.name) for each in fields(pad) if each.name != "material"}
-    return {"material": {"law": law.law, **numbers}, **shape}
+    return {"name": name, "material": {"law": law.law, **numbers}, **shape}
 
 
 def _limits(given: str, folder: Path, read: dict[str, str]) -> standards.LimitSet:
@@ -269,7 +273,7 @@ def _sha256(path: Path) -> str:
 
 def _coverings(
     given: Mapping[str, Any], folder: Path, read: dict[str, str]
-) -> tuple[dict[str, contact.Covering], dict[str, str]]:
+) -> tuple[dict[str, contact.Covering], dict[str, float | None], dict[str, str]]:
     catalog: Mapping[str, contact.CatalogMaterial] = {}
     if "catalog" in given:
         with located("catalog"):
@@ -279,6 +283,7 @@ def _coverings(
     if len(entries) > MOST_COVERINGS:
         raise InvalidParameterError("coverings", f"be at most {MOST_COVERINGS}", len(entries))
     found: dict[str, contact.Covering] = {}
+    strains: dict[str, float | None] = {}
     sources: dict[str, str] = {}
     for index, entry in enumerate(entries):
         path = f"coverings[{index}]"
@@ -293,8 +298,9 @@ def _coverings(
                 raise InvalidParameterError(f"{path}.material", rule, known, meant(known, catalog))
             values["material"], sources[name] = catalog[known].law, f"{known}: {catalog[known].source}"
         with located(path):
+            strains[name] = values.pop("max_strain", None)
             found[name] = contact.Covering(**values)
-    return found, sources
+    return found, strains, sources
 
 
 def _contacts(

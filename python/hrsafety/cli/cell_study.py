@@ -155,11 +155,20 @@ def _known(planned: Planned) -> bool:
     return planned.limit.spring_constant is not None and planned.limit.body_mass is not None
 
 
-def _allowed(cell: Cell, planned: Planned, covering: contact.Covering | None) -> contact.AllowedSpeed:
-    limits = {"force": planned.limit.force, "pressure": planned.limit.pressure}
-    area = planned.area if covering is None else None
+def _strain(cell: Cell, covering: str | None) -> float | None:
+    """Return the largest strain of a covering, ``None`` for its own."""
+    return None if covering is None else cell.strains[covering]
+
+
+def _allowed(cell: Cell, planned: Planned, covering: str | None) -> contact.AllowedSpeed:
+    pad = None if covering is None else cell.coverings[covering]
     return contact.allowed_speed(
-        **_common(cell, planned), limits=limits, covering=covering, area=area, human_speed=cell.human_speed
+        **_common(cell, planned),
+        limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
+        covering=pad,
+        area=planned.area if pad is None else None,
+        max_strain=_strain(cell, covering),
+        human_speed=cell.human_speed,
     )
 
 
@@ -168,7 +177,7 @@ def _judged(cell: Cell, planned: Planned) -> _Judged:
     bare = _allowed(cell, planned, None) if permitted and _known(planned) else None
     covered: dict[str, contact.AllowedSpeed] = {}
     if bare is not None:
-        covered = {name: _allowed(cell, planned, pad) for name, pad in cell.coverings.items()}
+        covered = {name: _allowed(cell, planned, name) for name in cell.coverings}
     found = _Judged(planned, bare, covered, {})
     return found._replace(verdict=_verdict(cell, planned, found.chosen))
 
@@ -348,7 +357,9 @@ def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
         return {"least_thickness": None, "least_thickness_status": "not_computed"}
     limits = {"force": planned.limit.force, "pressure": planned.limit.pressure}
     closing = planned.speed + cell.human_speed
-    found = contact.thickness(**_common(cell, planned), limits=limits, covering=pad, speed=closing)
+    found = contact.thickness(
+        **_common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=_strain(cell, covering)
+    )
     return {"least_thickness": found.thickness, "least_thickness_status": found.status}
 
 
@@ -396,6 +407,7 @@ def _map(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
         **_common(cell, judged.planned),
         limits={"force": limit.force, "pressure": limit.pressure},
         covering=pad,
+        max_strain=_strain(cell, judged.planned.covering),
         **{"thickness": thickness[:, np.newaxis], name: strength},
     )
     return {
@@ -443,6 +455,7 @@ def _sensitivity(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
         limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
         covering=pad,
         area=planned.area if pad is None else None,
+        max_strain=_strain(cell, planned.covering),
     )
     return {**_named(judged), "values": [{"name": name, "value": value} for name, value in found.items()]}
 

@@ -180,7 +180,9 @@ def test_an_edge_or_a_law_without_data_is_not_kept(judged: Any) -> None:
     assert "edge" in " ".join(judged(edge)[0]["warnings"])
     assert all(row["verdict"] != "within_limits" for row in judged(edge)[0]["verdicts"])
     table = "material = { law = 'table', strain = [0, 0.05], stress = [0, 1e3] }"
-    short = re.sub(r"material = .*", table, SMALL).replace("area = 4e-3", "area = 4e-3\nbottom = [0.04, 0.0]")
+    short = re.sub(r"material = .*", table, SMALL).replace(
+        "area = 4e-3", "area = 4e-3\nbottom = [0.04, 0.0]\nmax_strain = 0.04"
+    )
     report, _ = judged(short)
     assert report["results"][0]["rows"][1]["peak_force"] is None
     assert report["verdicts"][0]["verdict"] != "within_limits"
