@@ -31,7 +31,16 @@ pub fn holonomic_mass(
     let [x, y] = finite_pair("point", point)?;
     let [ux, uy] = unit(direction)?;
     let arm = x * uy - y * ux;
-    Ok(1.0 / (1.0 / mass + arm * arm / inertia))
+    felt(point, 1.0 / (1.0 / mass + arm * arm / inertia))
+}
+
+/// A mass, unless the point is so far away that none is left.
+fn felt(point: [f64; 2], mass: f64) -> Result<f64> {
+    if mass > 0.0 {
+        return Ok(mass);
+    }
+    let rule = "be near enough to the base for a mass above 0";
+    Err(Failure::invalid("point", rule, Given::Pair(point)))
 }
 
 /// Wheels and balance of a differential drive.
@@ -77,9 +86,8 @@ pub fn differential_mass(
     let arm = x * uy - y * ux;
     let inverse = ux * ux / moving + arm * arm / turning;
     let largest = 1.0 / moving + (x * x + y * y) / turning;
-    Ok(if inverse <= NONE * largest {
-        f64::INFINITY
-    } else {
-        1.0 / inverse
-    })
+    if inverse <= NONE * largest {
+        return Ok(f64::INFINITY);
+    }
+    felt(point, 1.0 / inverse)
 }

@@ -149,3 +149,11 @@ fn clopper_and_pearson_as_printed() {
     assert!((all.low - 0.025_f64.powf(0.05)).abs() < 1e-12 && all.high == 1.0);
     assert!((normal_probability(1.96) - 0.975_002_104_851_779_5).abs() < 1e-15);
 }
+
+#[test]
+fn a_point_too_far_away_to_feel_a_base_is_refused() {
+    let far = [0.2, 1e308];
+    assert!(super::holonomic_mass(4.4, 0.1, far, [1.0, 0.0]).is_err());
+    let drive = super::Drive::default();
+    assert!(super::differential_mass(4.4, 0.1, drive, far, [1.0, 0.0]).is_err());
+}
