@@ -341,7 +341,7 @@ def _classes(
     area = values.get("contact_area")
     if area is not None and not 0.0 < area < 10.0:
         raise InvalidParameterError(f"{path}.contact_area", "be above 0 and below 10", area)
-    classes = standards.CONTACTS
+    classes: tuple[str, ...] = standards.CONTACTS
     if "contact" in values:
         classes = (one_of(f"{path}.contact", values["contact"], standards.CONTACTS),)
     with located(path):

@@ -54,7 +54,7 @@ def report_of(cell: Cell, study: Study, *, command: str, date: str | None) -> di
     head: dict[str, Any] = {"format": "hrsafety contact report", "format_version": FORMAT, "title": cell.title}
     if date is not None:
         head["date"] = date
-    return numbers_of(
+    found: dict[str, Any] = numbers_of(
         {
             **head,
             **study.fields,
@@ -67,6 +67,7 @@ def report_of(cell: Cell, study: Study, *, command: str, date: str | None) -> di
             "audit": _audit(cell, command),
         }
     )
+    return found
 
 
 def json_text(report: Mapping[str, Any]) -> str:

@@ -125,7 +125,7 @@ def robot_of(table: Mapping[str, Any], folder: Path) -> RobotFacts:
 
 
 def _base(values: dict[str, Any]) -> RobotFacts:
-    made = _BASES[one_of("base", values.pop("base"), _BASES)]
+    made: Any = _BASES[one_of("base", values.pop("base"), _BASES)]
     point, normal = values.pop("point"), values.pop("normal")
     for name in values:
         if name not in made.__dataclass_fields__:

@@ -423,7 +423,7 @@ def _map(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
 def _over_distance(cell: Cell, judged: list[_Judged]) -> standards.SpeedCurve | None:
     if cell.separation is None:
         return None
-    rules = dict(cell.separation)
+    rules: dict[str, Any] = dict(cell.separation)
     farthest, most = rules.pop("farthest"), rules.pop("max_speed")
     # A contact that is not permitted, or of which nothing is known, allows none at all.
     speeds = [each.verdict["allowed_speed"] for each in judged]

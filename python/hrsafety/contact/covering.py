@@ -12,7 +12,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import not_negative, number, positive, word
 from hrsafety._words import meant
-from hrsafety.contact.materials import Material, StressTable, material
+from hrsafety.contact.materials import Linear, Material, StressTable, material
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["Column", "Covering", "Region", "covering_of", "region_of", "shape_flags"]
@@ -21,6 +21,8 @@ SHAPES = ("flat", "curved", "sphere", "cylinder")
 _NEEDED = {"flat": ("area",), "curved": ("radius",), "sphere": ("radius",), "cylinder": ("radius", "length")}
 _LEAST_RADIUS = 0.2
 """A radius below this share of the thickness is an edge."""
+_DEEPEST = 0.99
+"""Strain at which a foam that is linear all through its thickness meets the backing."""
 Numbers = tuple[float, ...]
 
 
@@ -128,6 +130,54 @@ class Covering:
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self.column(0.0)
+
+    @classmethod
+    def from_foam(cls, foam: Any, *, tested_area: float, area: float | None = None) -> Covering:
+        """Return the flat covering of a foam that was identified from tests.
+
+        E = K_c T/A of the test. Beyond the linear range, which is all that was tested, the covering counts as
+        bottomed: allowed speeds stay within it.
+
+        Parameters
+        ----------
+        foam : impact.Foam
+            Stiffness, damping, thickness and linear range, for example of `impact.identify_foam` by
+            ``fit.foam(moving_mass)``.
+        tested_area : float
+            Area of the specimen or indenter in m^2.
+        area : float or None
+            Area of the contact in m^2, that of the test when ``None``; stiffness and damping are in proportion.
+
+        Returns
+        -------
+        Covering
+            Linear and flat, with the damper of the foam.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a number is out of its range.
+
+        Examples
+        --------
+        >>> from hrsafety import contact, impact
+        >>> pad = contact.Covering.from_foam(impact.FOAM_1, tested_area=5e-3)
+        >>> round(pad.column(0.001).force, 6)
+        24.3
+        """
+        missing = [name for name in ("stiffness", "damping", "thickness", "linear_range") if not hasattr(foam, name)]
+        if missing:
+            rule = f"be a foam with {', '.join(missing)}"
+            raise InvalidParameterError("foam", rule, foam, "a fit gives one by .foam(moving_mass)")
+        tested = positive("tested_area", tested_area)
+        touched = tested if area is None else positive("area", area)
+        return cls(
+            material=Linear(modulus=foam.stiffness * foam.thickness / tested),
+            thickness=foam.thickness,
+            area=touched,
+            damping=foam.damping * touched / tested,
+            bottom=(min(foam.linear_range / foam.thickness, _DEEPEST), 1e7),
+        )
 
     def column(self, compression: float) -> Column:
         """Return force, stored work, pressure and widths at a compression.

@@ -28,6 +28,7 @@ _FOUND = (
     *("peak_covering_compression", "peak_strain", "peak_pressure", "rebound_speed", "body_speed_end"),
     *("hic15", "hic36", "end_force"),
 )
+_FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
 UNITS = {
     "release_time": "s",
     "peak_force": "N",
@@ -383,12 +384,13 @@ def batch(
     gravity = GRAVITY if head else None
     found = many("collide", row, varying, pad, gravity=gravity, threads=threads, progress=progress)
     empty = np.zeros(found.status.shape, dtype=bool)
-    loads = {name: found.numbers[name] for name in _FOUND}
+    loads: dict[str, Any] = {name: found.numbers[name] for name in _FOUND}
+    flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
     return ContactBatch(
         status=found.status,
         **loads,
         peak_body_acceleration_g=found.numbers["peak_body_acceleration"] / GRAVITY,
-        bottomed=found.numbers["bottomed"],
-        **{name: found.flags.get(name, empty) for name in ("rising", "outside_paraboloid", "beyond_pad", "edge")},
+        bottomed=found.numbers["bottomed"].astype(bool),
+        **flags,
         warnings=found.warnings,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,7 @@ __all__ = [
 ]
 
 _GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
+_FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
 _STEP = 1e-5
 _FIXED = ("bottoming_strain", "horizon", "backing_stiffness", "unloading_retained", "unloading_exponent")
 """Numbers without a sensitivity: an allowed speed belongs to the first loading."""
@@ -308,13 +310,14 @@ def allowed_speeds(
     there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
     missing = missing_limits(there, bare=pad is None)
     empty = np.zeros(found.status.shape, dtype=bool)
-    numbers = dict(found.numbers)
+    numbers: dict[str, Any] = dict(found.numbers)
+    flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
     governs = _GOVERNS[numbers.pop("governs_code").astype(np.intp)]
     return AllowedSpeeds(
         **numbers,
         governs=governs,
         status=found.status,
-        **{name: found.flags.get(name, empty) for name in ("rising", "outside_paraboloid", "beyond_pad", "edge")},
+        **flags,
         not_checked=missing,
         warnings=(*not_checked(missing), *found.warnings),
     )

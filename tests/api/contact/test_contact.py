@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hrsafety import contact, scenarios
+from hrsafety import contact, impact, scenarios
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError
 
@@ -202,6 +202,24 @@ def test_distributions_are_checked() -> None:
             contact.probability(robot_mass=bad, **given)
     with pytest.raises(InvalidParameterError, match="be among"):
         contact.probability(robot_mass=8.0, weight=3.0, **given)
+
+
+def test_a_foam_from_tests_is_a_covering() -> None:
+    fit = impact.Foam(stiffness=24_250.0, damping=0.0, thickness=0.0254, linear_range=0.02)
+    pad = contact.Covering.from_foam(fit, tested_area=5e-3)
+    given: dict[str, Any] = {"robot_mass": 4.4, "region": 60e3}
+    free = contact.allowed_speed(**given, body_mass=75.0, limits={"force": 260.0}, covering=pad)
+    clamped = contact.allowed_speed(**given, limits={"force": 130.0}, covering=pad)
+    assert (round(free.speed or 0.0, 4), round(clamped.speed or 0.0, 4)) == (0.9705, 0.4716)
+    # Twice the area is twice the stiffness and twice the damper; no strain beyond the tested one is allowed.
+    double = contact.Covering.from_foam(impact.FOAM_1, tested_area=5e-3, area=1e-2)
+    assert double.column(0.001).force == pytest.approx(2.0 * 24.3)
+    assert double.damping == pytest.approx(2.0 * 71.9)
+    heavy = contact.allowed_speed(robot_mass=100.0, region=60e3, limits={"force": 1e5}, covering=pad)
+    assert heavy.governs == "strain"
+    assert heavy.covering_compression == pytest.approx(0.02)
+    with pytest.raises(InvalidParameterError, match="moving_mass"):
+        contact.Covering.from_foam(object(), tested_area=5e-3)
 
 
 def test_materials_and_coverings_are_values() -> None:
