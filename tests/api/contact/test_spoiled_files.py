@@ -1,4 +1,4 @@
-"""Ten thousand spoiled URDFs, cells, limits and materials: read or refused in one sentence, never a number that is none."""
+"""Ten thousand spoiled URDFs, cells, limits and materials: read or refused, never a number that is none."""
 
 from __future__ import annotations
 
