@@ -20,6 +20,12 @@ __all__ = [
     "ConstrainedHead",
     "Converter",
     "CrowdEpisode",
+    "CrowdModel",
+    "CrowdPerson",
+    "CrowdRobot",
+    "CrowdSource",
+    "CrowdWall",
+    "CrowdWorld",
     "CylinderController",
     "DifferentialDriveRobot",
     "DifferentialKinematics",
@@ -90,6 +96,9 @@ __all__ = [
     "crowd_metric_names",
     "crowd_metrics",
     "crowd_world_metrics",
+    "crowd_circle",
+    "crowd_decisions",
+    "crowd_simulate",
     "dashpots_in_series",
     "differential_wheels",
     "doppler_frequency",
@@ -470,6 +479,86 @@ def guarded_law(law: Law, **given: object) -> Law:
 def shield_speed_bound(gap: float, angle: float, deceleration: float, person_speed: float) -> float:
     """Return the largest speed at an angle to a person, NaN where there is no limit."""
 
+@final
+class CrowdModel:
+    """A model of people."""
+
+    def __new__(cls, name: str, **given: object) -> Self: ...
+    @property
+    def largest_step(self) -> float: ...
+    @property
+    def cap(self) -> float: ...
+    @property
+    def is_force(self) -> bool: ...
+
+@final
+class CrowdPerson:
+    """A person at the start."""
+
+    def __new__(cls, model: CrowdModel, **given: object) -> Self: ...
+
+@final
+class CrowdSource:
+    """Where people come from."""
+
+    def __new__(cls, model: CrowdModel, **given: object) -> Self: ...
+
+@final
+class CrowdRobot:
+    """A robot at the start."""
+
+    def __new__(
+        cls,
+        robot: HolonomicRobot | DifferentialDriveRobot,
+        law: Law | None,
+        measurement: Measurement | None,
+        **given: object,
+    ) -> Self: ...
+
+@final
+class CrowdWall:
+    """What stands."""
+
+    @staticmethod
+    def polyline(points: Sequence[_Pair]) -> CrowdWall: ...
+    @staticmethod
+    def solid(obstacle: Obstacle) -> CrowdWall: ...
+
+@final
+class CrowdWorld:
+    """A world."""
+
+    def __new__(
+        cls,
+        people: Sequence[CrowdPerson],
+        robots: Sequence[CrowdRobot],
+        sources: Sequence[CrowdSource],
+        walls: Sequence[CrowdWall],
+        *,
+        period: _Pair,
+        step: float,
+        time_limit: float,
+        seed: int,
+    ) -> Self: ...
+
+def crowd_simulate(
+    worlds: Sequence[CrowdWorld], *, threads: int | None, progress: Callable[[int, int], object] | None
+) -> list[dict[str, Any]]: ...
+def crowd_circle(seed: int, people: int) -> list[_Pair]: ...
+def crowd_decisions(
+    model: CrowdModel,
+    position: _Array,
+    velocity: _Array,
+    goal: _Array,
+    sizes: _Array,
+    robot: npt.NDArray[np.bool_],
+    walls: Sequence[CrowdWall],
+    *,
+    heading: _Array,
+    group: Sequence[int | None],
+    step: float,
+    period: _Pair,
+) -> dict[str, _Array]: ...
 def region_radii(
     robot: HolonomicRobot | DifferentialDriveRobot,
     obstacle: Obstacle,

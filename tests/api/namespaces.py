@@ -9,7 +9,7 @@ from hrsafety import arms, contact, impact, plotting, reactive, standards
 from hrsafety import navigation as nav
 
 BELOW = {
-    nav: ("gains", "laws", "maps", "metrics", "robots", "sensing", "tracking"),
+    nav: ("crowd", "gains", "laws", "maps", "metrics", "robots", "sensing", "tracking"),
     impact: ("criteria", "identification", "joints"),
     arms: (),
     standards: (),

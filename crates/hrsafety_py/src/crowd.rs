@@ -10,6 +10,7 @@ use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
 use vff_core::crowd::{Diverged, Model, Simulation, Trajectories, circle, simulate_worlds};
 use vff_core::lanes::Vector2;
+use vff_core::world::motion::Motion;
 use vff_core::world::shape::PlacedShape;
 
 use crate::arrays::Fields;
@@ -77,6 +78,14 @@ fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
     })
 }
 
+/// The way of a person who follows a recording: instants and positions, if they are given.
+fn recording_of(given: &Keywords<'_>) -> PyResult<Option<Motion>> {
+    let recorded: Option<(Vec<f64>, Vec<[f64; 2]>)> = given.take("recording")?;
+    let motion = recorded.map(|(time, position)| Motion::recorded(&time, &position));
+    let motion = motion.transpose();
+    Ok(motion.map_err(|error| CoreError::from(error.within("recording")))?)
+}
+
 /// A person at the start.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdPerson(PersonSetup, Model);
@@ -90,6 +99,8 @@ impl CrowdPerson {
         let person = PersonSetup {
             start: given.take("start")?,
             velocity: given.take("velocity")?,
+            enters: given.take("enters")?,
+            recorded: recording_of(&given)?,
             group: given.take("group")?,
             traits: traits_of(&given)?,
         };
@@ -369,6 +380,7 @@ pub fn crowd_decisions<'py>(
             agent,
             desired_speed: sizes[[index, 1]],
             to_go: way.norm(),
+            decides: true,
             stays: way.norm() == 0.0,
             heading: vector(&heading),
             awareness: sizes[[index, 2]],

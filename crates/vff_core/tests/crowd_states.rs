@@ -98,6 +98,7 @@ fn walkers_of(state: &Value) -> Vec<(Walker, bool)> {
             },
             desired_speed: number(&state["desired_speed"][place]),
             to_go,
+            decides: true,
             stays: to_go == 0.0,
             heading,
             awareness,

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from hrsafety import errors
 from hrsafety._namespace import names_below
-from hrsafety.navigation import controller, gains, knowledge, laws, maps, metrics, robots, sensing, tracking
+from hrsafety.navigation import controller, crowd, gains, knowledge, laws, maps, metrics, robots, sensing, tracking
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
@@ -63,6 +63,7 @@ __all__ = [
     "VelocityObstacle",
     "VirtualForceField",
     "compare",
+    "crowd",
     "evaluate",
     "force_terms",
     "gain_sensitivity",
@@ -83,5 +84,7 @@ __all__ = [
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
     __getattr__, __dir__ = names_below(
-        __name__, __all__, [gains, laws, maps, metrics, robots, sensing, tracking, knowledge, controller, errors]
+        __name__,
+        __all__,
+        [crowd, gains, laws, maps, metrics, robots, sensing, tracking, knowledge, controller, errors],
     )

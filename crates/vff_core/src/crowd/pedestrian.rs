@@ -33,6 +33,8 @@ pub struct Walker {
     pub agent: Agent,
     /// Speed `v0` that the person wants, in m/s.
     pub desired_speed: f64,
+    /// Whether the person decides, not a recording.
+    pub decides: bool,
     /// Distance from the next point of the route in m.
     pub to_go: f64,
     /// Whether the route has ended: the person stays.

@@ -4,9 +4,12 @@ use numeric::random::Stream;
 
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Period;
-use crate::crowd::pedestrian::{Agent, Company, Fellows, SHORTEST, Walker, company_of};
+use crate::crowd::pedestrian::{
+    Agent, Company, Fellows, SHORTEST, Walker, company_of, direction_of,
+};
 use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
 use crate::lanes::Vector2;
+use crate::world::motion::Motion;
 
 type Vector = Vector2<f64>;
 
@@ -32,6 +35,8 @@ pub(super) fn stream_of(seed: u64, purpose: Purpose, number: u64) -> Stream {
 /// Where a person is on the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
+    /// Not yet there.
+    Expected,
     /// On the way.
     Walking,
     /// At the end, for good.
@@ -99,24 +104,62 @@ impl PersonState {
 
     /// One of the world at its start.
     pub(super) fn at_start(setup: &PersonSetup, seed: u64, number: usize) -> Self {
-        Self {
+        let mut person = Self {
             velocity: setup.velocity.into(),
             group: setup.group,
             ..Self::new(&setup.traits, setup.start.into(), seed, number)
+        };
+        if setup.enters > 0.0 {
+            person.presence = Presence::Expected;
+        }
+        if let Some(motion) = &setup.recorded {
+            person.desired_speed = motion.max_initial_speed();
+            person.presence = Presence::Expected;
+            person.replay(motion, 0.0);
+        }
+        person
+    }
+
+    /// Where a recording has the person at a time in s.
+    #[allow(clippy::cast_possible_truncation)] // recordings have fewer than 2^32 samples
+    pub(super) fn replay(&mut self, motion: &Motion, time: f64) {
+        let mut cursor = self.next as usize;
+        let state = motion.at(time, &mut cursor);
+        self.next = cursor as u32;
+        let was_there = self.is_present();
+        self.presence = match (state.present, was_there || self.presence == Presence::Left) {
+            (true, _) => Presence::Walking,
+            (false, true) => Presence::Left,
+            (false, false) => Presence::Expected,
+        };
+        self.velocity = state.velocity.into();
+        self.position = state.position.into();
+    }
+
+    /// Enters if it is time to, in s.
+    pub(super) fn enter(&mut self, setup: &PersonSetup, time: f64) {
+        if self.presence == Presence::Expected && setup.enters <= time {
+            self.presence = if setup.traits.route.points.is_empty() {
+                Presence::Staying
+            } else {
+                Presence::Walking
+            };
         }
     }
 
     /// Whether the person is there.
     #[must_use]
     pub fn is_present(&self) -> bool {
-        self.presence != Presence::Left
+        matches!(self.presence, Presence::Walking | Presence::Staying)
     }
 
     /// The person as one who decides.
     #[inline]
-    pub(super) fn walker(&self, number: u32, route: &Route) -> Walker {
+    pub(super) fn walker(&self, number: u32, route: &Route, decides: bool) -> Walker {
         let (mut direction, mut to_go) = (Vector::zeros(), 0.0);
-        if self.presence == Presence::Walking {
+        if !decides {
+            direction = direction_of(self.velocity);
+        } else if self.presence == Presence::Walking {
             let way = Vector::from(route.points[self.next as usize]) - self.position;
             to_go = way.norm();
             direction = if to_go < SHORTEST {
@@ -134,6 +177,7 @@ impl PersonState {
                 number,
             },
             desired_speed: self.desired_speed,
+            decides,
             to_go,
             stays: self.presence != Presence::Walking,
             heading: self.heading,

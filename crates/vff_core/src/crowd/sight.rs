@@ -134,12 +134,18 @@ impl Sight {
         for (number, (setup, state)) in world.people.iter().zip(people).enumerate() {
             let model = &world.models[setup.traits.model];
             slots.push(Slot::Person(number));
-            known.push(person(
-                &setup.traits,
-                state.desired_speed,
-                model,
-                setup.start,
-            )?);
+            known.push(match &setup.recorded {
+                Some(motion) => {
+                    let speed = motion.max_initial_speed();
+                    mover(
+                        setup.start,
+                        setup.traits.radius,
+                        speed,
+                        motion.speed_bound(),
+                    )?
+                }
+                None => person(&setup.traits, state.desired_speed, model, setup.start)?,
+            });
         }
         for (other, setup) in world.robots.iter().enumerate() {
             if other != index {

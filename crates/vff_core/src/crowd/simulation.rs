@@ -14,6 +14,7 @@ use crate::crowd::world::{CrowdWorld, Route, count_of};
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
+use crate::world::motion::Motion;
 
 /// Share of a step by which a time limit may miss a whole number of them.
 const WHOLE: f64 = 1e-9;
@@ -64,6 +65,18 @@ fn route_of<'a>(world: &'a CrowdWorld, person: &PersonState, number: usize) -> &
         Some(source) => &world.sources[source as usize].traits.route,
         None => &world.people[number].traits.route,
     }
+}
+
+/// The recording that a person follows, if it does.
+fn recorded_of<'a>(
+    world: &'a CrowdWorld,
+    person: &PersonState,
+    number: usize,
+) -> Option<&'a Motion> {
+    if person.source.is_some() {
+        return None;
+    }
+    world.people[number].recorded.as_ref()
 }
 
 fn clock_of(world: &CrowdWorld) -> Result<Clock> {
@@ -162,7 +175,8 @@ impl CrowdParts {
         self.walkers.clear();
         for (index, number) in (0..people.len()).zip(0_u32..) {
             let person = &people[index];
-            let walker = || person.walker(number, route_of(world, person, index));
+            let decides = recorded_of(world, person, index).is_none();
+            let walker = || person.walker(number, route_of(world, person, index), decides);
             self.walkers.push(person.is_present().then(walker));
         }
         let setting = Setting {
@@ -182,10 +196,19 @@ impl CrowdParts {
             .decide(&setting, walkers, robots, model_of, &mut self.decisions);
         let decided = self.decisions.iter().zip(&self.walkers);
         for (person, (decision, walker)) in people.iter_mut().zip(decided) {
-            if let Some(walker) = walker {
+            if let Some(walker) = walker.filter(|walker| walker.decides) {
                 person.heading = walker.heading;
                 let model = &world.models[person.model as usize];
                 person.move_by(*decision, model, part);
+            }
+        }
+    }
+
+    /// Moves those who follow a recording, to a time in s.
+    fn replay(&mut self, time: f64) {
+        for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
+            if let Some(motion) = &setup.recorded {
+                person.replay(motion, time);
             }
         }
     }
@@ -211,7 +234,7 @@ impl CrowdParts {
             && self
                 .people
                 .iter()
-                .all(|person| person.presence != Presence::Walking)
+                .all(|person| matches!(person.presence, Presence::Staying | Presence::Left))
     }
 }
 
@@ -238,6 +261,7 @@ impl Parts for CrowdParts {
 
     fn travel(&mut self, clock: &Clock, step: usize) {
         self.move_people(clock.step);
+        self.replay(clock.time(step + 1));
         for robot in &mut self.robots {
             robot.advance();
         }
@@ -263,12 +287,20 @@ impl Parts for CrowdParts {
         }
         let time = clock.time(step);
         self.instant = step / clock.steps_per_sample;
-        for (number, person) in self.people.iter_mut().enumerate() {
-            let route = match person.source {
-                Some(source) => &self.world.sources[source as usize].traits.route,
-                None => &self.world.people[number].traits.route,
-            };
-            person.follow(route, time);
+        for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
+            if setup.recorded.is_none() {
+                person.enter(setup, time);
+                person.follow(&setup.traits.route, time);
+            }
+        }
+        let first = self.world.people.len();
+        for person in &mut self.people[first..] {
+            let source = person
+                .source
+                .map(|index| &self.world.sources[index as usize]);
+            if let Some(source) = source {
+                person.follow(&source.traits.route, time);
+            }
         }
         for robot in &mut self.robots {
             robot.watch(&self.people, &self.bodies, time);

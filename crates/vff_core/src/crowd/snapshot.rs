@@ -60,7 +60,7 @@ impl Snapshot {
         decisions.resize(walkers.len(), Vector2::zeros());
         for agent in self.people.agents() {
             let number = agent.number as usize;
-            if let Some(walker) = &mut walkers[number] {
+            if let Some(walker) = walkers[number].as_mut().filter(|walker| walker.decides) {
                 let model = model_of(number);
                 decisions[number] = model.decide(walker, &around, &mut self.room);
             }

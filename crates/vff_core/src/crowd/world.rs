@@ -7,6 +7,7 @@ use crate::error::{Failure, Given, Result, at_most, finite, finite_pair, not_neg
 use crate::lanes::Vector2;
 use crate::run::AnyLaw;
 use crate::sensing::measurement::Measurement;
+use crate::world::motion::Motion;
 use crate::world::scenario::Mover;
 
 /// Largest deviation of a control period from a whole number of steps, relative.
@@ -104,6 +105,10 @@ pub struct PersonSetup {
     pub start: [f64; 2],
     /// Velocity in m/s.
     pub velocity: [f64; 2],
+    /// When the person appears, in s.
+    pub enters: f64,
+    /// The way of a person who follows a recording and reacts to nobody.
+    pub recorded: Option<Motion>,
     /// Members of a group have its number.
     pub group: Option<u32>,
     /// The rest.
@@ -118,6 +123,7 @@ impl PersonSetup {
     pub fn check(&self) -> Result<()> {
         finite_pair("start", self.start)?;
         finite_pair("velocity", self.velocity)?;
+        not_negative("enters", self.enters)?;
         self.traits.check()
     }
 }
@@ -331,7 +337,9 @@ impl CrowdWorld {
             let way = self.period.wrap(place - Vector2::from(other));
             way.norm() - robot.radius() - radius
         };
-        let people = self.people.iter().enumerate().map(|(other, person)| {
+        let people = self.people.iter().enumerate();
+        let people = people.filter(|(_, person)| person.enters <= 0.0);
+        let people = people.map(|(other, person)| {
             let gap = gap(person.start, person.traits.radius);
             (gap, "people", other)
         });

@@ -1,0 +1,33 @@
+"""People that react to each other and to robots: models, worlds, simulations."""
+
+from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.crowd.decisions import decide
+from hrsafety.navigation.crowd.pedestrians import (
+    CollisionFreeSpeed,
+    Moussaid,
+    Pedestrian,
+    ReciprocalAvoidance,
+    SocialForce1995,
+    SocialForce2000,
+)
+from hrsafety.navigation.crowd.simulation import simulate_crowd, simulate_crowds
+from hrsafety.navigation.crowd.trajectories import CrowdTrajectories, Divergence
+from hrsafety.navigation.crowd.world import World
+
+__all__ = [
+    "CollisionFreeSpeed",
+    "CrowdRobot",
+    "CrowdTrajectories",
+    "Divergence",
+    "Moussaid",
+    "Pedestrian",
+    "Person",
+    "ReciprocalAvoidance",
+    "SocialForce1995",
+    "SocialForce2000",
+    "Source",
+    "World",
+    "decide",
+    "simulate_crowd",
+    "simulate_crowds",
+]

@@ -1,0 +1,263 @@
+"""People, robots and sources of people: who is in a world."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, Parameters, count, instance, number, pair, points, sequence, vector, word
+from hrsafety.errors import ShapeError
+from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
+from hrsafety.navigation.laws.python_law import AnyLaw, as_law
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.sensing.measurement import Measurement
+
+__all__ = ["AtEnd", "CrowdRobot", "Person", "Source"]
+
+AtEnd = Literal["stay", "leave", "repeat"]
+
+_MOST_GROUPS = 2**32 - 1
+
+
+def _route(name: str, points: object) -> tuple[Pair, ...]:
+    """Return the points of a route."""
+    rule = "be a sequence of points (x, y)"
+    given = enumerate(sequence(name, rule, points))
+    return tuple(pair(f"{name}[{index}]", point) for index, point in given)
+
+
+def _recording(given: object) -> tuple[tuple[float, ...], tuple[Pair, ...]] | None:
+    """Return instants and positions of a recording."""
+    if given is None:
+        return None
+    parts = sequence("recording", "be a pair of times and positions", given)
+    if len(parts) != 2:
+        raise ShapeError("recording", "two: times and positions", (len(parts),))
+    time = tuple(vector("recording.time", parts[0]).tolist())
+    return time, tuple((x, y) for x, y in points("recording.position", parts[1]).tolist())
+
+
+def _traits(owner: Person | Source) -> dict[str, Any]:
+    """Return what people have in common, with checked values."""
+    speed = None if owner.desired_speed is None else number("desired_speed", owner.desired_speed)
+    return {
+        "radius": number("radius", owner.radius),
+        "desired_speed": speed,
+        "awareness": number("awareness", owner.awareness),
+        "distracted_share": number("distracted_share", owner.distracted_share),
+        "arrival_radius": number("arrival_radius", owner.arrival_radius),
+        "at_end": word("at_end", owner.at_end, ("stay", "leave", "repeat")),
+        "route": _route("route", owner.route),
+    }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Person(Parameters):
+    """A person who walks along a route.
+
+    Parameters
+    ----------
+    start : tuple of float
+        Position (x, y) in m.
+    route : sequence of tuple of float
+        Points (x, y) in m, one after the other; without one the person stands.
+    model : Pedestrian
+        How the person decides.
+    radius : float
+        Radius in m.
+    desired_speed : float or None
+        Speed in m/s; ``None``: drawn by the seed of the world from a normal distribution with mean 1.34
+        and standard deviation 0.26 m/s, again if outside 0.5 to 2.2 m/s (Weidmann 1993).
+    velocity : tuple of float
+        Velocity at the start in m/s.
+    at_end : {"stay", "leave", "repeat"}
+        What the person does at the last point: stand there as a neighbor, be gone, or start again.
+    arrival_radius : float
+        Distance at which a point of the route is reached, in m.
+    awareness : float
+        Share from 0 to 1 by which robots are taken into account: 0 for a person who does not notice
+        them, 1 for one who treats them as people.
+    distracted_share : float
+        Probability that the awareness is 0 instead, drawn by the seed of the world.
+    enters : float
+        When the person appears, in s.
+    recording : tuple of (times, positions) or None
+        A way over time in s and m, which the person follows without reacting to anybody: present between
+        the first and the last instant, straight between two.
+    group : int or None
+        Number of the group, of which `Moussaid` keeps the members together.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, or an empty route is to be repeated or left.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.crowd.Person(start=(0, 0), route=[(5, 0)], desired_speed=1.2).at_end
+    'stay'
+    """
+
+    start: Pair
+    route: tuple[Pair, ...] | Sequence[Pair] = ()
+    model: Pedestrian = field(default_factory=functools.cache(CollisionFreeSpeed))
+    radius: float = 0.25
+    desired_speed: float | None = None
+    velocity: Pair = (0.0, 0.0)
+    at_end: AtEnd = "stay"
+    arrival_radius: float = 0.3
+    awareness: float = 1.0
+    distracted_share: float = 0.0
+    enters: float = 0.0
+    recording: tuple[Sequence[float], Sequence[Pair]] | None = None
+    group: int | None = None
+    _native: _hrsafety.CrowdPerson = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        traits = _traits(self)
+        instance("model", self.model, Pedestrian)
+        places = {name: pair(name, getattr(self, name)) for name in ("start", "velocity")}
+        group = None if self.group is None else count("group", self.group, least=0, most=_MOST_GROUPS)
+        own = {"group": group, "enters": number("enters", self.enters), "recording": _recording(self.recording)}
+        self._set(**traits, **places, **own)
+        native = _hrsafety.CrowdPerson(self.model._native, **traits, **places, **own)
+        self._set(_native=native)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Source(Parameters):
+    """A rectangle in which people appear while a world is under way.
+
+    A person appears only where it touches nobody, no robot and no wall, else at a later step. Numbers of
+    people are not used again.
+
+    Parameters
+    ----------
+    low, high : tuple of float
+        Lower left and upper right corner (x, y) in m.
+    rate : float
+        People per second.
+    arrivals : {"poisson", "regular"}
+        At random, or at equal intervals.
+    route, model, radius, desired_speed, at_end, arrival_radius, awareness, distracted_share
+        As of a `Person`; they leave at the end of their route unless told otherwise.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.crowd.Source(low=(0, 0), high=(0, 3), rate=1.0, route=[(10, 1.5)]).at_end
+    'leave'
+    """
+
+    low: Pair
+    high: Pair
+    rate: float
+    arrivals: Literal["poisson", "regular"] = "poisson"
+    route: tuple[Pair, ...] | Sequence[Pair]
+    model: Pedestrian = field(default_factory=functools.cache(CollisionFreeSpeed))
+    radius: float = 0.25
+    desired_speed: float | None = None
+    at_end: AtEnd = "leave"
+    arrival_radius: float = 0.3
+    awareness: float = 1.0
+    distracted_share: float = 0.0
+    _native: _hrsafety.CrowdSource = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        traits = _traits(self)
+        instance("model", self.model, Pedestrian)
+        word("arrivals", self.arrivals, ("poisson", "regular"))
+        own = {"low": pair("low", self.low), "high": pair("high", self.high), "rate": number("rate", self.rate)}
+        self._set(**traits, **own)
+        native = _hrsafety.CrowdSource(self.model._native, **traits, **own, regular=self.arrivals == "regular")
+        self._set(_native=native)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CrowdRobot(Parameters):
+    """A robot among people, under any law.
+
+    Parameters
+    ----------
+    start, goal : tuple of float
+        Positions (x, y) in m.
+    law : Law, callable, object or None
+        What drives it; ``None``: it stands.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        What it is.
+    control_period : float or None
+        Time between two commands in s, a multiple of the step of the world; ``None``: the step.
+    arrival_tolerance : float
+        It has arrived when it is this close to the goal for the first time, in m; it then brakes and stays.
+    heading : float
+        Heading at the start in rad.
+    sensing_range : float
+        Distance up to which it sees people and other robots, in m.
+    measurement : Measurement or None
+        Errors and age of what it sees; ``None``: everything is known exactly.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range.
+
+    Notes
+    -----
+    The law is told of everybody in its range as moving discs with their present velocity, and of walls
+    as obstacles that stand. It does not know who is aware of the robot.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(8, 0), law=nav.OptimalReciprocalCollisionAvoidance())
+    >>> robot.sensing_range
+    10.0
+    """
+
+    start: Pair
+    goal: Pair
+    law: AnyLaw | None = None
+    robot: HolonomicRobot | DifferentialDriveRobot = field(default_factory=functools.cache(HolonomicRobot))
+    control_period: float | None = None
+    arrival_tolerance: float = 0.3
+    heading: float = 0.0
+    sensing_range: float = 10.0
+    measurement: Measurement | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        if self.law is not None:
+            self._set(law=as_law(self.law))
+        instance("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
+        if self.measurement is not None:
+            instance("measurement", self.measurement, Measurement)
+        if self.control_period is not None:
+            self._as_numbers("control_period")
+        self._as_numbers("arrival_tolerance", "heading", "sensing_range")
+        self._set(start=pair("start", self.start), goal=pair("goal", self.goal))
+        self._at_step(1.0)
+
+    def _at_step(self, step: float) -> _hrsafety.CrowdRobot:
+        """Return the native robot for a world with a step in s."""
+        return _hrsafety.CrowdRobot(
+            self.robot._native,
+            None if self.law is None else self.law._native,  # type: ignore[union-attr]  # made a Law above
+            None if self.measurement is None else self.measurement._native,
+            start=self.start,
+            goal=self.goal,
+            heading=self.heading,
+            control_period=step if self.control_period is None else self.control_period,
+            arrival_tolerance=self.arrival_tolerance,
+            sensing_range=self.sensing_range,
+        )

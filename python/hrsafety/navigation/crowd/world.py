@@ -1,0 +1,134 @@
+"""A world of people, robots and walls that all move in step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, sequence
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.obstacles import Disc, Rectangle
+
+__all__ = ["WallShape", "World", "native_walls"]
+
+Polyline = tuple[Pair, ...]
+WallShape = Disc | Rectangle | Polyline
+
+
+def _wall(name: str, given: object) -> WallShape:
+    """Return a wall: a shape as it is, points as pairs."""
+    if isinstance(given, (Disc, Rectangle)):
+        return given
+    rule = "be a Disc, a Rectangle or a sequence of points (x, y)"
+    points = sequence(name, rule, given)  # type: ignore[arg-type]  # the check
+    return tuple(pair(f"{name}[{index}]", point) for index, point in enumerate(points))
+
+
+def _native_wall(name: str, wall: WallShape) -> _hrsafety.CrowdWall:
+    if isinstance(wall, tuple):
+        try:
+            return _hrsafety.CrowdWall.polyline(list(wall))
+        except InvalidParameterError as error:
+            raise error.renamed(f"{name}.{error.argument}") from None
+    return _hrsafety.CrowdWall.solid(wall._native)
+
+
+def native_walls(walls: object) -> list[_hrsafety.CrowdWall]:
+    """Return walls of all kinds as the core knows them."""
+    given = sequence("walls", "be a sequence of walls", walls)  # type: ignore[arg-type]  # the check
+    return [_native_wall(f"walls[{index}]", _wall(f"walls[{index}]", wall)) for index, wall in enumerate(given)]
+
+
+def _all(name: str, kind: type, given: Iterable[object]) -> tuple[Any, ...]:
+    """Return the members of a list if they are of a kind."""
+    members = sequence(name, f"be a sequence of {kind.__name__}", given)
+    return tuple(instance(f"{name}[{index}]", member, kind) for index, member in enumerate(members))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class World(Parameters):
+    """People and robots that react to each other.
+
+    At every instant sources add people, everybody decides from the same snapshot, and all move by a step.
+    Models whose largest step is smaller split it into equal parts, in each of which people decide anew.
+
+    Parameters
+    ----------
+    people : sequence of Person
+        Who is there at the start; people may overlap.
+    robots : sequence of CrowdRobot
+        The robots. None may start in contact.
+    walls : sequence of Disc, Rectangle or sequence of points
+        What stands. Points are joined by segments. Every wall acts once, through its nearest point.
+    sources : sequence of Source
+        Where more people come from.
+    period : tuple of float
+        Lengths (Lx, Ly) in m after which the world repeats itself for the differences of positions; 0: it
+        does not.
+    step : float
+        Time step in s.
+    time_limit : float
+        Longest simulated time, in s.
+    seed : int
+        Seed of everything that is drawn, 0 <= seed < 2**64.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is not finite or out of range, a control period is no multiple of the step, or a robot
+        starts in contact; the message names the list and the index.
+
+    Examples
+    --------
+    Two people meet in a corridor:
+
+    >>> from hrsafety import navigation as nav
+    >>> walls = [[(-1, 0), (11, 0)], [(-1, 3), (11, 3)]]
+    >>> people = [
+    ...     nav.crowd.Person(start=(0, 1.4), route=[(10, 1.5)], desired_speed=1.3),
+    ...     nav.crowd.Person(start=(10, 1.6), route=[(0, 1.5)], desired_speed=1.3),
+    ... ]
+    >>> world = nav.crowd.World(people=people, walls=walls, time_limit=20)
+    >>> run = nav.crowd.simulate_crowd(world)
+    >>> bool((run.arrival_time < 10).all())
+    True
+    """
+
+    people: tuple[Person, ...] | Sequence[Person] = ()
+    robots: tuple[CrowdRobot, ...] | Sequence[CrowdRobot] = ()
+    walls: tuple[WallShape, ...] | Sequence[WallShape | Sequence[Pair]] = ()
+    sources: tuple[Source, ...] | Sequence[Source] = ()
+    period: Pair = (0.0, 0.0)
+    step: float = 0.05
+    time_limit: float = 60.0
+    seed: int = 0
+    _native: _hrsafety.CrowdWorld = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._as_numbers("step", "time_limit")
+        given = sequence("walls", "be a sequence of walls", self.walls)
+        self._set(
+            people=_all("people", Person, self.people),
+            robots=_all("robots", CrowdRobot, self.robots),
+            sources=_all("sources", Source, self.sources),
+            walls=tuple(_wall(f"walls[{index}]", wall) for index, wall in enumerate(given)),
+            period=pair("period", self.period),
+            seed=checked_seed("seed", self.seed),
+        )
+        # A step out of range is refused by the world, not by a robot that has it as its control period.
+        step = self.step if 0.0 < self.step < float("inf") else 1.0
+        native = _hrsafety.CrowdWorld(
+            [person._native for person in self.people],
+            [robot._at_step(step) for robot in self.robots],
+            [source._native for source in self.sources],
+            native_walls(self.walls),
+            period=self.period,
+            step=self.step,
+            time_limit=self.time_limit,
+            seed=self.seed,
+        )
+        self._set(_native=native)
