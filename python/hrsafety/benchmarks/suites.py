@@ -15,6 +15,7 @@ from hrsafety import navigation as nav
 from hrsafety.benchmarks import barn
 from hrsafety.benchmarks.entries import Entry
 from hrsafety.benchmarks.protocol import Case, Suite, rows_of
+from hrsafety.benchmarks.reacting import REACTING
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
 
@@ -297,6 +298,7 @@ SUITES: dict[str, Suite] = {
             )
             for name, most, asked in (("dynabarn", 10.0, 97), ("dynabarn3", 3.0, 94))
         ),
+        *REACTING,
     )
 }
 """The suites by name."""

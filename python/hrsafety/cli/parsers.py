@@ -74,7 +74,10 @@ _BENCHMARK_EXAMPLE = """examples:
 Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
 """
-SUITE_NAMES = ("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3")
+SUITE_NAMES = (
+    *("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"),
+    *("circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing", "bottleneck"),
+)
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 
 STARTERS = {

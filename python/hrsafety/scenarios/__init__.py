@@ -1,20 +1,30 @@
-"""Ready scenarios: published configurations, files, random crowds, recorded people."""
+"""Ready scenarios: published configurations, files, random crowds, recorded people, worlds of people that react."""
 
+from hrsafety.scenarios.circles import antipodal, circle_crossing
 from hrsafety.scenarios.configurations import CONFIGURATIONS, configuration
 from hrsafety.scenarios.crowds import random_crowd, random_crowd_batch
 from hrsafety.scenarios.files import ScenarioFile, load
 from hrsafety.scenarios.recorded_people import Crossing, crossings
+from hrsafety.scenarios.recorded_worlds import with_recording
+from hrsafety.scenarios.streams import bottleneck, corridor, cross_torus, crossing
 from hrsafety.scenarios.traffic import random_traffic, random_traffic_batch
 
 __all__ = [
     "CONFIGURATIONS",
     "Crossing",
     "ScenarioFile",
+    "antipodal",
+    "bottleneck",
+    "circle_crossing",
     "configuration",
+    "corridor",
+    "cross_torus",
+    "crossing",
     "crossings",
     "load",
     "random_crowd",
     "random_crowd_batch",
     "random_traffic",
     "random_traffic_batch",
+    "with_recording",
 ]

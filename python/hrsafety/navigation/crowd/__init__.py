@@ -1,6 +1,7 @@
 """People that react to each other and to robots: models, worlds, simulations."""
 
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.crowd.circle import circle_starts
 from hrsafety.navigation.crowd.decisions import decide
 from hrsafety.navigation.crowd.pedestrians import (
     CollisionFreeSpeed,
@@ -10,6 +11,7 @@ from hrsafety.navigation.crowd.pedestrians import (
     SocialForce1995,
     SocialForce2000,
 )
+from hrsafety.navigation.crowd.scores import crowd_batch, episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import simulate_crowd, simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories, Divergence
 from hrsafety.navigation.crowd.world import World
@@ -27,7 +29,11 @@ __all__ = [
     "SocialForce2000",
     "Source",
     "World",
+    "circle_starts",
+    "crowd_batch",
     "decide",
+    "episodes_of",
     "simulate_crowd",
     "simulate_crowds",
+    "world_metrics",
 ]

@@ -1,0 +1,101 @@
+"""Suites of worlds in which people react to each other and to the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.benchmarks.protocol import Case, Suite
+from hrsafety.benchmarks.results import Row
+from hrsafety.navigation.crowd import CrowdRobot, World
+
+__all__ = ["REACTING"]
+
+LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
+CASES = 500
+"""Cases of CrowdNav."""
+MOST = 1_000_000
+
+
+def _law(case: Case) -> nav.Law:
+    return case.entry.built(person_speed=case.person_speed)
+
+
+def _seen(case: Case, index: int) -> World:
+    return scenarios.circle_crossing(index, law=_law(case), visible=True)
+
+
+def _unseen(case: Case, index: int) -> World:
+    return scenarios.circle_crossing(index, law=_law(case), visible=False)
+
+
+def _antipodal(case: Case, index: int) -> World:
+    return scenarios.antipodal(20, law=_law(case), robots=1, seed=case.seed + index)
+
+
+def _driven(case: Case, start: tuple[float, float], goal: tuple[float, float]) -> CrowdRobot:
+    return CrowdRobot(start=start, goal=goal, law=_law(case))
+
+
+def _free(world: World, robot: CrowdRobot) -> World:
+    """Return the world with the robot, without people who would touch it at its start."""
+    place = np.array(robot.start)
+    room = robot.robot.radius + 0.05
+    people = [each for each in world.people if np.hypot(*(np.array(each.start) - place)) > each.radius + room]
+    return replace(world, people=people, robots=[robot])
+
+
+def _corridor(case: Case, index: int) -> World:
+    world = scenarios.corridor(12, seed=case.seed + index)
+    return _free(world, _driven(case, (0.0, 1.5), (9.0, 1.5)))
+
+
+def _crossing(case: Case, index: int) -> World:
+    world = scenarios.crossing(6, rate=0.5, seed=case.seed + index)
+    return _free(world, _driven(case, (6.0, 0.0), (-6.0, 0.0)))
+
+
+def _bottleneck(case: Case, index: int) -> World:
+    world = scenarios.bottleneck(100, seed=case.seed + index, time_limit=120.0)
+    return _free(world, _driven(case, (1.0, 4.0), (10.0, 4.0)))
+
+
+def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Row]]:
+    """Run worlds side by side; contacts are the robot's where it moves faster toward the person."""
+
+    def run(case: Case) -> Iterator[Row]:
+        worlds = [scene(case, index) for index in case.cases]
+        runs = nav.crowd.simulate_crowds(worlds, threads=case.threads)
+        table = nav.metrics.evaluate_many([nav.crowd.episodes_of(each)[0] for each in runs], threads=case.threads)
+        contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
+        for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
+            yield Row(
+                case=index,
+                outcome="collided" if contacts[row] else each.outcomes[0],
+                arrival_time=float(table.arrival_time[row]),
+                end_time=float(each.time[-1]),
+                contacts=int(contacts[row]),
+                at_fault=int(table.robot_on_person[row] + table.wall_contacts[row]),
+                clearance=float(table.min_clearance[row]),
+            )
+
+    return run
+
+
+def _suite(name: str, summary: str, scene: Callable[[Case, int], World], cases: int, most: int = MOST) -> Suite:
+    return Suite(name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=most, run=_worlds(scene))
+
+
+REACTING = (
+    _suite("circle_crossing", "5 people cross a circle and see the robot", _seen, CASES),
+    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", _unseen, CASES),
+    _suite("antipodal", "19 people and the robot go to the opposite point of a circle", _antipodal, 100),
+    _suite("corridor", "12 people walk both ways in a corridor", _corridor, 100),
+    _suite("crossing", "two streams of people cross at right angles", _crossing, 100),
+    _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", _bottleneck, 20),
+)
+"""The suites of people that react."""

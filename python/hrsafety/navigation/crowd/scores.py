@@ -1,0 +1,152 @@
+"""Metrics of robots in worlds of people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from hrsafety._arguments import Array
+from hrsafety.navigation.crowd.simulation import simulate_crowds
+from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.metrics.episode import Episode
+from hrsafety.navigation.metrics.scores import MetricTable, WorldMetrics, evaluate_many, evaluate_world
+
+__all__ = ["crowd_batch", "episodes_of", "world_metrics"]
+
+
+def _goals(run: CrowdTrajectories) -> Array:
+    """Return the last points of the routes; of people without one their places, NaN of those from sources."""
+    goals = np.full((len(run.radius), 2), np.nan)
+    for index, person in enumerate(run.world.people):
+        goals[index] = person.route[-1] if person.route else person.start
+    return goals
+
+
+def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None) -> list[Episode]:
+    """Return what each robot of a world met, to be scored.
+
+    Parameters
+    ----------
+    run : CrowdTrajectories
+        What happened.
+    without : CrowdTrajectories or None
+        The same world without its robots, from which delays and detours of people follow.
+
+    Returns
+    -------
+    list of Episode
+        One for each robot. Other robots are no people.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> world = scenarios.circle_crossing(2, law=nav.OptimalReciprocalCollisionAvoidance())
+    >>> episode, = nav.crowd.episodes_of(nav.crowd.simulate_crowd(world))
+    >>> nav.metrics.evaluate(episode).arrived
+    True
+    """
+    world = run.world
+    groups = [-1 if person.group is None else person.group for person in world.people]
+    groups += [-1] * (len(run.radius) - len(groups))
+    grouped = any(group >= 0 for group in groups)
+    alone = None if without is None else without.position[:, : len(world.people)]
+    return [
+        Episode(
+            position=run.robot_position[:, index],
+            step=world.step,
+            goal=robot.goal,
+            robot_radius=robot.robot.radius,
+            people=run.position if alone is None else run.position[:, : len(world.people)],
+            person_radius=run.radius if alone is None else run.radius[: len(world.people)],
+            groups=groups if grouped else (),
+            walls=world.walls,
+            people_without=alone,
+            person_goals=() if alone is None else _goals(run)[: len(world.people)],
+            arrival_tolerance=robot.arrival_tolerance,
+            max_speed=robot.robot.max_speed,
+            period=world.period,
+        )
+        for index, robot in enumerate(world.robots)
+    ]
+
+
+def crowd_batch(
+    worlds: Iterable[World],
+    *,
+    threads: int | None = None,
+    people_alone: bool = False,
+    progress: Callable[[int, int], object] | None = None,
+) -> MetricTable:
+    """Return the metrics of every robot in many worlds.
+
+    Parameters
+    ----------
+    worlds : iterable of World
+        The worlds; those without robots have no row.
+    threads : int or None
+        Number of threads; all cores when ``None``. The results do not depend on it.
+    people_alone : bool
+        Whether the same worlds are run without robots, too: delay and detour of people need it.
+    progress : callable or None
+        Progress callback ``(done, total)``.
+
+    Returns
+    -------
+    MetricTable
+        A row for each robot, in the order of worlds and robots.
+
+    Raises
+    ------
+    InvalidParameterError
+        As `simulate_crowds`.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> law = nav.OptimalReciprocalCollisionAvoidance()
+    >>> table = nav.crowd.crowd_batch([scenarios.circle_crossing(case, law=law) for case in range(4)])
+    >>> table.arrived.tolist()
+    [True, True, True, True]
+    """
+    given = list(worlds)
+    runs = simulate_crowds(given, threads=threads, progress=progress)
+    alone: list[CrowdTrajectories | None] = [None] * len(given)
+    if people_alone:
+        alone = list(simulate_crowds([replace(world, robots=()) for world in given], threads=threads))
+    episodes = [each for run, other in zip(runs, alone, strict=True) for each in episodes_of(run, other)]
+    return evaluate_many(episodes, threads=threads)
+
+
+def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
+    """Return the metrics of a world as a whole: throughput, deadlocks, speeds, times.
+
+    Parameters
+    ----------
+    run : CrowdTrajectories
+        What happened.
+
+    Returns
+    -------
+    WorldMetrics
+        A value for each of `WORLD_METRICS`.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> run = nav.crowd.simulate_crowd(scenarios.bottleneck(10, time_limit=20))
+    >>> nav.crowd.world_metrics(run).throughput > 0.3
+    True
+    """
+    world = run.world
+    return evaluate_world(
+        run.position,
+        person_goals=_goals(run),
+        step=world.step,
+        time_limit=world.time_limit,
+        robots=run.robot_position if world.robots else (),
+        robot_radius=[robot.robot.radius for robot in world.robots],
+        period=world.period,
+    )

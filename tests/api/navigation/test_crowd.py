@@ -1,0 +1,239 @@
+"""Worlds of people and robots that react to each other."""
+
+from __future__ import annotations
+
+import pickle
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.datasets import Recording
+from hrsafety.errors import InvalidParameterError, ShapeError
+
+MODELS = (
+    nav.crowd.SocialForce1995(),
+    nav.crowd.SocialForce2000(),
+    nav.crowd.Moussaid(),
+    nav.crowd.CollisionFreeSpeed(),
+    nav.crowd.ReciprocalAvoidance(),
+)
+
+
+def pair_of_people(model: nav.crowd.Pedestrian | None = None) -> tuple[nav.crowd.Person, ...]:
+    of = nav.crowd.CollisionFreeSpeed() if model is None else model
+    ends = (((0.0, 0.0), (6.0, 0.1)), ((6.0, 0.1), (0.0, 0.0)))
+    return tuple(nav.crowd.Person(start=a, route=[b], model=of, desired_speed=1.2) for a, b in ends)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: type(model).__name__)
+def test_people_of_every_model_pass_each_other(model: nav.crowd.Pedestrian) -> None:
+    run = nav.crowd.simulate_crowd(nav.crowd.World(people=pair_of_people(model), time_limit=20.0))
+    assert run.diverged is None
+    assert np.isfinite(run.arrival_time).all()
+    assert run.position.shape == (len(run.time), 2, 2)
+    assert run.time[-1] < 20.0
+    assert np.hypot(*(run.position[:, 0] - run.position[:, 1]).T).min() > 0.25
+
+
+def test_a_world_without_anybody_ends_at_once_and_one_person_walks_alone() -> None:
+    nobody = nav.crowd.simulate_crowd(nav.crowd.World())
+    assert nobody.position.shape == (1, 0, 2)
+    assert nobody.robot_position.shape == (1, 0, 2)
+    alone = nav.crowd.simulate_crowd(nav.crowd.World(people=pair_of_people()[:1]))
+    assert alone.arrival_time[0] == pytest.approx(5.7 / 1.2, abs=0.06)
+
+
+def test_a_robot_whose_goal_is_its_start_has_arrived() -> None:
+    robot = nav.crowd.CrowdRobot(start=(1, 1), goal=(1, 1), law=nav.VirtualForceField())
+    run = nav.crowd.simulate_crowd(nav.crowd.World(robots=[robot]))
+    assert run.outcomes == ("arrived",)
+    assert run.robot_arrival_time.tolist() == [0.0]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        nav.OptimalReciprocalCollisionAvoidance(),
+        nav.VirtualForceField(),
+        nav.VelocityObstacle(),
+        nav.laws.SafeNavigation(nav.OptimalReciprocalCollisionAvoidance(), shield=nav.laws.Shield()),
+        lambda situation: 4.0 * (situation.goal - situation.position) - 8.0 * situation.velocity,
+    ],
+    ids=["reciprocal", "field", "velocity obstacle", "shielded", "python"],
+)
+def test_robots_of_both_kinds_arrive_among_people_under_any_law(law: object) -> None:
+    bodies = (nav.HolonomicRobot(), nav.DifferentialDriveRobot())
+    person = nav.crowd.Person(start=(3.0, 5.0), route=[(3.0, -5.0)], desired_speed=1.2)
+    for body in bodies:
+        robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0.2), law=law, robot=body)  # type: ignore[arg-type]
+        run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=60.0))
+        assert run.outcomes == ("arrived",), type(body)
+
+
+def test_what_a_robot_sees_may_be_noisy_and_late() -> None:
+    world = scenarios.circle_crossing(4, law=nav.OptimalReciprocalCollisionAvoidance())
+    noisy = replace(world.robots[0], measurement=nav.Measurement(scale=0.1, of="both", latency=0.3))
+    exact, blurred = (nav.crowd.simulate_crowd(replace(world, robots=[robot])) for robot in (world.robots[0], noisy))
+    again = nav.crowd.simulate_crowd(replace(world, robots=[noisy]))
+    rows = min(len(exact.time), len(blurred.time))
+    assert not np.array_equal(exact.robot_position[:rows], blurred.robot_position[:rows])
+    np.testing.assert_array_equal(again.robot_position, blurred.robot_position)
+
+
+def test_who_is_beyond_the_sensing_range_changes_nothing() -> None:
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    person = nav.crowd.Person(start=(3, 0), desired_speed=0.0, awareness=0.0)
+    near = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0.1), law=law)
+    blind = replace(near, sensing_range=0.1)
+    deviation = [
+        np.abs(nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot])).robot_position[..., 1]).max()
+        for robot in (near, blind)
+    ]
+    assert deviation[0] > 0.3
+    assert deviation[1] < 0.2
+
+
+def test_threads_change_no_bit() -> None:
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    worlds = [scenarios.circle_crossing(case, law=law) for case in range(12)]
+    worlds.append(scenarios.corridor(60, model=nav.crowd.Moussaid(), seed=3, time_limit=3.0))
+    one = nav.crowd.simulate_crowds(worlds, threads=1)
+    for threads in (2, 7):
+        for found, expected in zip(nav.crowd.simulate_crowds(worlds, threads=threads), one, strict=True):
+            np.testing.assert_array_equal(found.position, expected.position)
+            np.testing.assert_array_equal(found.robot_position, expected.robot_position)
+
+
+def test_progress_is_told_of_all_worlds() -> None:
+    told: list[tuple[int, int]] = []
+    worlds = [nav.crowd.World(people=pair_of_people(), seed=seed) for seed in range(5)]
+    nav.crowd.simulate_crowds(worlds, threads=2, progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (5, 5)
+
+
+def test_a_world_that_diverges_says_when_and_for_whom() -> None:
+    model = nav.crowd.SocialForce2000(stiffness=1e308)
+    people = [nav.crowd.Person(start=(x, 0), route=[(9, 0)], model=model) for x in (3.0, 0.0, 0.1)]
+    run = nav.crowd.simulate_crowd(nav.crowd.World(people=people))
+    assert run.diverged is not None
+    assert run.diverged.kind == "person"
+    assert run.diverged.index in {1, 2}
+    assert run.time[-1] <= run.diverged.time
+    assert np.isfinite(run.position).all()
+
+
+def test_seeds_draw_speeds_and_who_is_distracted() -> None:
+    people = [nav.crowd.Person(start=(0, y), route=[(9, y)], distracted_share=0.4) for y in range(200)]
+    run = nav.crowd.simulate_crowd(nav.crowd.World(people=people, time_limit=0.1, seed=5))
+    assert ((run.desired_speed >= 0.5) & (run.desired_speed <= 2.2)).all()
+    assert run.desired_speed.mean() == pytest.approx(1.34, abs=0.06)
+    assert run.desired_speed.std() == pytest.approx(0.26, abs=0.05)
+    assert 0.25 < (run.awareness == 0.0).mean() < 0.55
+    other = nav.crowd.simulate_crowd(nav.crowd.World(people=people[:50], time_limit=0.1, seed=5))
+    np.testing.assert_array_equal(other.desired_speed, run.desired_speed[:50])
+
+
+def test_people_keep_together_in_groups() -> None:
+    def spread(group: int | None) -> float:
+        people = [
+            nav.crowd.Person(
+                start=(0, 1.2 * k), route=[(30, 0)], model=nav.crowd.Moussaid(), group=group, desired_speed=1.2
+            )
+            for k in range(3)
+        ]
+        run = nav.crowd.simulate_crowd(nav.crowd.World(people=people, time_limit=8.0))
+        return float(run.position[-1].std(axis=0).sum())
+
+    assert spread(1) < spread(None)
+
+
+def test_worlds_of_all_scenarios_run() -> None:
+    law = nav.OptimalReciprocalCollisionAvoidance(share=0.5)
+    worlds = [
+        scenarios.antipodal(6, law=law, robots=2),
+        scenarios.corridor(20, seed=1, time_limit=5.0),
+        scenarios.crossing(8, time_limit=5.0),
+        scenarios.cross_torus(20, time_limit=5.0),
+        scenarios.bottleneck(20, time_limit=30.0),
+        scenarios.circle_crossing(0, law=law, visible=False),
+    ]
+    for run in nav.crowd.simulate_crowds(worlds):
+        assert run.diverged is None
+        assert len(run.time) > 10
+    assert np.isnan(nav.crowd.simulate_crowd(worlds[4]).position[-1]).all(), "everybody has left the room"
+
+
+def test_the_same_arguments_draw_the_same_world() -> None:
+    assert scenarios.corridor(10, seed=4) == scenarios.corridor(10, seed=4)
+    assert scenarios.corridor(10, seed=4) != scenarios.corridor(10, seed=5)
+    world = scenarios.circle_crossing(11, law=nav.VirtualForceField())
+    assert pickle.loads(pickle.dumps(world)) == world
+
+
+def test_recorded_people_react_by_a_share() -> None:
+    walk = Recording(time_s=[0, 0, 4, 4], person=[1, 2, 1, 2], position=[[0, 0], [5, 0.1], [5, 0], [0, 0.1]])
+    runs = [
+        nav.crowd.simulate_crowd(scenarios.with_recording(walk, share, time_limit=8.0)) for share in (0.0, 0.5, 1.0)
+    ]
+    least = [np.nanmin(np.hypot(*(run.position[:, 0] - run.position[:, 1]).T)) for run in runs]
+    assert least[0] < 0.15, "recorded people walk through each other"
+    assert least[1] > 0.3
+    assert least[2] > 0.3
+
+
+def test_mistakes_are_named_with_their_place() -> None:
+    def words(make: object) -> str:
+        with pytest.raises(InvalidParameterError) as caught:
+            make()  # type: ignore[operator]
+        return str(caught.value)
+
+    person = nav.crowd.Person(start=(0, 0), route=[(5, 0)])
+    robot = nav.crowd.CrowdRobot(start=(0.1, 0), goal=(5, 0))
+    world = nav.crowd.World
+    assert "robots[0].start must not be in contact with people[0]" in words(
+        lambda: world(people=[person], robots=[robot])
+    )
+    assert "robots[0].control_period must be a multiple" in words(
+        lambda: world(robots=[replace(robot, control_period=0.06)])
+    )
+    assert words(lambda: world(people=[person, 3])).startswith("people[1] must be a Person")
+    assert words(lambda: world(period=(-1.0, 0.0))).startswith("period[0] must")
+    assert words(lambda: world(step=0.0)).startswith("step must")
+    assert words(lambda: world(walls=[[(0, 0)]])).startswith("walls[0].points must be two points or more")
+    assert words(lambda: replace(person, awareness=1.5)).startswith("awareness must be from 0 to 1")
+    assert words(lambda: replace(person, radius=0.0)).startswith("radius must")
+    assert words(lambda: replace(person, route=[], at_end="repeat")).startswith("route must hold a point")
+    assert "did you mean" in words(lambda: replace(person, at_end="leaves"))
+    assert words(lambda: replace(person, desired_speed=float("nan"))).startswith("desired_speed must")
+    assert words(lambda: nav.crowd.SocialForce2000(mass=0.0)).startswith("mass must")
+    assert words(lambda: nav.crowd.Moussaid(cutoff=-1.0)).startswith("cutoff must")
+    assert words(lambda: replace(robot, sensing_range=0.0)).startswith("sensing_range must")
+    assert words(lambda: world(people=[person], time_limit=1e9)).startswith("time_limit must")
+    with pytest.raises(ShapeError):
+        nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, 0)], velocity=[(0, 0), (1, 1)], goal=[(0, 0)])
+    assert words(
+        lambda: nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, np.nan)], velocity=[(0, 0)], goal=[(0, 0)])
+    ).startswith("position[0] must be finite")
+
+
+def test_the_interpreter_is_released() -> None:
+    worlds = [scenarios.corridor(300, model=nav.crowd.Moussaid(), seed=seed, time_limit=3.0) for seed in range(2)]
+    done = threading.Event()
+
+    def run() -> None:
+        nav.crowd.simulate_crowds(worlds, threads=1)
+        done.set()
+
+    worker = threading.Thread(target=run)
+    worker.start()
+    longest, last = 0.0, time.perf_counter()
+    while not done.wait(0.005):
+        now = time.perf_counter()
+        longest, last = max(longest, now - last), now
+    worker.join()
+    assert longest < 1.0

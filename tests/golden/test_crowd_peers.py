@@ -1,0 +1,126 @@
+"""Pedestrian models against the programs that others use, where these are installed."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+
+import numpy as np
+import pytest
+
+from hrsafety import navigation as nav
+
+GENERATOR = np.random.Generator(np.random.PCG64(19))
+
+
+def missing(name: str) -> bool:
+    return importlib.util.find_spec(name) is None
+
+
+@pytest.mark.skipif(missing("pyrvo"), reason="pyrvo is not installed")
+def test_reciprocal_people_take_the_velocities_of_pyrvo() -> None:
+    import pyrvo  # type: ignore[import-untyped]  # no type information
+
+    people, step, radius, speed = 20, 0.25, 0.3, 1.3
+    place = GENERATOR.uniform(0.0, 6.0, (people, 2))
+    goal = GENERATOR.uniform(0.0, 6.0, (people, 2))
+    simulator = pyrvo.RVOSimulator(step, 10.0, 10, 5.0, 5.0, radius, speed)
+    for x, y in place.tolist():
+        simulator.add_agent(pyrvo.Vector2(x, y))
+    model = nav.crowd.ReciprocalAvoidance(margin=0.0)
+    deviations = []
+    for _ in range(20):
+        # Each step starts from the state that pyrvo has reached: it works in single precision.
+        position = np.array([(at.x, at.y) for at in map(simulator.get_agent_position, range(people))])
+        velocity = np.array([(at.x, at.y) for at in map(simulator.get_agent_velocity, range(people))])
+        way = goal - position
+        length = np.hypot(*way.T)[:, None]
+        wanted = way / length * np.minimum(speed, length / step)
+        for index, (x, y) in enumerate(wanted.tolist()):
+            simulator.set_agent_pref_velocity(index, pyrvo.Vector2(x, y))
+        simulator.do_step()
+        reached = np.array([(at.x, at.y) for at in map(simulator.get_agent_velocity, range(people))])
+        found = nav.crowd.decide(
+            model, position=position, velocity=velocity, goal=goal, radius=radius, desired_speed=speed, step=step
+        )
+        deviations.append(np.hypot(*(found - reached).T) * step)
+    # In m within a step; single precision, and parallel lines that pyrvo tells apart at 1e-5.
+    assert np.median(deviations) < 1e-6
+    assert np.quantile(deviations, 0.95) < 1e-5
+
+
+@pytest.mark.skipif(missing("pysocialforce"), reason="PySocialForce is not installed")
+def test_pair_forces_are_those_of_pysocialforce_where_its_angle_needs_no_wrap() -> None:
+    from pysocialforce.utils import stateutils  # type: ignore[import-untyped]  # no type information
+
+    factor, gamma, n, n_prime, weight, epsilon = 4.5, 0.35, 2.0, 3.0, 2.0, 0.005
+    model = nav.crowd.Moussaid(side_bias=epsilon, cutoff=None)
+    compared = 0
+    for _ in range(400):
+        position, velocity = GENERATOR.uniform(-2.0, 2.0, (2, 2)), GENERATOR.uniform(-1.0, 1.0, (2, 2))
+        way, relative = position[1] - position[0], velocity[0] - velocity[1]
+        sight, distance = way / np.hypot(*way), float(np.hypot(*way))
+        interaction = weight * relative + sight
+        length = np.hypot(*interaction)
+        along = interaction / length
+        angles = stateutils.vector_angles(np.array([along, sight]))
+        turn = angles[0] - angles[1]
+        if abs(turn) > math.pi:
+            continue
+        compared += 1
+        reach = gamma * length
+        theta = turn + epsilon * reach
+        slow = -np.exp(-distance / reach - (n_prime * reach * theta) ** 2)
+        aside = np.sign(theta) * np.exp(-distance / reach - (n * reach * theta) ** 2)
+        expected = factor * (slow * along + aside * np.array([-along[1], along[0]]))
+        # Without a wish the drive is -v/tau.
+        found = nav.crowd.decide(model, position=position, velocity=velocity, goal=position, desired_speed=1.0)
+        push = found[0] + velocity[0] / model.relaxation_time
+        np.testing.assert_allclose(push, expected, rtol=0.0, atol=1e-12)
+    assert compared > 100
+
+
+@pytest.mark.skipif(missing("jupedsim"), reason="JuPedSim is not installed")
+def test_one_step_of_collision_free_speed_is_that_of_jupedsim() -> None:
+    import jupedsim
+
+    step, radius, speed, people = 0.05, 0.2, 1.2, 12
+    area = [(-20.0, -20.0), (20.0, -20.0), (20.0, 20.0), (-20.0, 20.0)]
+    for _ in range(5):
+        place = np.array([(1.1 * (index % 4), 1.1 * (index // 4)) for index in range(people)])
+        place += GENERATOR.uniform(-0.25, 0.25, place.shape)
+        kind = jupedsim.CollisionFreeSpeedModel(
+            strength_neighbor_repulsion=8.0,
+            range_neighbor_repulsion=0.1,
+            strength_geometry_repulsion=5.0,
+            range_geometry_repulsion=0.02,
+        )
+        simulation = jupedsim.Simulation(model=kind, geometry=area, dt=step)
+        goal = (15.0, 3.0)
+        stage = simulation.add_waypoint_stage(goal, 0.1)
+        journey = simulation.add_journey(jupedsim.JourneyDescription([stage]))
+        ids = [
+            simulation.add_agent(
+                jupedsim.CollisionFreeSpeedModelAgentParameters(
+                    position=tuple(at),
+                    journey_id=journey,
+                    stage_id=stage,
+                    time_gap=1.0,
+                    desired_speed=speed,
+                    radius=radius,
+                )
+            )
+            for at in place.tolist()
+        ]
+        simulation.iterate()
+        moved = np.array([simulation.agent(each).position for each in ids]) - place
+        found = nav.crowd.decide(
+            nav.crowd.CollisionFreeSpeed(),
+            position=place,
+            velocity=np.zeros_like(place),
+            goal=np.tile(goal, (people, 1)),
+            radius=radius,
+            desired_speed=speed,
+            walls=[[*area, area[0]]],
+        )
+        np.testing.assert_allclose(found * step, moved, rtol=0.0, atol=1e-10 * float(np.abs(place).max()))
