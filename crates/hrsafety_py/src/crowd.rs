@@ -252,6 +252,13 @@ impl CrowdWorld {
     }
 }
 
+impl CrowdWorld {
+    /// As the core has it.
+    pub fn core(&self) -> &vff_core::crowd::CrowdWorld {
+        &self.core
+    }
+}
+
 /// Fields of what was recorded.
 fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, PyDict>> {
     let fields = Fields::new(py);

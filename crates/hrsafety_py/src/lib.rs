@@ -17,6 +17,7 @@ mod episode;
 mod errors;
 mod falsify;
 mod gains;
+mod gym;
 mod impact;
 mod keywords;
 mod laws;
@@ -86,6 +87,8 @@ mod _hrsafety {
     use crate::gains::searches::{
         front_hypervolume, gain_front, search_gains, search_gains_globally,
     };
+    #[pymodule_export]
+    use crate::gym::{CrowdEnvironments, environment_words};
     #[pymodule_export]
     use crate::impact::cylinder::CylinderController;
     #[pymodule_export]

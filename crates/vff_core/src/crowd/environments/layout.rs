@@ -2,6 +2,7 @@
 
 use numeric::random::Stream;
 
+use crate::crowd::circle;
 use crate::crowd::world::CrowdWorld;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
@@ -14,17 +15,6 @@ const PLACES: u64 = 102 << 48;
 
 /// Most draws of a place.
 const MOST_DRAWS: usize = 100_000;
-
-/// People on a circle who walk to the opposite point, as in the simulator of `CrowdNav`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    /// Radius of the circle, in m.
-    pub radius: f64,
-    /// Half the side of the square in which places are disturbed, in m.
-    pub noise: f64,
-    /// Least distance of the surfaces at starts and goals, in m.
-    pub spacing: f64,
-}
 
 /// A rectangle in which people start anywhere without touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +32,8 @@ pub struct Area {
 pub enum Layout {
     /// All start where the world says; what it draws itself, speeds and sources, differs.
     Fixed,
-    /// Starts and goals are drawn.
-    Circle(Circle),
+    /// Starts and goals are drawn on a circle, see [`circle`].
+    Circle,
     /// Starts are drawn.
     Area(Area),
 }
@@ -63,11 +53,10 @@ impl Layout {
     /// # Errors
     /// There is no room for everybody.
     pub fn draw(&self, world: &mut CrowdWorld) -> Result<()> {
-        let mut stream = Stream::new(world.seed, PLACES);
         match self {
             Self::Fixed => Ok(()),
-            Self::Circle(circle) => circle.draw(world, &mut stream),
-            Self::Area(area) => area.draw(world, &mut stream),
+            Self::Circle => draw_circle(world),
+            Self::Area(area) => area.draw(world, &mut Stream::new(world.seed, PLACES)),
         }
     }
 }
@@ -81,56 +70,19 @@ fn no_room(person: usize) -> Failure {
     .mended_by("take fewer or smaller people, or a larger layout")
 }
 
-impl Circle {
-    fn draw(&self, world: &mut CrowdWorld, stream: &mut Stream) -> Result<()> {
-        for person in 0..world.people.len() {
-            let mut draws = 0;
-            let (start, goal) = loop {
-                let (sin, cos) = (std::f64::consts::TAU * stream.unit()).sin_cos();
-                let noise = Point::new(
-                    stream.uniform(-self.noise, self.noise),
-                    stream.uniform(-self.noise, self.noise),
-                );
-                let start = Point::new(cos, sin) * self.radius + noise;
-                if self.is_free(world, person, start) {
-                    break (start, -start);
-                }
-                draws += 1;
-                if draws == MOST_DRAWS {
-                    return Err(no_room(person));
-                }
-            };
-            let drawn = &mut world.people[person];
-            drawn.start = start.into();
-            drawn.traits.route.points.clear();
-            drawn.traits.route.points.push(goal.into());
-        }
-        Ok(())
+/// Draws starts and goals on the circle.
+fn draw_circle(world: &mut CrowdWorld) -> Result<()> {
+    let starts = circle::starts(world.seed, world.people.len());
+    if starts.len() < world.people.len() {
+        return Err(no_room(starts.len()));
     }
-
-    /// Whether a start and the goal opposite to it are far enough from those of everybody before.
-    fn is_free(&self, world: &CrowdWorld, person: usize, start: Point) -> bool {
-        let radius = world.people[person].traits.radius;
-        let apart = |place: [f64; 2], other: f64, mine: Point| {
-            (Point::from(place) - mine).norm() >= radius + other + self.spacing
-        };
-        let robots = world.robots.iter().all(|robot| {
-            apart(robot.start, robot.radius(), start)
-                && apart(robot.goal, robot.radius(), -start)
-                && apart(robot.goal, robot.radius(), start)
-        });
-        robots
-            && world.people[..person].iter().all(|other| {
-                let size = other.traits.radius;
-                apart(other.start, size, start)
-                    && other
-                        .traits
-                        .route
-                        .points
-                        .iter()
-                        .all(|goal| apart(*goal, size, -start) && apart(*goal, size, start))
-            })
+    for (drawn, start) in world.people.iter_mut().zip(starts) {
+        drawn.start = start;
+        let goal = start.map(std::ops::Neg::neg);
+        drawn.traits.route.points.clear();
+        drawn.traits.route.points.push(goal);
     }
+    Ok(())
 }
 
 impl Area {

@@ -8,7 +8,7 @@ mod observation;
 mod one;
 mod settings;
 
-pub use layout::{Area, Circle, Layout, seed_of};
+pub use layout::{Area, Layout, seed_of};
 pub use observation::{BOUND, RANGE};
 pub use one::{Environment, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};

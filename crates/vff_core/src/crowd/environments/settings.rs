@@ -2,7 +2,7 @@
 
 use crate::crowd::environments::Layout;
 use crate::crowd::world::CrowdWorld;
-use crate::error::{Failure, Given, Result, at_most, finite, not_negative, positive};
+use crate::error::{Failure, Given, Result, at_most, finite, positive};
 
 /// Most people and lidar rays of an observation.
 const MOST_SEEN: usize = 10_000;
@@ -95,11 +95,6 @@ impl Settings {
         at_most("lidar", self.rays, MOST_SEEN)?;
         finite("progress", self.rewards.progress)?;
         finite("step_reward", self.rewards.step)?;
-        if let Layout::Circle(circle) = &self.layout {
-            positive("layout.radius", circle.radius)?;
-            not_negative("layout.noise", circle.noise)?;
-            not_negative("layout.spacing", circle.spacing)?;
-        }
         Ok(Self { world, ..self })
     }
 
