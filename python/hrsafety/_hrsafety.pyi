@@ -19,6 +19,7 @@ __all__ = [
     "Camera",
     "ConstrainedHead",
     "Converter",
+    "CrowdEnvironments",
     "CrowdEpisode",
     "CrowdModel",
     "CrowdPerson",
@@ -105,6 +106,7 @@ __all__ = [
     "drop_trajectory",
     "effective_one_joint",
     "effective_two_joints",
+    "environment_words",
     "evaluate",
     "fit_open_loop",
     "fit_static",
@@ -2006,6 +2008,32 @@ def crowd_metrics(
 
 def crowd_world_metrics(**given: object) -> dict[str, npt.NDArray[Any]]:
     """Return the metrics of a world, in columns of one row."""
+
+# ---- environments for learners --------------------------------------------------------------
+
+def environment_words() -> tuple[list[str], float, float]:
+    """Return words for states of an episode, the bound of observations and the range of the lidar."""
+
+@final
+class CrowdEnvironments:
+    """Environments side by side."""
+
+    def __new__(cls, world: CrowdWorld, count: int, seed: int, threads: int | None, **given: object) -> Self: ...
+    def size(self) -> int:
+        """Return how many numbers an observation has."""
+
+    def reset(
+        self, seeds: Sequence[int | None], mask: npt.NDArray[np.bool_], arrays: Mapping[str, npt.NDArray[Any]]
+    ) -> None:
+        """Start episodes, where the mask says so if there is one."""
+
+    def step(self, actions: _Array, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Step all of them, into arrays of the caller."""
+
+    def places(
+        self, index: int
+    ) -> tuple[tuple[_Pair, float], list[tuple[_Pair, float]], list[tuple[_Pair, float]]] | None:
+        """Return positions and radii of the robot, the people and the other robots of one of them."""
 
 # ---- separation -----------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hrsafety import datasets, scenarios
+from hrsafety import datasets
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics import declared
@@ -105,7 +105,9 @@ def test_a_run_is_scored_with_the_people_and_walls_of_its_scenario() -> None:
 
 
 def test_a_run_after_a_reference_has_no_scenario() -> None:
-    run = nav.tracking.track(nav.tracking.FullSpeedTracking(), nav.tracking.LineReference(start=(0.0, 0.0)), duration=1.0)
+    run = nav.tracking.track(
+        nav.tracking.FullSpeedTracking(), nav.tracking.LineReference(start=(0.0, 0.0)), duration=1.0
+    )
     with pytest.raises(InvalidParameterError, match="be a run in a scenario"):
         nav.metrics.evaluate(run)
 
@@ -113,7 +115,9 @@ def test_a_run_after_a_reference_has_no_scenario() -> None:
 def test_a_person_of_a_recording_is_taken_for_the_robot() -> None:
     time = np.repeat(np.arange(5.0), 2)
     person = np.tile([3, 8], 5)
-    places = np.stack([np.column_stack([np.arange(5.0), np.zeros(5)]), np.column_stack([np.arange(5.0), np.ones(5)])], 1)
+    places = np.stack(
+        [np.column_stack([np.arange(5.0), np.zeros(5)]), np.column_stack([np.arange(5.0), np.ones(5)])], 1
+    )
     walk = datasets.Recording(time_s=time, person=person, position=places.reshape(-1, 2))
     found = nav.metrics.evaluate(walk, robot=3, step=0.4, robot_radius=0.25)
     assert found.arrived

@@ -40,7 +40,9 @@ def test_names_of_a_namespace_are_found_from_the_package(package: ModuleType, na
     assert getattr(package, name) is namespace
     assert namespace.__all__
     for each in namespace.__all__:
-        assert getattr(package, each) is getattr(namespace, each), each
+        # `nav.evaluate` scores a law in a scenario, `nav.metrics.evaluate` a run of any origin.
+        if (name, each) != ("metrics", "evaluate"):
+            assert getattr(package, each) is getattr(namespace, each), each
 
 
 @pytest.mark.parametrize(

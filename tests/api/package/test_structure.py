@@ -29,7 +29,7 @@ PACKAGE = REPOSITORY / "python" / "hrsafety"
 CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
-NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards")
+NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards", "gym")
 COMPUTING = {
     *("simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"),
     *("optimize_gains", "pareto_front", "gain_sensitivity", "gain_gradient"),
@@ -196,6 +196,8 @@ def test_users_of_the_native_module_do_not_import_each_other(path: Path) -> None
         own.append("navigation")  # the experiments take sensors from there; nothing goes the other way
     if own == ["arms"]:
         own.append("standards")  # forces along a motion are held against limits; nothing goes the other way
+    if own == ["gym"]:
+        own.append("navigation")  # environments are made of its worlds; nothing goes the other way
     others = [f"hrsafety.{user}" for user in NATIVE_USERS if own and user not in own]
     assert not [name for name in imported(path) if any(inside(name, other) for other in others)]
 
@@ -244,7 +246,7 @@ def test_plotting_computes_nothing_reactive(path: Path) -> None:
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
-    optional |= {"jinja2", "markupsafe", "rich", "shtab"}
+    optional |= {"jinja2", "markupsafe", "rich", "shtab", "gymnasium"}
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
     parts += ("arms", "contact", "standards", "benchmarks")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])

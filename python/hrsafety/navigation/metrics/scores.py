@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, instance, number, numbers, pair, sequence, thread_count
+from hrsafety._arguments import Array, callback, number, numbers, pair, points, sequence, thread_count
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
@@ -191,7 +191,7 @@ def evaluate(
     return EpisodeMetrics({name: values[0].item() for name, values in found.items()})
 
 
-def _episode(run: object, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
+def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
     beside = {} if people is None else {"people": people}
     if isinstance(run, (Episode, Trajectory)) or hasattr(run, "time_s"):
         if beside:
@@ -204,7 +204,7 @@ def _episode(run: object, people: npt.ArrayLike | None, options: dict[str, Any])
         if isinstance(run, Trajectory):
             return Episode.from_trajectory(run, **options)
         return Episode.from_recording(run, **options)
-    return Episode(position=run, **beside, **options)  # type: ignore[arg-type]  # the check follows
+    return Episode(position=run, **beside, **options)
 
 
 def evaluate_many(
@@ -251,8 +251,11 @@ def evaluate_many(
 
 
 def _native(name: str, given: object) -> _hrsafety.CrowdEpisode:
-    known = instance(name, given, Episode, Trajectory)
-    return (Episode.from_trajectory(known) if isinstance(known, Trajectory) else known)._native
+    if isinstance(given, Trajectory):
+        return Episode.from_trajectory(given)._native
+    if not isinstance(given, Episode):
+        raise InvalidParameterError(name, "be an Episode or Trajectory", given)
+    return given._native
 
 
 def evaluate_world(
@@ -313,7 +316,7 @@ def evaluate_world(
     found = _hrsafety.crowd_world_metrics(
         people=places.reshape(-1, 2),
         robots=machines.reshape(-1, 2),
-        person_goals=_places("person_goals", [person_goals])[0] if np.size(person_goals) else np.empty((0, 2)),
+        person_goals=points("person_goals", person_goals) if np.size(person_goals) else np.empty((0, 2)),
         robot_radius=np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
         step=number("step", step),
         time_limit=number("time_limit", time_limit),

@@ -29,10 +29,11 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
     scene, step = run.scenario, float(run.time[1] - run.time[0])
     obstacles = scene.obstacles
     people = [index for index, each in enumerate(obstacles) if isinstance(each, Human)]
+    radii = [each.radius for each in obstacles if isinstance(each, Human)]
     return {
         "position": _whole_last_step(run.time, run.position, step),
         "people": _whole_last_step(run.time, run.obstacle_position[:, people], step),
-        "person_radius": np.array([obstacles[index].radius for index in people]),
+        "person_radius": np.array(radii),
         "walls": [each for each in obstacles if isinstance(each, (Disc, Rectangle))],
         "step": step,
         "goal": scene.goal,

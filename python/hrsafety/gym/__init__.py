@@ -1,0 +1,32 @@
+"""Environments for learners, for Gymnasium: one robot among people that react, single or a thousand side by side.
+
+Importing this module registers ``hrsafety/CircleCrossing-v0``, ``hrsafety/Corridor-v0``, ``hrsafety/Crossing-v0`` and
+``hrsafety/Bottleneck-v0``; ``gymnasium.make("hrsafety.gym:hrsafety/CircleCrossing-v0")`` imports it by itself. It needs
+``pip install hrsafety[gym]``.
+"""
+
+import importlib.util
+
+from hrsafety.errors import MissingExtraError
+
+if importlib.util.find_spec("gymnasium") is None:
+    raise MissingExtraError("environments for learners need gymnasium: pip install hrsafety[gym]")
+
+from hrsafety.gym.registration import IDS, register
+from hrsafety.gym.single import CrowdEnv
+from hrsafety.gym.vector import CrowdVectorEnv
+from hrsafety.gym.worlds import Task, bottleneck, circle_crossing, corridor, crossing
+
+__all__ = [
+    "IDS",
+    "CrowdEnv",
+    "CrowdVectorEnv",
+    "Task",
+    "bottleneck",
+    "circle_crossing",
+    "corridor",
+    "crossing",
+    "register",
+]
+
+register()

@@ -1,0 +1,170 @@
+"""One environment with the interface of Gymnasium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from hrsafety._arguments import checked_seed
+from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
+from hrsafety.gym.pictures import picture
+from hrsafety.gym.worlds import Task
+from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.metrics.declared import METRICS
+
+__all__ = ["CrowdEnv"]
+
+RENDER_MODES = ("rgb_array",)
+
+
+class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
+    """A robot that a learner drives among people.
+
+    Parameters
+    ----------
+    world : World or Task
+        Any world with a robot, or the task of a registered environment. The first robot is driven; the others
+        follow their laws.
+    render_mode : {"rgb_array"} or None
+        Whether pictures are asked for.
+    action : {"velocity", "acceleration", "unicycle"}
+        What an action in [-1, 1] x [-1, 1] means: a velocity as a share of the greatest speed, shortened to it; an
+        acceleration; or a speed, backward below 0, and a turn rate.
+    observation : {"flat", "dict"}
+        One array, or ``robot``, ``people``, ``mask`` and ``lidar``.
+    frame : {"world", "goal"}
+        Axes of all vectors; ``"goal"``: the x axis points from the robot to its goal.
+    people : int
+        How many of the nearest people are seen.
+    lidar : int
+        Number of rays of up to 10 m, counterclockwise from the x axis.
+    progress, step_reward : float
+        Reward for each meter that the goal comes nearer, and for each step.
+    max_acceleration : float or None
+        In m/s^2; that of the robot when ``None``.
+    max_turn_rate : float
+        In rad/s.
+    metrics : bool
+        Whether ``info["metrics"]`` has the social metrics of an episode at its end.
+    copy : bool
+        Whether observations are new arrays; else the next step overwrites them.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range or a word is unknown.
+    MissingExtraError
+        If a picture is asked for without matplotlib.
+
+    Notes
+    -----
+    An observation holds, of the robot: position of the goal from it, velocity, greatest speed, share of the time
+    limit; of each person: position and velocity relative to the robot, distance of the surfaces; zeros where
+    there is nobody. Vectors are clipped to 100.
+
+    The reward is that of CrowdNav: 1 for arrival, -0.25 for a contact, else -0.5 times what the least distance to
+    the people within the step lacks to 0.2 m, times the step.
+
+    Examples
+    --------
+    >>> import gymnasium, hrsafety.gym
+    >>> env = gymnasium.make("hrsafety/CircleCrossing-v0", lidar=16)
+    >>> observation, info = env.reset(seed=3)
+    >>> observation.shape, info["outcome"]
+    ((47,), 'running')
+    """
+
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  # as Gymnasium has it
+
+    def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
+        """Make the environment."""
+        if render_mode is not None and render_mode not in RENDER_MODES:
+            raise ValueError(f"render_mode must be None or one of {RENDER_MODES}, got {render_mode!r}")
+        self._all = Environments(world, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
+        self.render_mode = render_mode
+        self.action_space: spaces.Space[Any] = self._all.action_space()
+        self.observation_space = self._all.observation_space()
+        self._seeded = False
+
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Start an episode: the first one of a seed, else the next one.
+
+        Parameters
+        ----------
+        seed : int or None
+            Seed of this episode and those that follow.
+        options : mapping or None
+            Not used.
+
+        Returns
+        -------
+        observation : ndarray or dict
+            What the robot sees.
+        info : dict
+            Outcome and clearance.
+        """
+        super().reset(seed=seed, options=None if options is None else dict(options))
+        if seed is None and not self._seeded:
+            seed = int(self.np_random.integers(2**63))
+        self._seeded = True
+        self._all.reset([None if seed is None else checked_seed("seed", seed)], None)
+        return self._observation(), self._info()
+
+    def step(self, action: npt.ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Drive the robot for one control period.
+
+        Parameters
+        ----------
+        action : array_like, shape (2,)
+            Numbers from -1 to 1; larger ones count as these.
+
+        Returns
+        -------
+        observation : ndarray or dict
+            What the robot sees.
+        reward : float
+            The reward.
+        terminated, truncated : bool
+            Whether the robot has arrived or touched somebody; whether the time is over.
+        info : dict
+            ``outcome``, ``clearance`` in m, and ``metrics`` at the end.
+        """
+        self._all.step(np.asarray(action)[None])
+        state = int(self._all.states[0])
+        ended = state != RUNNING
+        info = self._info()
+        if ended and self._all.metrics:
+            info["metrics"] = scores(self._all.scores[0])
+        reward = float(self._all.rewards[0])
+        return self._observation(), reward, ended and state != TIMED_OUT, state == TIMED_OUT, info
+
+    def _observation(self) -> Any:
+        found = self._all.shown(self._all.observations, self._all.seen[:, 0])
+        return {name: rows[0] for name, rows in found.items()} if isinstance(found, dict) else found[0]
+
+    def _info(self) -> dict[str, Any]:
+        return {"outcome": str(OUTCOMES[self._all.states[0]]), "clearance": float(self._all.clearances[0])}
+
+    def render(self) -> Frame | None:
+        """Return a picture of the world, if pictures are asked for.
+
+        Returns
+        -------
+        ndarray of uint8, shape (height, width, 3), or None
+            The picture.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn('render() needs render_mode="rgb_array" when the environment is made')
+            return None
+        return picture(self._all, 0)
+
+
+def scores(row: npt.NDArray[np.float64]) -> dict[str, float | int | bool]:
+    """Return a row of metrics by name, flags and counts as such."""
+    kinds = {"number": float, "count": int, "flag": bool}
+    return {metric.name: kinds[metric.kind](value) for metric, value in zip(METRICS.values(), row, strict=True)}

@@ -1,0 +1,245 @@
+"""Environments for learners: the checks of Gymnasium, one against many, episodes, rewards, pictures."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+from hrsafety import gym
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError, ShapeError
+
+CIRCLE = "hrsafety/CircleCrossing-v0"
+OPTIONS: list[dict[str, Any]] = [
+    {},
+    {"observation": "dict", "lidar": 8, "frame": "goal"},
+    {"action": "unicycle", "people": 2, "progress": 0.1},
+    {"action": "acceleration", "metrics": False, "step_reward": -0.01},
+]
+
+
+def one_person(**options: Any) -> gym.CrowdEnv:
+    """Return a robot that starts 2 m from its goal, and a person who stands aside."""
+    person = nav.crowd.Person(start=(1.0, 1.0), radius=0.3)
+    robot = nav.crowd.CrowdRobot(
+        start=(0.0, 0.0), goal=(2.0, 0.0), robot=nav.HolonomicRobot(radius=0.3, max_speed=1.0), control_period=0.25
+    )
+    world = nav.crowd.World(people=[person], robots=[robot], step=0.25, time_limit=5.0)
+    return gym.CrowdEnv(world, **options)
+
+
+def same(found: Any, expected: Any) -> None:
+    """Assert that two trees of dictionaries, arrays and values are the same, bit for bit."""
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys()
+        for name in expected:
+            same(found[name], expected[name])
+    elif isinstance(expected, np.ndarray) and expected.dtype == object:
+        assert found.shape == expected.shape
+        for one, other in zip(found, expected, strict=True):
+            same(one, other)
+    elif isinstance(expected, np.ndarray):
+        np.testing.assert_array_equal(found, expected, strict=True)
+    else:
+        assert found == expected
+
+
+@pytest.mark.parametrize("name", gym.IDS)
+def test_a_registered_environment_passes_the_checks_without_a_warning(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("options", OPTIONS[1:], ids=lambda options: ",".join(map(str, options)))
+def test_options_pass_the_checks_without_a_warning(options: dict[str, Any]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gymnasium.make(CIRCLE, **options).unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+@pytest.mark.parametrize("options", OPTIONS[:3], ids=lambda options: ",".join(map(str, options)) or "default")
+def test_many_environments_are_single_ones_side_by_side(mode: AutoresetMode, options: dict[str, Any]) -> None:
+    count = 5
+    many = gymnasium.make_vec(CIRCLE, num_envs=count, autoreset_mode=mode, threads=1, **options)
+    single = [lambda: gymnasium.make(CIRCLE, **options) for _ in range(count)]
+    each = SyncVectorEnv(single, autoreset_mode=mode)
+    same(many.reset(seed=7), each.reset(seed=7))
+    assert many.observation_space == each.observation_space
+    generator = np.random.default_rng(1)
+    ends = 0
+    for _ in range(130):
+        actions = generator.uniform(-1.0, 1.0, (count, 2)).astype(np.float32)
+        found, expected = many.step(actions), each.step(actions)
+        same(found, expected)
+        ended = found[2] | found[3]
+        ends += int(ended.sum())
+        if mode is AutoresetMode.DISABLED and ended.any():
+            same(many.reset(options={"reset_mask": ended}), each.reset(options={"reset_mask": ended}))
+    assert ends >= count
+
+
+def test_neither_their_number_nor_threads_change_a_bit() -> None:
+    actions = np.random.default_rng(2).uniform(-1.0, 1.0, (40, 64, 2))
+    runs = []
+    for count, threads in ((64, 1), (64, 2), (64, 7), (16, 1)):
+        envs = gymnasium.make_vec(CIRCLE, num_envs=count, threads=threads)
+        rows = [envs.reset(seed=11)[0][:16]]
+        rows += [envs.step(each[:count])[0][:16] for each in actions]
+        runs.append(np.array(rows))
+    for run in runs[1:]:
+        np.testing.assert_array_equal(run, runs[0])
+
+
+def test_episodes_differ_and_a_seed_starts_them_again() -> None:
+    env = gymnasium.make(CIRCLE)
+    first, _ = env.reset(seed=5)
+    second, _ = env.reset()
+    again, _ = env.reset(seed=5)
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, second)
+    np.testing.assert_array_equal(env.reset()[0], second)
+
+
+def test_an_observation_holds_what_it_says() -> None:
+    env = one_person(people=2, lidar=4)
+    observation, info = env.reset(seed=0)
+    robot, people, lidar = observation[:6], observation[6:16].reshape(2, 5), observation[16:]
+    np.testing.assert_allclose(robot, [2.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    np.testing.assert_allclose(people[0], [1.0, 1.0, 0.0, 0.0, np.sqrt(2.0) - 0.6], rtol=1e-6)
+    np.testing.assert_array_equal(people[1], 0.0)
+    np.testing.assert_array_equal(lidar, 10.0)
+    assert info == {"outcome": "running", "clearance": np.inf}
+    observation, *_ = env.step([1.0, 0.0])
+    np.testing.assert_allclose(observation[:6], [1.75, 0.0, 1.0, 0.0, 1.0, 0.05], atol=1e-6)
+    np.testing.assert_allclose(observation[6:10], [0.75, 1.0, -1.0, 0.0], atol=1e-6)
+
+
+def test_axes_of_the_goal_turn_all_vectors() -> None:
+    env = one_person(frame="goal", lidar=4)
+    env.reset(seed=0)
+    for _ in range(2):
+        observation, *_ = env.step([0.0, 1.0])
+    assert observation[1] == pytest.approx(0.0, abs=1e-6)
+    assert observation[0] == pytest.approx(np.hypot(2.0, 0.5), rel=1e-6)
+    x, y = observation[6:8]
+    assert np.hypot(x, y) == pytest.approx(np.hypot(1.0, 0.5), rel=1e-6)
+    assert observation[2] < 0.0 < observation[3]
+
+
+def test_arrival_contact_and_time_are_rewarded_as_they_should_be() -> None:
+    env = one_person(progress=0.1)
+    env.reset(seed=0)
+    rewards, ended = [], False
+    while not ended:
+        _, reward, terminated, truncated, info = env.step([1.0, 0.0])
+        rewards.append(reward)
+        ended = terminated or truncated
+    assert info["outcome"] == "arrived"
+    assert sum(rewards) == pytest.approx(1.0 + 0.1 * 1.75)
+    assert info["metrics"]["success"] is True
+    assert info["metrics"]["arrival_time"] == pytest.approx(1.75)
+    env.reset(seed=0)
+    for _ in range(6):
+        _, reward, terminated, truncated, info = env.step([1.0, 1.0])
+        if terminated:
+            break
+    assert info["outcome"] == "collided"
+    assert reward == pytest.approx(-0.25, abs=0.05)
+    assert info["clearance"] < 0.0
+    env.reset(seed=0)
+    for _ in range(20):
+        _, reward, terminated, truncated, info = env.step([0.0, 0.0])
+    assert (terminated, truncated, info["outcome"]) == (False, True, "timed_out")
+
+
+def test_discomfort_costs_what_is_lacking_to_the_distance() -> None:
+    env = one_person()
+    env.reset(seed=0)
+    env.step([0.4, 1.0])
+    _, reward, *_, info = env.step([0.4, 1.0])
+    gap = info["clearance"]
+    assert 0.0 < gap < 0.2
+    assert reward == pytest.approx(-0.5 * (0.2 - gap) * 0.25)
+
+
+def test_an_unseen_robot_is_run_over() -> None:
+    outcomes = {}
+    for visible in (True, False):
+        envs = gymnasium.make_vec(CIRCLE, num_envs=32, visible=visible, autoreset_mode="Disabled")
+        envs.reset(seed=0)
+        for _ in range(40):
+            *_, infos = envs.step(np.zeros((32, 2)))
+            ended = np.isin(infos["outcome"].astype(str), ["collided", "timed_out"])
+            if ended.any():
+                outcomes.setdefault(visible, 0)
+                outcomes[visible] += int((infos["outcome"] == "collided").sum())
+                envs.reset(options={"reset_mask": ended})
+    assert outcomes.get(True, 0) < outcomes[False]
+
+
+def test_arrays_are_new_unless_they_are_to_be_shared() -> None:
+    for copy in (True, False):
+        envs = gymnasium.make_vec(CIRCLE, num_envs=3, copy=copy)
+        first, _ = envs.reset(seed=0)
+        second, *_ = envs.step(np.ones((3, 2)))
+        assert (first is second) is not copy
+
+
+def test_a_bad_action_is_named() -> None:
+    envs = gymnasium.make_vec(CIRCLE, num_envs=3)
+    envs.reset(seed=0)
+    with pytest.raises(ShapeError, match=r"action .*\(3, 2\)"):
+        envs.step(np.zeros((2, 2)))
+    actions = np.zeros((3, 2))
+    actions[1, 0] = np.nan
+    with pytest.raises(InvalidParameterError, match=r"action\[1\] must be finite"):
+        envs.step(actions)
+
+
+def test_bad_options_are_named() -> None:
+    for options, message in (
+        ({"num_envs": 0}, "num_envs must"),
+        ({"action": "velocty"}, "action must be"),
+        ({"frame": "robot"}, "frame must be"),
+        ({"observation": "dcit"}, "observation must be"),
+        ({"lidar": -1}, "lidar must"),
+        ({"max_turn_rate": 0.0}, "max_turn_rate must"),
+        ({"progress": np.nan}, "progress must be finite"),
+        ({"threads": 0}, "threads must"),
+    ):
+        with pytest.raises(InvalidParameterError, match=message):
+            gym.CrowdVectorEnv(gym.circle_crossing(), **options)
+    with pytest.raises(InvalidParameterError, match="hold a robot"):
+        gym.CrowdEnv(nav.crowd.World())
+
+
+def test_a_mask_is_needed_where_episodes_have_ended() -> None:
+    envs = gym.CrowdVectorEnv(one_person().unwrapped._all.task, num_envs=2, autoreset_mode="Disabled")
+    envs.reset(seed=0)
+    for _ in range(20):
+        envs.step(np.zeros((2, 2)))
+    with pytest.raises(InvalidParameterError, match=r"environment\[0\] must be under way"):
+        envs.step(np.zeros((2, 2)))
+    for mask in (np.zeros(2, dtype=bool), np.ones(3, dtype=bool), [True, False]):
+        with pytest.raises(InvalidParameterError, match="reset_mask must"):
+            envs.reset(options={"reset_mask": mask})
+
+
+@pytest.mark.parametrize("name", gym.IDS)
+def test_a_picture_shows_the_world(name: str) -> None:
+    env = gymnasium.make(name, render_mode="rgb_array")
+    env.reset(seed=1)
+    picture = env.render()
+    assert isinstance(picture, np.ndarray)
+    assert picture.dtype == np.uint8
+    assert picture.shape[2] == 3
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
+    env.close()
