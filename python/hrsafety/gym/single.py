@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from hrsafety._arguments import checked_seed
+from hrsafety._arguments import checked_seed, numbers
+from hrsafety.errors import ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.worlds import Task
@@ -134,7 +135,10 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         info : dict
             ``outcome``, ``clearance`` in m, and ``metrics`` at the end.
         """
-        self._all.step(np.asarray(action)[None])
+        given = numbers("action", action)
+        if given.shape != (2,):
+            raise ShapeError("action", "(2,)", given.shape)
+        self._all.step(given[None])
         state = int(self._all.states[0])
         ended = state != RUNNING
         info = self._info()
