@@ -106,7 +106,8 @@ def _worlds(files: tuple[Stamped, ...]) -> dict[int, tuple[Mapping[str, Any], fl
                 raise InvalidParameterError(name, "be positive and finite", optimum)
             found[each["id"]] = loaded, optimum
     if not found:
-        raise InvalidParameterError("data", "hold BARN worlds in JSON", Shown(", ".join(file.name for file, *_ in files)))
+        names = ", ".join(file.name for file, *_ in files)
+        raise InvalidParameterError("data", "hold BARN worlds in JSON", Shown(names))
     return dict(sorted(found.items()))
 
 
@@ -135,9 +136,8 @@ def world_scene(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
         rest_time=LIMIT,
         arrival_tolerance=1.0,
     )
-    law = case.entry.built(
-        person_speed=case.person_speed, map=nav.StaticMap.from_barn(worlds[world][0], world), guide=nav.maps.Guide(box=BOX)
-    )
+    walls = nav.StaticMap.from_barn(worlds[world][0], world)
+    law = case.entry.built(person_speed=case.person_speed, map=walls, guide=nav.maps.Guide(box=BOX))
     return place, law
 
 
