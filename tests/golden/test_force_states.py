@@ -38,7 +38,7 @@ def assert_equal(actual: Any, expected: Any, what: str) -> None:
     assert difference <= RELATIVE * float(np.linalg.norm(np.asarray(expected))), what
 
 
-def assert_is_the_state(terms: nav.ForceTerms | pf.Evaluation, state: dict[str, Any]) -> None:
+def assert_is_the_state(terms: nav.laws.ForceTerms | pf.Evaluation, state: dict[str, Any]) -> None:
     assert_equal(terms.attractive, state["attractive"], "attractive")
     for i in range(len(state["obstacles"])):
         assert_equal(terms.repulsive[i], state["repulsive"][i], f"repulsive {i}")

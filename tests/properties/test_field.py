@@ -71,7 +71,7 @@ def transformed(
     return State(point(state.position), free(state.velocity), point(state.goal), obstacles)
 
 
-def terms_at(law: pf.Law, state: State, limits: pf.Limits = pf.ROBOT) -> nav.ForceTerms:
+def terms_at(law: pf.Law, state: State, limits: pf.Limits = pf.ROBOT) -> nav.laws.ForceTerms:
     scenario = as_package.scenario(state.goal, state.obstacles, limits)
     return nav.force_terms(as_package.law(law), scenario, position=state.position, velocity=state.velocity)
 

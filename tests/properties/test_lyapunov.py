@@ -36,10 +36,10 @@ ROUNDING = 1e-12  # of the terms that cancel in the derivative
 class Sample(NamedTuple):
     """Reported and numerical derivative at one state."""
 
-    reported: nav.Lyapunov
+    reported: nav.laws.Lyapunov
     numerical: float
     switches: bool
-    terms: nav.ForceTerms
+    terms: nav.laws.ForceTerms
 
 
 def back_dated(body: pf.Round | pf.Box) -> pf.Round | pf.Box:
@@ -56,7 +56,7 @@ def sample(law: pf.Law, state: State, mass: float = pf.ROBOT.mass) -> Sample:
     field = as_package.law(law)
     scenario = as_package.scenario(state.goal, [back_dated(body) for body in state.obstacles])
 
-    def terms(y: np.ndarray, time: float) -> nav.ForceTerms:
+    def terms(y: np.ndarray, time: float) -> nav.laws.ForceTerms:
         return nav.force_terms(field, scenario, position=y[:2], velocity=y[2:], time=time)
 
     def rate(y: np.ndarray, time: float) -> np.ndarray:

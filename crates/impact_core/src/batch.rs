@@ -7,8 +7,8 @@ use std::ops::Deref;
 use numeric::threads::{Interrupted, on_threads, try_each};
 
 use crate::columns::Columns;
-use crate::criteria::Searches;
 use crate::error::{Failure, Given, Result};
+use crate::metrics::Searches;
 use crate::metrics::{Criterion, Loads, MetricOptions, Metrics, Status};
 use crate::parameters::GRAVITY;
 

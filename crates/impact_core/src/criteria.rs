@@ -4,7 +4,7 @@ use crate::error::{Result, finite};
 use crate::fast;
 use crate::metrics::{
     CONSTRAINED_HORIZON, FREE_HORIZON, HELD_WINDOW, INJURY_WINDOWS, Loads, MetricOptions, Metrics,
-    Status,
+    Searches, Status,
 };
 use crate::motion::{Motion, cell_length};
 use crate::parameters::{System, Target};
@@ -47,41 +47,6 @@ pub struct Findings {
     pub manipulator_power: Peak,
     /// Power of compression, in W.
     pub foam_power: Peak,
-}
-
-/// What is searched on a response besides its peaks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Searches {
-    /// Mean acceleration.
-    pub mean: bool,
-    /// Windows of the injury criteria.
-    pub injury: [bool; 2],
-    /// Windows of 3 ms.
-    pub held: bool,
-    /// Powers.
-    pub powers: bool,
-}
-
-impl Searches {
-    /// Everything.
-    pub const ALL: Self = Self {
-        mean: true,
-        injury: [true; 2],
-        held: true,
-        powers: true,
-    };
-
-    /// Whether nothing but peaks is wanted.
-    #[must_use]
-    pub fn only_peaks(self) -> bool {
-        !(self.mean || self.windows() || self.powers)
-    }
-
-    /// Whether any window is wanted.
-    #[must_use]
-    pub fn windows(self) -> bool {
-        self.held || self.injury != [false; 2]
-    }
 }
 
 /// A response on which metrics are searched.

@@ -14,6 +14,41 @@ pub const FREE_HORIZON: f64 = 0.2;
 /// Default time over which a constrained impact is looked at, in s.
 pub const CONSTRAINED_HORIZON: f64 = 0.05;
 
+/// What is searched on a response besides its peaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Searches {
+    /// Mean acceleration.
+    pub mean: bool,
+    /// Windows of the injury criteria.
+    pub injury: [bool; 2],
+    /// Windows of 3 ms.
+    pub held: bool,
+    /// Powers.
+    pub powers: bool,
+}
+
+impl Searches {
+    /// Everything.
+    pub const ALL: Self = Self {
+        mean: true,
+        injury: [true; 2],
+        held: true,
+        powers: true,
+    };
+
+    /// Whether nothing but peaks is wanted.
+    #[must_use]
+    pub fn only_peaks(self) -> bool {
+        !(self.mean || self.windows() || self.powers)
+    }
+
+    /// Whether any window is wanted.
+    #[must_use]
+    pub fn windows(self) -> bool {
+        self.held || self.injury != [false; 2]
+    }
+}
+
 /// What is known about a criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Criterion {

@@ -17,7 +17,7 @@ mod side;
 mod space;
 mod windows;
 
-use crate::criteria::Searches;
+use crate::metrics::Searches;
 use crate::series::Plant;
 use apart::apart;
 use modes::{Basis, Motion, Wave};

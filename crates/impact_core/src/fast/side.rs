@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
-use crate::criteria::Searches;
+use crate::metrics::Searches;
 use crate::metrics::{FREE_HORIZON, Loads, MetricOptions, Metrics, Status};
 use crate::parameters::{System, Target};
 use crate::series::Plant;

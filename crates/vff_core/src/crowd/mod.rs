@@ -3,6 +3,7 @@
 //! One file per pedestrian model; [`neighbors`] says who is near whom, [`world`] what there is, and
 //! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
 
+pub mod agent;
 mod batch;
 pub mod circle;
 pub mod collision_free_speed;

@@ -1,6 +1,6 @@
 //! Who is near whom: a uniform grid, or everybody where few are present.
 
-use crate::crowd::pedestrian::{Agent, SHORTEST};
+use crate::crowd::agent::{Agent, SHORTEST};
 use crate::lanes::Vector2;
 
 type Vector = Vector2<f64>;

@@ -1,6 +1,6 @@
 //! What stands among people: polylines, rectangles, discs, by their nearest points.
 
-use crate::crowd::pedestrian::SHORTEST;
+use crate::crowd::agent::SHORTEST;
 use crate::error::{Failure, Given, Result, finite_pair};
 use crate::lanes::Vector2;
 use crate::world::shape::{PlacedShape, Shape, into_axes, out_of_axes};

@@ -1,7 +1,6 @@
 //! Contacts with maps: what stands counts whether or not it is an obstacle of the scenario.
 
 use crate::lanes::{Mask, Planar, Real, Vector2};
-use crate::run::group::AnyLaw;
 use crate::sensing::SensorOptions;
 use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
@@ -27,8 +26,8 @@ impl Maps {
     }
 
     /// The same with what sensors find.
-    pub fn of(scenario: &Scenario, law: Option<&AnyLaw>, sensors: &[SensorOptions]) -> Self {
-        let mut maps = Self::of_law(scenario, law.and_then(|law| law.driven().map()));
+    pub fn of(scenario: &Scenario, known: Option<&StaticMap>, sensors: &[SensorOptions]) -> Self {
+        let mut maps = Self::of_law(scenario, known);
         for sensor in sensors {
             maps.add(sensor.map());
         }
