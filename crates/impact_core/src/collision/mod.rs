@@ -21,6 +21,7 @@ mod region;
 mod run;
 mod statics;
 mod step;
+mod stored;
 #[cfg(test)]
 mod tests;
 

@@ -90,6 +90,21 @@ impl Region {
         }
     }
 
+    /// Work that is stored at a deflection.
+    #[must_use]
+    pub fn stored(&self, deflection: f64) -> f64 {
+        match *self {
+            Self::Rigid => 0.0,
+            Self::Spring { stiffness, cubic } => {
+                let square = deflection * deflection;
+                square * (0.5 * stiffness + 0.25 * cubic * square)
+            }
+            Self::Power { exponent, .. } => {
+                self.force(deflection)[0] * deflection / (exponent + 1.0)
+            }
+        }
+    }
+
     /// Work that is stored under a force.
     #[must_use]
     pub fn work(&self, force: f64) -> f64 {
@@ -99,10 +114,7 @@ impl Region {
                 stiffness,
                 cubic: 0.0,
             } => 0.5 * force * force / stiffness,
-            Self::Spring { stiffness, cubic } => {
-                let square = self.deflection(force).powi(2);
-                square * (0.5 * stiffness + 0.25 * cubic * square)
-            }
+            Self::Spring { .. } => self.stored(self.deflection(force)),
             Self::Power { exponent, .. } => force * self.deflection(force) / (exponent + 1.0),
         }
     }

@@ -1,7 +1,9 @@
 use serde_json::Value;
 
 use super::reading::{collision, pad};
+use super::stored::stored;
 use super::{Body, Collision, Outcome, Region, Status, Wanted, simulate};
+use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Rate, Shape, Unloading};
 
 fn cases() -> Value {
     serde_json::from_str(include_str!("../../../../tests/golden/contact_cases.json")).unwrap()
@@ -135,7 +137,135 @@ fn loads_that_rise_at_the_horizon_say_so() {
 
 #[test]
 fn an_interrupted_collision_is_unfinished() {
-    let found = simulate(&slow(2.0), Wanted::default(), &|| true);
+    let moving = Wanted {
+        nodes: true,
+        ..Wanted::default()
+    };
+    let found = simulate(&slow(2.0), moving, &|| true);
     assert_eq!(found.status, Status::Unfinished);
     assert!(found.peak_force.is_nan() && found.evaluations <= 1);
+}
+
+/// Coverings of every law and shape.
+fn coverings() -> Vec<Covering> {
+    let laws = [
+        Material::Linear { modulus: 2e5 },
+        Material::GibsonAshby(GibsonAshby {
+            modulus: 3e5,
+            plateau: 15e3,
+            lock: 0.9,
+            d: 2.3,
+            m: 1.0,
+        }),
+        Material::Rusch {
+            a: 18e3,
+            p: 0.5,
+            b: 190e3,
+            q: 5.0,
+        },
+        Material::Avalle {
+            plateau: 22e3,
+            modulus: 3e5,
+            m: 0.0,
+            b: 9e3,
+            n: 2.0,
+        },
+    ];
+    let shapes = [
+        Shape::Flat { area: 4e-3 },
+        Shape::Curved {
+            radii: [0.08, 0.05],
+        },
+        Shape::Cylinder {
+            radius: 0.04,
+            length: 0.1,
+        },
+    ];
+    let of = |material: &Material, shape| Covering {
+        material: material.clone(),
+        thickness: 0.02,
+        shape,
+        damping: 0.0,
+        rate: Rate {
+            base: 0.0,
+            slope: 0.0,
+            reference: 1.0,
+        },
+        unloading: Unloading {
+            retained: 1.0,
+            exponent: 1.0,
+        },
+        bottoming: Bottoming {
+            strain: 0.8,
+            stiffness: 1e7,
+        },
+    };
+    laws.iter()
+        .flat_map(|law| shapes.map(|shape| of(law, shape)))
+        .collect()
+}
+
+#[test]
+fn loads_from_stored_energy_are_those_of_the_motion() {
+    let regions = [
+        Region::Rigid,
+        Region::Spring {
+            stiffness: 25e3,
+            cubic: 0.0,
+        },
+        Region::Spring {
+            stiffness: 25e3,
+            cubic: 1e8,
+        },
+        Region::Power {
+            stiffness: 1e6,
+            exponent: 1.5,
+        },
+    ];
+    let moving = Wanted {
+        nodes: true,
+        ..Wanted::default()
+    };
+    let (mut exact, mut all) = (0, 0);
+    for covering in coverings() {
+        let pad = covering.prepared().unwrap();
+        for region in regions {
+            for closing_speed in [0.05, 0.4, 1.5] {
+                let collision = Collision {
+                    robot: Body::free(8.0),
+                    body: Body::free(40.0),
+                    region,
+                    pad: Some(&pad),
+                    closing_speed,
+                    stop: None,
+                    horizon: 2.0,
+                    tolerance: 1e-10,
+                };
+                all += 1;
+                if stored(&collision).is_none() {
+                    continue;
+                }
+                exact += 1;
+                let found = simulate(&collision, moving, &|| false);
+                let last = found.nodes.last().unwrap();
+                let peak =
+                    |of: fn(&super::Node) -> f64| found.nodes.iter().map(of).fold(0.0, f64::max);
+                for (name, value, solved) in [
+                    ("release", found.release_time, last.time),
+                    ("force", found.peak_force, peak(|node| node.force)),
+                    (
+                        "compression",
+                        found.peak_covering_compression,
+                        peak(|node| node.covering_compression),
+                    ),
+                    ("rebound", found.rebound_speed, -last.closing_speed),
+                ] {
+                    let error = (value / solved - 1.0).abs();
+                    let what = (name, region, closing_speed, &pad.covering.material);
+                    assert!(error < 2e-7, "{what:?}: {value} {solved}");
+                }
+            }
+        }
+    }
+    assert!(2 * exact > all, "{exact} of {all}");
 }
