@@ -117,7 +117,13 @@ def test_collisions(benchmark: Any) -> None:
             def collide(material: Any = material, rated: Any = rated, k: float | None = region) -> Any:
                 covering = pad(material, rated)
                 return contact.batch(
-                    robot_mass=8.0, body_mass=40.0, closing_speed=speeds, region=k, covering=covering, threads=1
+                    robot_mass=8.0,
+                    body_mass=40.0,
+                    closing_speed=speeds,
+                    region=k,
+                    covering=covering,
+                    tolerance=1e-6,
+                    threads=1,
                 )
 
             exact = contact.batch(

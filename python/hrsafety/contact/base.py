@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +27,11 @@ __all__ = [
     "contact_margins",
     "contact_speed_limit",
 ]
+
+KNEE_HEIGHT = 0.35
+"""Lowest knee that a cover may meet, in m: below that of nearly every adult, a choice of this project."""
+LOWEST = MappingProxyType({"thigh_knee": KNEE_HEIGHT})
+"""Height from which a region counts; what is not here counts from the floor on."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -308,6 +314,7 @@ def contact_margins(
     robot_radius: float,
     person_radius: float,
     area: float | None = None,
+    cover_height: float | None = None,
 ) -> ContactMargins:
     """Return the margin of the closing speed at every instant of a run, as if the robot touched then.
 
@@ -316,10 +323,12 @@ def contact_margins(
     trajectory : navigation.Trajectory
         The run: its ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``.
     base, covering, regions, area
-        As for `contact_speed_limit`. The lowest speed of all regions and classes counts, for no region is told
-        by the height of the robot: leave out those that it cannot reach.
+        As for `contact_speed_limit`. The lowest speed of all regions and classes counts.
     robot_radius, person_radius : float
         Radii in m, for the point of contact and for ``touching``.
+    cover_height : float or None
+        Height of the upper edge of the robot above the floor in m: thigh and knee count from `KNEE_HEIGHT`
+        on. Every region that is given counts when ``None``.
 
     Returns
     -------
@@ -347,8 +356,9 @@ def contact_margins(
     >>> bool(found.touching.any()), found.region
     (False, 'lower_leg')
     """
+    regions = _within_reach(regions, cover_height)
     if not len(regions):
-        raise InvalidParameterError("regions", "name at least one limit", len(regions))
+        raise InvalidParameterError("regions", "name at least one limit that the robot reaches", len(regions))
     reach = positive("robot_radius", robot_radius)
     near = reach + positive("person_radius", person_radius)
     away = trajectory.obstacle_position - trajectory.position[:, None, :]
@@ -379,6 +389,14 @@ def contact_margins(
         contact=lowest.contact,
         warnings=tuple(dict.fromkeys(doubt for each in limits for doubt in each.warnings)),
     )
+
+
+def _within_reach(regions: Sequence[Any], cover_height: float | None) -> list[Any]:
+    """Return the regions that a robot of some height can touch."""
+    if cover_height is None:
+        return list(regions)
+    height = positive("cover_height", cover_height)
+    return [each for each in regions if height >= LOWEST.get(each.region, 0.0)]
 
 
 def _velocities(time: Array, position: Array) -> Array:

@@ -259,3 +259,14 @@ def test_margins_carry_units_and_regions() -> None:
     assert list(found.columns())[:4] == ["t_s", "obstacle", "closing_speed_m_per_s", "robot_share_m_per_s"]
     with pytest.raises(InvalidParameterError, match="be known"):
         margins(STANDING, [limit(spring_constant=None)])
+
+
+def test_a_low_robot_meets_no_knee() -> None:
+    regions = [limit(), limit(region="thigh_knee", force=50.0)]
+    assert margins(STANDING, regions).region == "thigh_knee"
+    assert margins(STANDING, regions, cover_height=0.5).region == "thigh_knee"
+    assert margins(STANDING, regions, cover_height=0.3).region == "lower_leg"
+    with pytest.raises(InvalidParameterError, match="that the robot reaches"):
+        margins(STANDING, regions[1:], cover_height=0.3)
+    with pytest.raises(InvalidParameterError, match="cover_height"):
+        margins(STANDING, regions, cover_height=0.0)
