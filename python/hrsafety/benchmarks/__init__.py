@@ -1,8 +1,9 @@
 """Benchmarks of laws by fixed protocols: many episodes, shares with intervals, resumable."""
 
 from hrsafety.benchmarks.entries import Entry, entry
+from hrsafety.benchmarks.protocol import Suite
 from hrsafety.benchmarks.results import Result, Row
 from hrsafety.benchmarks.runs import benchmark
-from hrsafety.benchmarks.suites import SUITES, Suite
+from hrsafety.benchmarks.suites import SUITES
 
 __all__ = ["SUITES", "Entry", "Result", "Row", "Suite", "benchmark", "entry"]

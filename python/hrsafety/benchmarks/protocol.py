@@ -9,6 +9,7 @@ from pathlib import Path
 from hrsafety import navigation as nav
 from hrsafety.benchmarks.entries import Entry
 from hrsafety.benchmarks.results import Row
+from hrsafety.navigation.run_table import RunTable
 
 __all__ = ["Case", "Suite", "rows_of"]
 
@@ -87,7 +88,7 @@ class Suite:
     run: Callable[[Case], Iterator[Row]]
 
 
-def rows_of(table: nav.RunTable, cases: Sequence[int]) -> Iterator[Row]:
+def rows_of(table: RunTable, cases: Sequence[int]) -> Iterator[Row]:
     """Yield the rows of many runs, an episode each."""
     for index, case in enumerate(cases):
         yield Row(

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from hrsafety import _hrsafety, scenarios
 from hrsafety import navigation as nav
-from hrsafety import scenarios
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
@@ -65,25 +65,48 @@ def _bottleneck(case: Case, index: int) -> World:
 
 
 def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Row]]:
-    """Run worlds side by side; contacts are the robot's where it moves faster toward the person."""
+    """Run worlds side by side, a row each."""
 
     def run(case: Case) -> Iterator[Row]:
         worlds = [scene(case, index) for index in case.cases]
         runs = nav.crowd.simulate_crowds(worlds, threads=case.threads)
-        table = nav.metrics.evaluate_many([nav.crowd.episodes_of(each)[0] for each in runs], threads=case.threads)
+        episodes = [nav.crowd.episodes_of(each)[0] for each in runs]
+        table = nav.metrics.evaluate_many(episodes, threads=case.threads)
         contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
+            at_fault = _touched_at_fault(episodes[row], float(table.arrival_time[row]))
             yield Row(
                 case=index,
                 outcome="collided" if contacts[row] else each.outcomes[0],
                 arrival_time=float(table.arrival_time[row]),
                 end_time=float(each.time[-1]),
                 contacts=int(contacts[row]),
-                at_fault=int(table.robot_on_person[row] + table.wall_contacts[row]),
+                at_fault=_touched_at_fault(episodes[row], float(table.arrival_time[row]))
+                + int(table.wall_contacts[row]),
                 clearance=float(table.min_clearance[row]),
+                apart=0,
             )
 
     return run
+
+
+def _touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
+    """Return the number of people toward whom the robot moved at some instant of a contact, up to its arrival."""
+    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
+    if people.size == 0 or len(own) < 2:
+        return 0
+    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
+    offset = people - own[:, None]
+    distance = np.linalg.norm(offset, axis=2)
+    touching = distance < episode.robot_radius + np.asarray(episode.person_radius)
+    velocity = np.diff(own, axis=0)[:, None] / episode.step
+    with np.errstate(divide="ignore", invalid="ignore"):
+        before = (velocity * offset[:-1]).sum(axis=2) / distance[:-1]
+        after = (velocity * offset[1:]).sum(axis=2) / distance[1:]
+    # A step that begins or ends in the contact counts, by the place of the person before and after it.
+    toward = np.fmax(before, after) > _hrsafety.CONTACT_SPEED
+    touched = (touching[:-1] | touching[1:]) & toward
+    return int(touched[:last].any(axis=0).sum())
 
 
 def _suite(name: str, summary: str, scene: Callable[[Case, int], World], cases: int, most: int = MOST) -> Suite:

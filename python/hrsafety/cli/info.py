@@ -55,10 +55,10 @@ def _extras() -> Iterator[tuple[str, list[str], list[str]]]:
         extra = _OF_EXTRA.search(line)
         if parts and extra and extra[1] not in _OWN:
             packages.setdefault(extra[1], []).append(parts[1])
-    for extra, names in packages.items():
-        versions = {name: _version(name) for name in names}
-        has = [f"{name} {version}" for name, version in versions.items() if version]
-        yield extra, has, [name for name, version in versions.items() if not version]
+    for name, needed in packages.items():
+        versions = {package: _version(package) for package in needed}
+        has = [f"{package} {version}" for package, version in versions.items() if version]
+        yield name, has, [package for package, version in versions.items() if not version]
 
 
 def _version(name: str) -> str | None:

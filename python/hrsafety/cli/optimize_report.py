@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from hrsafety import navigation as nav
 from hrsafety.cli.optimize_file import Gains, GainStudy
 from hrsafety.cli.output import decimal
+from hrsafety.navigation.run_table import RunTable
 
 __all__ = [
     "METRIC_UNITS",
@@ -66,7 +67,7 @@ class Scored:
     name: str
     law: nav.Law
     value: float
-    scores: nav.RunTable
+    scores: RunTable
     runs: tuple[nav.Trajectory, ...]
 
 

@@ -14,6 +14,7 @@ from hrsafety.cli import output, terminal
 from hrsafety.cli.exit_codes import FAILED_RUN
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]
@@ -60,7 +61,7 @@ def failures_of(text: str | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def counted(runs: nav.RunTable | nav.Trajectory) -> Counts:
+def counted(runs: RunTable | nav.Trajectory) -> Counts:
     """Return in how many runs each failure happened."""
     outcome = np.asarray(runs.outcome)
     masks = {

@@ -4,14 +4,26 @@ from typing import TYPE_CHECKING
 
 from hrsafety import errors
 from hrsafety._namespace import names_below
-from hrsafety.navigation import controller, crowd, gains, knowledge, laws, maps, metrics, robots, sensing, tracking
+from hrsafety.navigation import (
+    controller,
+    crowd,
+    gains,
+    knowledge,
+    laws,
+    maps,
+    metrics,
+    robots,
+    run_table,
+    sensing,
+    tracking,
+)
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
 from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
 from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
-from hrsafety.navigation.laws.forces import force_terms, lyapunov
+from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
 from hrsafety.navigation.laws.planners import (
     FieldDStar,
     OptimalReciprocalCollisionAvoidance,
@@ -19,13 +31,11 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.many import simulate_many
-from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.run import Run
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Scenarios
 from hrsafety.navigation.sensing.measurement import Measurement
@@ -37,12 +47,14 @@ __all__ = [
     "DifferentialDriveRobot",
     "Disc",
     "FieldDStar",
+    "ForceTerms",
     "GainSearch",
     "GeCui",
     "HolonomicRobot",
     "Human",
     "Khatib",
     "Law",
+    "Lyapunov",
     "Masoud",
     "Measurement",
     "MovingDisc",
@@ -53,10 +65,8 @@ __all__ = [
     "Rectangle",
     "Regions",
     "Run",
-    "RunTable",
     "Scenario",
     "Scenarios",
-    "StaticMap",
     "Trajectory",
     "VelocityObstacle",
     "VirtualForceField",
@@ -84,5 +94,5 @@ if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
     __getattr__, __dir__ = names_below(
         __name__,
         __all__,
-        [crowd, gains, laws, maps, metrics, robots, sensing, tracking, knowledge, controller, errors],
+        [crowd, gains, laws, maps, metrics, robots, sensing, tracking, knowledge, controller, run_table, errors],
     )

@@ -11,6 +11,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.navigation.metrics import Share
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.reproduce.measured import LAWS, Measured, kind_of, score_of_parts
 
 __all__ = ["EXPERIMENTS", "SEEDS", "Experiment", "as_built", "experiment", "repeated", "scene", "score", "two_wheels"]
@@ -68,7 +69,7 @@ def as_built(scenario: nav.Scenario) -> nav.robots.AsBuilt:
 
 
 @functools.cache
-def repeated(name: str, seeds: int = SEEDS) -> nav.RunTable:
+def repeated(name: str, seeds: int = SEEDS) -> RunTable:
     """Return noisy runs of a configuration with the robot as built."""
     scenario = scene(name)
     return nav.simulate_many(scenario, LAW, seeds=seeds, built=as_built(scenario), paths=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.navigation.run_table import RunTable
 
 __all__ = ["GAIN_SETS", "LAWS", "Measured", "kind_of", "measure", "measure_laws", "score_of_parts"]
 
@@ -92,7 +93,7 @@ def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list
     return runs
 
 
-def _row(summary: nav.RunTable, index: int, scenario: nav.Scenario) -> Measured:
+def _row(summary: RunTable, index: int, scenario: nav.Scenario) -> Measured:
     time = float(summary.arrival_time[index])
     energy = float(summary.energy[index])
     values = {"T_arrive": time, "L_energy": energy, "H": float(summary.performance_total[index])}

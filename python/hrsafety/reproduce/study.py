@@ -12,6 +12,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank
@@ -184,7 +185,7 @@ def _run(experiment: _Experiment) -> dict[Key, Outcomes]:
     return {key: runs[key] for key in (Key(experiment.name, *names) for names in ordered)}
 
 
-def _outcomes(summary: nav.RunTable, rows: slice) -> Outcomes:
+def _outcomes(summary: RunTable, rows: slice) -> Outcomes:
     return Outcomes(
         outcome=summary.outcome[rows],
         moving=summary.contacts_moving[rows] > 0,

@@ -18,6 +18,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
+from hrsafety.navigation.run_table import RunTable
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Cases, Found, Study, chosen
@@ -298,7 +299,7 @@ class _Batch(NamedTuple):
     order: npt.NDArray[np.int64] | slice
 
 
-def _values(table: nav.RunTable, name: str) -> npt.NDArray[Any]:
+def _values(table: RunTable, name: str) -> npt.NDArray[Any]:
     """Return a column of a table of runs by its name in a sweep."""
     what, _, obstacle = name.rpartition("_")
     found: npt.NDArray[Any] = table.min_distance[:, int(obstacle)] if what == "min_distance" else getattr(table, name)

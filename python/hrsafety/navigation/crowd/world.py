@@ -23,7 +23,7 @@ def _wall(name: str, given: object) -> WallShape:
     if isinstance(given, (Disc, Rectangle)):
         return given
     rule = "be a Disc, a Rectangle or a sequence of points (x, y)"
-    points = sequence(name, rule, given)  # type: ignore[arg-type]  # the check
+    points = sequence(name, rule, given)
     return tuple(pair(f"{name}[{index}]", point) for index, point in enumerate(points))
 
 
@@ -38,7 +38,7 @@ def _native_wall(name: str, wall: WallShape) -> _hrsafety.CrowdWall:
 
 def native_walls(walls: object) -> list[_hrsafety.CrowdWall]:
     """Return walls of all kinds as the core knows them."""
-    given = sequence("walls", "be a sequence of walls", walls)  # type: ignore[arg-type]  # the check
+    given = sequence("walls", "be a sequence of walls", walls)
     return [_native_wall(f"walls[{index}]", _wall(f"walls[{index}]", wall)) for index, wall in enumerate(given)]
 
 

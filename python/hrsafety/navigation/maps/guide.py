@@ -51,7 +51,7 @@ class Plan:
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> wall = nav.StaticMap.from_polylines([[(2, -1), (2, 1)]])
+    >>> wall = nav.maps.StaticMap.from_polylines([[(2, -1), (2, 1)]])
     >>> plan = nav.Guide().plan(wall, radius=0.2, start=(0.0, 0.0), goal=(4.0, 0.0))
     >>> bool(plan.cost((0.0, 0.0)) > 4.0), plan.local_goal((3.0, 0.0)).is_goal
     (True, True)
@@ -159,7 +159,7 @@ class Guide(Parameters):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> trap = nav.StaticMap.from_polylines([[(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)]])
+    >>> trap = nav.maps.StaticMap.from_polylines([[(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)]])
     >>> guide = nav.Guide(margin=0.05, box=((-2, -4), (6, 4)))
     >>> round(guide.plan(trap, radius=0.2, start=(0, 0), goal=(5, 0)).cost((0, 0)), 4)
     7.2675

@@ -60,8 +60,8 @@ class StaticMap(Parameters):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> walls = nav.StaticMap.from_polylines([[(0, 0), (6, 0), (6, 4)]])
-    >>> pillar = nav.StaticMap(discs=[(1.5, 1.5, 0.3)])
+    >>> walls = nav.maps.StaticMap.from_polylines([[(0, 0), (6, 0), (6, 4)]])
+    >>> pillar = nav.maps.StaticMap(discs=[(1.5, 1.5, 0.3)])
     >>> (walls + pillar).clearance([(3.0, 0.5), (1.5, 1.5)])
     array([0.5, 0. ])
     """
@@ -119,7 +119,7 @@ class StaticMap(Parameters):
         Examples
         --------
         >>> from hrsafety import navigation as nav
-        >>> nav.StaticMap.from_polylines([[(3, -1.5), (3, 1.5)]], radius=0.1)
+        >>> nav.maps.StaticMap.from_polylines([[(3, -1.5), (3, 1.5)]], radius=0.1)
         StaticMap(1 wall, x 2.9 to 3.1 m, y -1.6 to 1.6 m)
         """
         thickness = not_negative("radius", radius)
@@ -149,7 +149,7 @@ class StaticMap(Parameters):
         Examples
         --------
         >>> from hrsafety import navigation as nav
-        >>> nav.StaticMap.from_polygons([[(0, 0), (2, 0), (1, 1)]]).clearance([1.0, 0.5])
+        >>> nav.maps.StaticMap.from_polygons([[(0, 0), (2, 0), (1, 1)]]).clearance([1.0, 0.5])
         0.0
         """
         return cls(polygons=tuple(items("polygons", polygons)))
@@ -177,7 +177,7 @@ class StaticMap(Parameters):
         --------
         >>> from hrsafety import navigation as nav
         >>> table = nav.Rectangle(center=(2.0, 0.0), length=1.0, width=0.5)
-        >>> nav.StaticMap.from_obstacles([table, nav.Disc(center=(0.0, 2.0), radius=0.5)]).clearance((0.0, 0.0))
+        >>> nav.maps.StaticMap.from_obstacles([table, nav.Disc(center=(0.0, 2.0), radius=0.5)]).clearance((0.0, 0.0))
         1.5
         """
         each = items("obstacles", obstacles)
@@ -221,7 +221,7 @@ class StaticMap(Parameters):
         Examples
         --------
         >>> from hrsafety import navigation as nav
-        >>> room = nav.StaticMap.from_grid([[1, 1, 1], [1, 0, 1], [1, 1, 1]], resolution=1.0)
+        >>> room = nav.maps.StaticMap.from_grid([[1, 1, 1], [1, 0, 1], [1, 1, 1]], resolution=1.0)
         >>> room.clearance((1.5, 1.25))
         0.25
         """
@@ -284,7 +284,7 @@ class StaticMap(Parameters):
         --------
         >>> from hrsafety import navigation as nav
         >>> worlds = {"cylinder_radius_m": 0.075, "worlds": [{"id": 6, "cyl_mm": [[-75, 75], [-225, 75]]}]}
-        >>> nav.StaticMap.from_barn(worlds, 6)
+        >>> nav.maps.StaticMap.from_barn(worlds, 6)
         StaticMap(2 discs, x -0.3 to 0 m, y 0 to 0.15 m)
         """
         return cls(discs=barn_discs(source, world))
@@ -406,7 +406,7 @@ class StaticMap(Parameters):
         Examples
         --------
         >>> from hrsafety import navigation as nav
-        >>> corridor = nav.StaticMap.from_polylines([[(0, 0), (9, 0)], [(0, 2), (9, 2)]])
+        >>> corridor = nav.maps.StaticMap.from_polylines([[(0, 0), (9, 0)], [(0, 2), (9, 2)]])
         >>> corridor.boundary_points((4.0, 0.5), reach=3.0)
         array([[4., 0.],
                [4., 2.]])

@@ -192,7 +192,7 @@ def evaluate(
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
-    beside = {} if people is None else {"people": people}
+    beside: dict[str, Any] = {} if people is None else {"people": people}
     if isinstance(run, (Episode, Trajectory)) or hasattr(run, "time_s"):
         if beside:
             raise InvalidParameterError("people", "be None beside a run that has people", people)

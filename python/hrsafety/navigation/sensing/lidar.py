@@ -61,7 +61,7 @@ class Lidar(RobotSensor):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> room = nav.StaticMap.from_polylines([[(-2, -1), (2, -1), (2, 1), (-2, 1), (-2, -1)]])
+    >>> room = nav.maps.StaticMap.from_polylines([[(-2, -1), (2, -1), (2, 1), (-2, 1), (-2, -1)]])
     >>> lidar = nav.Lidar(map=room, beams=4)
     >>> lidar.scan((0.5, 0.0))
     array([2.5, 1. , 1.5, 1. ])

@@ -30,7 +30,7 @@ def crowd_instant(
     goal: Place,
     people: Sequence[Body],
     robots: Sequence[Body],
-    walls: Sequence[WallShape],
+    walls: Sequence[WallShape | Sequence[Place]],
     start: Place,
 ) -> Figure:
     """Return a picture of a robot, its goal, people, other robots and walls.

@@ -62,7 +62,7 @@ def guide_plan(
     Examples
     --------
     >>> from hrsafety import navigation as nav, plotting
-    >>> trap = nav.StaticMap.from_polylines([[(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)]])
+    >>> trap = nav.maps.StaticMap.from_polylines([[(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)]])
     >>> plan = nav.Guide().plan(trap, radius=0.2, start=(0, 0), goal=(5, 0))
     >>> plotting.runs.guide_plan(trap, plan, starts=[(2.6, 0.5)]).axes[0].get_xlabel()
     'x (m)'
