@@ -2,7 +2,7 @@
 
 ``python docs/measure_safe.py`` prints, ``--write`` replaces what stands between the marks of docs/validation.md;
 ``--only shares`` are the shares of the suites, ``--only adversary`` the search for a fault. The recordings are those of
-``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
+``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv, the worlds of BARN those of ``HRSAFETY_BARN``.
 """
 
 from __future__ import annotations
@@ -58,6 +58,10 @@ def shares() -> str:
     for where, suite, speed, seed, laws in SUITES:
         say(where, speed, laws)
         lines += rows_of(benchmark(suite, laws, person_speed=speed, seed=seed), where, speed)
+    worlds = os.environ.get("HRSAFETY_BARN")
+    if worlds:
+        say("BARN")
+        lines += rows_of(benchmark("barn", data=worlds), "BARN", 1.6)
     folder = os.environ.get("HRSAFETY_RECORDINGS")
     for name in ("zara01", "zara03") if folder else ():
         say(name)

@@ -136,9 +136,8 @@ def world_scene(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
         rest_time=LIMIT,
         arrival_tolerance=1.0,
     )
-    walls = nav.maps.StaticMap.from_barn(worlds[world][0], world)
-    law = case.entry.built(person_speed=case.person_speed, map=walls, guide=nav.maps.Guide(box=BOX))
-    return place, law
+    known = nav.maps.StaticMap.from_barn(worlds[world][0], world)
+    return place, case.entry.built(person_speed=case.person_speed, map=known, guide=nav.maps.Guide(box=BOX))
 
 
 def run_worlds(case: Case) -> Iterator[Row]:
@@ -219,7 +218,7 @@ def dynamic_scene(acceleration: float) -> Callable[[Case, int], tuple[nav.Scenar
             robot=nav.HolonomicRobot(radius=RADIUS, max_speed=SPEED, max_acceleration=acceleration),
             start=(11.0, 0.0),
             goal=(-9.0, 0.0),
-            obstacles=tuple(movers),
+            obstacles=movers,
             control_period=0.1,
             time_limit=LIMIT,
             rest_time=LIMIT,

@@ -95,7 +95,7 @@ def test_two_wheels_are_told_speed_and_turn_rate() -> None:
 class Ahead:
     """Wants to go ahead, whoever is there."""
 
-    def velocity(self, _situation: nav.Situation) -> tuple[float, float]:
+    def velocity(self, _: nav.Situation) -> tuple[float, float]:
         return 0.6, 0.0
 
 
