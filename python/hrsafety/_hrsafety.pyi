@@ -18,6 +18,7 @@ __all__ = [
     "Burst",
     "Camera",
     "ConstrainedHead",
+    "Controller",
     "Converter",
     "CrowdEnvironments",
     "CrowdEpisode",

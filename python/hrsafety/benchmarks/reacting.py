@@ -81,8 +81,7 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
                 arrival_time=float(table.arrival_time[row]),
                 end_time=float(each.time[-1]),
                 contacts=int(contacts[row]),
-                at_fault=_touched_at_fault(episodes[row], float(table.arrival_time[row]))
-                + int(table.wall_contacts[row]),
+                at_fault=at_fault + int(table.wall_contacts[row]),
                 clearance=float(table.min_clearance[row]),
                 apart=0,
             )
