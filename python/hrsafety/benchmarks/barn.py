@@ -218,7 +218,7 @@ def dynamic_scene(acceleration: float) -> Callable[[Case, int], tuple[nav.Scenar
             robot=nav.HolonomicRobot(radius=RADIUS, max_speed=SPEED, max_acceleration=acceleration),
             start=(11.0, 0.0),
             goal=(-9.0, 0.0),
-            obstacles=movers,
+            obstacles=tuple(movers),
             control_period=0.1,
             time_limit=LIMIT,
             rest_time=LIMIT,

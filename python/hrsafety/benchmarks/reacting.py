@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from hrsafety import _hrsafety, scenarios
 from hrsafety import navigation as nav
+from hrsafety import scenarios
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
+from hrsafety.navigation.trajectory import CONTACT_SPEED
 
 __all__ = ["REACTING"]
 
@@ -103,7 +104,7 @@ def _touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
         before = (velocity * offset[:-1]).sum(axis=2) / distance[:-1]
         after = (velocity * offset[1:]).sum(axis=2) / distance[1:]
     # A step that begins or ends in the contact counts, by the place of the person before and after it.
-    toward = np.fmax(before, after) > _hrsafety.CONTACT_SPEED
+    toward = np.fmax(before, after) > CONTACT_SPEED
     touched = (touching[:-1] | touching[1:]) & toward
     return int(touched[:last].any(axis=0).sum())
 

@@ -21,9 +21,11 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane, with_units
 
-__all__ = ["Integrator", "Trajectory", "without_obstacles"]
+__all__ = ["CONTACT_SPEED", "Integrator", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
+CONTACT_SPEED = _hrsafety.CONTACT_SPEED
+"""Speed in m/s above which a robot counts as moving in a contact."""
 OPTIONAL_COLUMNS = ("force", "stabilizing", "lyapunov", "wheel_current", "obstacle_position", "distance")
 """Columns that a run may leave out, see ``record`` of `simulate`."""
 
@@ -165,12 +167,12 @@ class Trajectory(Table):
     @property
     def contacts_moving(self) -> int:
         """Number of obstacles that the robot touched while it moved faster than 0.05 m/s; maps count as one."""
-        return int(np.sum(self._contact_speeds() > _hrsafety.CONTACT_SPEED))
+        return int(np.sum(self._contact_speeds() > CONTACT_SPEED))
 
     @property
     def contacts_standing(self) -> int:
         """Number of obstacles that touched the standing robot; maps count as one."""
-        return int(np.sum(self._contact_speeds() <= _hrsafety.CONTACT_SPEED))
+        return int(np.sum(self._contact_speeds() <= CONTACT_SPEED))
 
     def _contact_speeds(self) -> Array:
         return np.append(self.contact_speed, self.map_contact_speed)

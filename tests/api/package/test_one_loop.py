@@ -15,8 +15,9 @@ KERNELS = {"run/rollout.rs", "run/lane_rollout.rs"}
 # No episode: a reference that is given over time is tracked, or a wheel turns on a bench; nothing is sensed, no law
 # decides and nothing ends them.
 WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}
-# Periods of the wheels' own controllers within a motion step.
-WITHIN_A_STEP = {"robots/drives/driven.rs"}
+# Periods of the wheels' own controllers within a motion step; steps of a world, each taken by the loop, within one of
+# an environment.
+WITHIN_A_STEP = {"robots/drives/driven.rs", "crowd/environments/one.rs"}
 # A loop over steps or instants: counted, or as long as something runs.
 TIME_LOOP = re.compile(
     r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\."
