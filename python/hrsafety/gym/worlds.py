@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hrsafety import _hrsafety
+from hrsafety import scenarios
 from hrsafety._arguments import Pair, count, flag
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
-from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian, ReciprocalAvoidance
+from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 
@@ -70,15 +70,8 @@ def circle_crossing(*, people: int = 5, visible: bool = True, model: Pedestrian 
     >>> len(gym.circle_crossing().world.people)
     5
     """
-    decide = ReciprocalAvoidance() if model is None else model
-    starts = _hrsafety.crowd_circle(0, count("people", people, least=0, most=_MOST_PEOPLE))
-    awareness = 1.0 if flag("visible", visible) else 0.0
-    walkers = [
-        Person(start=(x, y), route=[(-x, -y)], model=decide, radius=0.3, desired_speed=1.0, awareness=awareness)
-        for x, y in starts
-    ]
-    robot = _robot((0.0, -4.0), (0.0, 4.0))
-    return Task(world=World(people=walkers, robots=[robot], step=0.25, time_limit=25.0), circle=True)
+    world = scenarios.circle_crossing(0, visible=visible, people=people, model=model)
+    return Task(world=world, circle=True)
 
 
 def corridor(*, people: int = 10, visible: bool = True, model: Pedestrian | None = None) -> Task:

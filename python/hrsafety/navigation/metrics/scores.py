@@ -312,11 +312,16 @@ def evaluate_world(
     (1.0, 0.0)
     """
     places, machines = _places("people", people), _places("robots", robots)
+    goals = points("person_goals", person_goals) if np.size(person_goals) else np.empty((0, 2))
+    if len(goals) != places.shape[1]:
+        raise ShapeError("person_goals", f"({places.shape[1]}, 2)", goals.shape)
     radii = numbers("robot_radius", robot_radius)
+    if radii.ndim == 1 and radii.shape != (machines.shape[1],):
+        raise ShapeError("robot_radius", f"({machines.shape[1]},)", radii.shape)
     found = _hrsafety.crowd_world_metrics(
         people=places.reshape(-1, 2),
         robots=machines.reshape(-1, 2),
-        person_goals=points("person_goals", person_goals) if np.size(person_goals) else np.empty((0, 2)),
+        person_goals=goals,
         robot_radius=np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
         step=number("step", step),
         time_limit=number("time_limit", time_limit),
