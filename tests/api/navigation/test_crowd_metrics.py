@@ -105,7 +105,7 @@ def test_a_run_is_scored_with_the_people_and_walls_of_its_scenario() -> None:
 
 
 def test_a_run_after_a_reference_has_no_scenario() -> None:
-    run = nav.tracking.track(nav.tracking.LineReference(start=(0.0, 0.0)), duration=1.0)
+    run = nav.tracking.track(nav.tracking.LineReference(start=(0.0, 0.0)))
     with pytest.raises(InvalidParameterError, match="be a run in a scenario"):
         nav.metrics.evaluate(run)
 
