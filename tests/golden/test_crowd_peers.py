@@ -26,20 +26,20 @@ def test_reciprocal_people_take_the_velocities_of_pyrvo() -> None:
     goal = GENERATOR.uniform(0.0, 6.0, (people, 2))
     simulator = pyrvo.RVOSimulator(step, 10.0, 10, 5.0, 5.0, radius, speed)
     for x, y in place.tolist():
-        simulator.add_agent(pyrvo.Vector2(x, y))
+        simulator.add_agent((x, y))
     model = nav.crowd.ReciprocalAvoidance(margin=0.0)
     deviations = []
     for _ in range(20):
         # Each step starts from the state that pyrvo has reached: it works in single precision.
-        position = np.array([(at.x, at.y) for at in map(simulator.get_agent_position, range(people))])
-        velocity = np.array([(at.x, at.y) for at in map(simulator.get_agent_velocity, range(people))])
+        position = np.array([simulator.get_agent_position(index).to_tuple() for index in range(people)])
+        velocity = np.array([simulator.get_agent_velocity(index).to_tuple() for index in range(people)])
         way = goal - position
         length = np.hypot(*way.T)[:, None]
         wanted = way / length * np.minimum(speed, length / step)
         for index, (x, y) in enumerate(wanted.tolist()):
-            simulator.set_agent_pref_velocity(index, pyrvo.Vector2(x, y))
+            simulator.set_agent_pref_velocity(index, (x, y))
         simulator.do_step()
-        reached = np.array([(at.x, at.y) for at in map(simulator.get_agent_velocity, range(people))])
+        reached = np.array([simulator.get_agent_velocity(index).to_tuple() for index in range(people)])
         found = nav.crowd.decide(
             model, position=position, velocity=velocity, goal=goal, radius=radius, desired_speed=speed, step=step
         )

@@ -71,7 +71,7 @@ def antipodal(
     Examples
     --------
     >>> from hrsafety import navigation as nav, scenarios
-    >>> world = scenarios.antipodal(20, law=nav.OptimalReciprocalCollisionAvoidance(share=0.5))
+    >>> world = scenarios.antipodal(20, law=nav.OptimalReciprocalCollisionAvoidance())
     >>> len(world.robots), len(world.people)
     (20, 0)
     """

@@ -38,7 +38,7 @@ def simulate_crowd(world: World) -> CrowdTrajectories:
 
     >>> from hrsafety import navigation as nav
     >>> person = nav.crowd.Person(start=(6, 0.1), route=[(0, 0.1)], desired_speed=1.2)
-    >>> law = nav.OptimalReciprocalCollisionAvoidance(share=0.5)
+    >>> law = nav.OptimalReciprocalCollisionAvoidance()
     >>> robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0), law=law)
     >>> run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot]))
     >>> run.outcomes
