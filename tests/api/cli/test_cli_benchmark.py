@@ -204,3 +204,12 @@ def test_dynabarn_is_run_and_scored(tmp_path: Path) -> None:
     (tmp_path / "dynabarn.json").write_text('{"trajectories": {}, "worlds": {"0": ["nobody"]}}', encoding="utf-8")
     with pytest.raises(InvalidParameterError, match="trajectories by name"):
         benchmark("dynabarn3", [name], cases=1, data=tmp_path / "dynabarn.json")
+
+
+@pytest.mark.parametrize("suite", ["circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing"])
+def test_suites_of_people_that_react_give_a_row_for_each_case(suite: str) -> None:
+    found = benchmark(suite, ["orca+shield"], cases=2)
+    rows = found.rows["orca+shield"]
+    assert [row.case for row in rows] == [0, 1]
+    assert {row.outcome for row in rows} <= {"arrived", "collided", "timed_out"}
+    assert all(row.at_fault <= row.contacts for row in rows)
