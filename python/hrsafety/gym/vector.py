@@ -205,7 +205,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         return infos | {"final_info": final | metrics, "_final_info": ended.copy()}
 
     def _scores(self, ended: Flags) -> dict[str, Any]:
-        """Return a column of each metric, 0 for those whose episode runs, and who has one."""
+        """Return a column of each metric, 0 for those whose episode is under way, and who has one."""
         kinds: dict[str, type] = {"number": np.float64, "count": np.int64, "flag": np.bool_}
         found: dict[str, Any] = {}
         for metric, column in zip(METRICS.values(), self._all.scores.T, strict=True):
