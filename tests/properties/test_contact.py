@@ -258,9 +258,7 @@ def test_threads_and_rows_change_no_bit() -> None:
         for threads in (1, 2)
     ]
     assert np.array_equal(*found)
-    single = contact.simulate(
-        robot_mass=8.0, body_mass=40.0, region=25e3, covering=pad, closing_speed=speeds[333], tolerance=1e-6
-    )
+    single = contact.simulate(robot_mass=8.0, body_mass=40.0, region=25e3, covering=pad, closing_speed=speeds[333])
     assert single.peak_force == found[0][333]
     drawn = [
         contact.probability(
