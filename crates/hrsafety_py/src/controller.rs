@@ -40,6 +40,7 @@ impl Controller {
     }
 
     /// Fields of what the robot is to do; `robot`: position and velocity.
+    #[allow(clippy::too_many_arguments)] // each by name in Python's face
     #[pyo3(signature = (time, robot, heading, *, seen, gone, scan))]
     fn update<'py>(
         &self,

@@ -213,7 +213,7 @@ def dynamic_scene(acceleration: float) -> Callable[[Case, int], tuple[nav.Scenar
         if world >= len(worlds):
             raise InvalidParameterError("data", f"hold {WORLDS} worlds", Shown(f"{len(worlds)} of them"))
         begin = PHASE * phase + FRESH * case.seed
-        movers = [_obstacle(*_unrolled(period, keys, begin)) for period, keys in worlds[world]]
+        movers = tuple(_obstacle(*_unrolled(period, keys, begin)) for period, keys in worlds[world])
         place = nav.Scenario(
             robot=nav.HolonomicRobot(radius=RADIUS, max_speed=SPEED, max_acceleration=acceleration),
             start=(11.0, 0.0),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 
 from hrsafety import navigation as nav
@@ -43,7 +43,7 @@ class Entry:
         preferred_speed: float | None = None,
         latency: float = 0.0,
         position_error: float = 0.0,
-        map: nav.maps.StaticMap | None = None,
+        map: nav.StaticMap | None = None,
         guide: nav.maps.Guide | None = None,
         yielding: nav.laws.Yielding | None = None,
         takeover: bool | None = None,
@@ -126,10 +126,11 @@ def _with_gains(name: str, word: str) -> nav.Law:
         return law
     if not rest.endswith(")"):
         raise InvalidParameterError("laws", "close the bracket of the gains, as field(attractive_gain=13)", word)
+    names = [each.name for each in fields(law)]  # type: ignore[arg-type]  # laws are dataclasses
     gains: dict[str, float] = {}
     for part in rest[:-1].split(","):
         gain, _, value = part.partition("=")
-        known = [name for name in law.GAIN_NAMES if isinstance(getattr(law, name), float)]
+        known = [name for name in names if isinstance(getattr(law, name), float)]
         if gain not in known or gain in gains:
             raise InvalidParameterError("laws", f"give one of {', '.join(known)} once", word, meant(gain, known))
         try:

@@ -49,6 +49,11 @@ impl AnyLaw {
         &*self.0
     }
 
+    /// What it knows to stand, beside the obstacles of a scenario.
+    pub(crate) fn map(&self) -> Option<&StaticMap> {
+        self.0.map()
+    }
+
     /// Words for the gains, in their order.
     #[must_use]
     pub fn gain_names(&self) -> &'static [&'static str] {

@@ -149,11 +149,7 @@ impl<L: Listener> Episode<Navigation<L>> {
                 Arc::clone(&scenario),
                 clock,
                 bodies,
-                Maps::of(
-                    &scenario,
-                    law.and_then(|law| law.driven().map()),
-                    &built.sensors,
-                ),
+                Maps::of(&scenario, law.and_then(AnyLaw::map), &built.sensors),
             ),
             reading,
             energy: 0.0,

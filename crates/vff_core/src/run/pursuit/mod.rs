@@ -192,7 +192,7 @@ pub fn pursue(
         robot,
         law: law.driven().steering(sight.known(scenario))?,
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
-        maps: Maps::of(scenario, law.driven().map(), &built.sensors),
+        maps: Maps::of(scenario, law.map(), &built.sensors),
         sight,
         known: Known::exactly(reading.robot),
         seen: Vec::new(),
