@@ -43,7 +43,7 @@ class Entry:
         preferred_speed: float | None = None,
         latency: float = 0.0,
         position_error: float = 0.0,
-        map: nav.StaticMap | None = None,
+        map: nav.maps.StaticMap | None = None,
         guide: nav.maps.Guide | None = None,
         yielding: nav.laws.Yielding | None = None,
         takeover: bool | None = None,
