@@ -55,7 +55,7 @@ def test_pictures_ask_for_a_whole_run() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"record": ["forces"]}, r'record\[0\].*meant "force"'),
+        ({"record": ["forces"]}, r'record\[0\].*did you mean "force"'),
         ({"record": "force"}, "record"),
         ({"every": 0}, "every must be an integer from 1"),
         ({"every": 2.5}, "every"),

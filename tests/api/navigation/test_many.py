@@ -123,7 +123,7 @@ def test_table_starts_with_what_each_row_is() -> None:
     assert {"arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total"} <= set(columns)
     shown = repr(runs).splitlines()
     assert shown[0] == f"RunTable: 24 rows, {len(columns)} columns; here the first 5 and 8"
-    assert len(shown) == 7
+    assert len(shown) == 7 + len(runs.warnings)
     assert shown[2].split()[:3] == ["full", "c1", "0"]
     assert runs._repr_html_().count("<tr>") == 6
 

@@ -48,6 +48,7 @@ def test_every_page_inherits_the_one_base_and_there_is_one_style_sheet() -> None
     whole = {name for name, text in texts.items() if '{% extends "base.html" %}' in text}
     assert whole == {
         "benchmark.html",
+        "cell.html",
         "foam.html",
         "optimize.html",
         "sweep.html",
