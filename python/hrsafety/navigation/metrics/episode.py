@@ -88,7 +88,7 @@ class Episode(Parameters):
     >>> episode = nav.metrics.Episode(
     ...     position=straight, step=0.5, goal=(4.0, 0.0), robot_radius=0.3, people=[[[2.0, 1.0]]] * 9
     ... )
-    >>> nav.metrics.evaluate(episode).min_clearance
+    >>> round(nav.metrics.evaluate(episode).min_clearance, 3)
     0.45
     """
 
@@ -205,7 +205,7 @@ class Episode(Parameters):
         >>> walk = datasets.Recording(time_s=time, person=person, position=places)
         >>> episode = nav.metrics.Episode.from_recording(walk, 1, step=0.25, robot_radius=0.25)
         >>> round(nav.metrics.evaluate(episode).min_clearance, 3)
-        0.5
+        0.618
         """
         found = at_instants(recording, robot, positive("step", step))
         return cls(**({**found, "step": step} | options))
