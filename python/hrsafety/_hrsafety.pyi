@@ -537,11 +537,7 @@ class CrowdWorld:
         robots: Sequence[CrowdRobot],
         sources: Sequence[CrowdSource],
         walls: Sequence[CrowdWall],
-        *,
-        period: _Pair,
-        step: float,
-        time_limit: float,
-        seed: int,
+        **given: object,
     ) -> Self: ...
 
 def crowd_simulate(
@@ -554,13 +550,7 @@ def crowd_decisions(
     velocity: _Array,
     goal: _Array,
     sizes: _Array,
-    robot: npt.NDArray[np.bool_],
-    walls: Sequence[CrowdWall],
-    *,
-    heading: _Array,
-    group: Sequence[int | None],
-    step: float,
-    period: _Pair,
+    **given: object,
 ) -> dict[str, _Array]: ...
 def region_radii(
     robot: HolonomicRobot | DifferentialDriveRobot,

@@ -3,8 +3,9 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::Period;
-use vff_core::crowd::pedestrian::{Agent, FIRST_ROBOT, Groupings, Walker, direction_of};
+use vff_core::crowd::pedestrian::{Groupings, Walker};
 use vff_core::crowd::snapshot::{Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
@@ -210,18 +211,15 @@ pub struct CrowdWorld {
 #[pymethods]
 impl CrowdWorld {
     #[new]
-    #[pyo3(signature = (people, robots, sources, walls, *, period, step, time_limit, seed))]
-    #[allow(clippy::too_many_arguments)] // four lists, and keywords
+    #[pyo3(signature = (people, robots, sources, walls, **given))]
     fn new(
         people: Vec<PyRef<'_, CrowdPerson>>,
         robots: Vec<PyRef<'_, CrowdRobot>>,
         sources: Vec<PyRef<'_, CrowdSource>>,
         walls: Vec<PyRef<'_, CrowdWall>>,
-        period: [f64; 2],
-        step: f64,
-        time_limit: f64,
-        seed: u64,
+        given: Option<Keywords<'_>>,
     ) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
         let mut models = Vec::new();
         let people = people.iter().map(|person| {
             let mut setup = person.0.clone();
@@ -240,11 +238,12 @@ impl CrowdWorld {
             robots: robots.iter().map(|robot| robot.setup.clone()).collect(),
             walls: walls.iter().map(|wall| wall.0.clone()).collect(),
             models,
-            period: Period(period),
-            step,
-            time_limit,
-            seed,
+            period: Period(given.take("period")?),
+            step: given.take("step")?,
+            time_limit: given.take("time_limit")?,
+            seed: given.take("seed")?,
         };
+        given.done()?;
         Ok(Self {
             core: core.checked().map_err(CoreError::from)?,
             python: robots.iter().any(|robot| robot.python),
@@ -342,8 +341,7 @@ pub fn crowd_circle(seed: u64, people: usize) -> Vec<[f64; 2]> {
 
 /// Decisions of everybody at a state, in m/s^2 or m/s; NaN for robots.
 #[pyfunction]
-#[pyo3(signature = (model, position, velocity, goal, sizes, robot, walls, *, heading, group, step, period))]
-#[allow(clippy::too_many_arguments)] // columns of a state
+#[pyo3(signature = (model, position, velocity, goal, sizes, **given))]
 pub fn crowd_decisions<'py>(
     py: Python<'py>,
     model: &CrowdModel,
@@ -351,13 +349,15 @@ pub fn crowd_decisions<'py>(
     velocity: PyReadonlyArray2<'py, f64>,
     goal: PyReadonlyArray2<'py, f64>,
     sizes: PyReadonlyArray2<'py, f64>,
-    robot: PyReadonlyArray1<'py, bool>,
-    walls: Vec<PyRef<'py, CrowdWall>>,
-    heading: PyReadonlyArray2<'py, f64>,
-    group: Vec<Option<u32>>,
-    step: f64,
-    period: [f64; 2],
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
+    let robot: PyReadonlyArray1<'py, bool> = given.take("robot")?;
+    let heading: PyReadonlyArray2<'py, f64> = given.take("heading")?;
+    let walls: Vec<PyRef<'py, CrowdWall>> = given.take("walls")?;
+    let group: Vec<Option<u32>> = given.take("group")?;
+    let (step, period) = (given.take("step")?, Period(given.take("period")?));
+    given.done()?;
     let (position, velocity, goal) = (position.as_array(), velocity.as_array(), goal.as_array());
     let (sizes, robot, heading) = (sizes.as_array(), robot.as_array(), heading.as_array());
     let (mut agents, mut people, mut robots) = (Vec::new(), Vec::new(), Vec::new());
@@ -399,9 +399,9 @@ pub fn crowd_decisions<'py>(
         company: &Groupings {
             agents: &agents,
             of: &group,
-            period: Period(period),
+            period,
         },
-        period: Period(period),
+        period,
         reach: model.0.cutoff(),
         step,
     };

@@ -23,7 +23,7 @@ from hrsafety.navigation.gains.changes import gain_sensitivity
 from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
 from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
-from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
+from hrsafety.navigation.laws.forces import ForceTerms, force_terms, lyapunov
 from hrsafety.navigation.laws.planners import (
     FieldDStar,
     OptimalReciprocalCollisionAvoidance,
@@ -54,7 +54,6 @@ __all__ = [
     "Human",
     "Khatib",
     "Law",
-    "Lyapunov",
     "Masoud",
     "Measurement",
     "MovingDisc",

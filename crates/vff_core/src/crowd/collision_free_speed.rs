@@ -1,8 +1,9 @@
 //! Collision-free speed model of Tordeux, Chraibi and Seyfried, Traffic and Granular Flow '15 (2016) 225, with the
 //! numbers of `JuPedSim`. People behind walls count, too.
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, SHORTEST, Walker};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
 use crate::crowd::walls::pushes;
 use crate::lanes::Vector2;
 

@@ -6,8 +6,9 @@
 
 use std::f64::consts::PI;
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, SHORTEST, Walker, drive};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Vector2};
 

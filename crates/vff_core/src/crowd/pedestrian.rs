@@ -1,6 +1,7 @@
 //! What a pedestrian model knows and answers.
 
 pub use crate::crowd::agent::{Agent, FIRST_ROBOT, SHORTEST};
+use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::neighbors::{Neighbors, Period};
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
@@ -119,17 +120,6 @@ pub struct Room {
 pub trait Pedestrian {
     /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64>;
-}
-
-/// A vector of length 1, or zero for one without a direction.
-#[inline]
-#[must_use]
-pub fn direction_of(vector: Vector2<f64>) -> Vector2<f64> {
-    let length = vector.norm();
-    if length < SHORTEST {
-        return Vector2::zeros();
-    }
-    vector / length
 }
 
 /// Drive `(v0 e - v)/tau` of the force models.

@@ -2,11 +2,10 @@
 
 use numeric::random::Stream;
 
+use crate::crowd::agent::{Agent, SHORTEST, direction_of};
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Period;
-use crate::crowd::pedestrian::{
-    Agent, Company, Fellows, SHORTEST, Walker, company_of, direction_of,
-};
+use crate::crowd::pedestrian::{Company, Fellows, Walker, company_of};
 use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
 use crate::lanes::Vector2;
 use crate::world::motion::Motion;

@@ -3,8 +3,9 @@
 //! The half-planes of discs stand here in the form that needs no outline; [`crate::laws::reciprocal::avoiding`] is
 //! the same for any shape. Half-planes of walls are never violated.
 
+use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::pedestrian::{Agent, Around, Pedestrian, Room, SHORTEST, Walker};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 

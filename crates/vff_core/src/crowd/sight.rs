@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
+use crate::crowd::agent::Agent;
 use crate::crowd::models::Model;
-use crate::crowd::pedestrian::Agent;
 use crate::crowd::people::{PersonState, Purpose, fastest, stream_of};
 use crate::crowd::walls::Wall;
 use crate::crowd::world::{CrowdWorld, Traits, count_of};

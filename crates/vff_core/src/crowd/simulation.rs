@@ -4,7 +4,8 @@
 //! of the world is what a control period is elsewhere; models with a smaller largest step split it into equal
 //! motion steps, in each of which people decide anew. Robots decide in the first one, if it is time to.
 
-use crate::crowd::pedestrian::{Agent, Walker};
+use crate::crowd::agent::Agent;
+use crate::crowd::pedestrian::Walker;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
 use crate::crowd::record::Trajectories;
 use crate::crowd::robots::CrowdRobot;

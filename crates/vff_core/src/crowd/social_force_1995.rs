@@ -3,8 +3,9 @@
 //! A neighbor repels with a potential `V0 exp(-b/sigma)` whose lines are ellipses along the way `y` that the
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::{Other, Unnoticed};
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, SHORTEST, Walker, drive};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Vector2};
 

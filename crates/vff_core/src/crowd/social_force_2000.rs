@@ -3,8 +3,9 @@
 //! Bodies repel with `A exp(g/B)`, `g = rho_i + rho_j - d`; those that touch (`g > 0`) press with `k g` and rub with
 //! `kappa g` times the difference of their velocities along the tangent. Friction at walls brakes, as printed.
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, SHORTEST, Walker, drive};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Vector2};
 

@@ -1,7 +1,7 @@
 //! Social force between a robot and a person, which measures how much they are in each other's way.
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::moussaid::Moussaid;
-use crate::crowd::pedestrian::SHORTEST;
 use crate::lanes::Vector2;
 
 type Vector = Vector2<f64>;
