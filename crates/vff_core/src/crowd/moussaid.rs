@@ -1,5 +1,5 @@
 //! Model of Moussaid et al., Proceedings of the Royal Society B 276 (2009) 2755, with the groups of Moussaid et al.,
-//! PLoS ONE 5 (2010) e10047.
+//! `PLoS` ONE 5 (2010) e10047.
 //!
 //! The angle between line of sight and interaction direction is wrapped into (-pi, pi] before the bias `epsilon B` is
 //! added: other programs leave it out and turn people the wrong way.

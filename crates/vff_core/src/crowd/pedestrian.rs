@@ -1,6 +1,5 @@
 //! What a pedestrian model knows and answers.
 
-pub use crate::crowd::agent::{Agent, FIRST_ROBOT, SHORTEST};
 use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::neighbors::{Neighbors, Period};
 use crate::crowd::walls::Wall;

@@ -214,8 +214,8 @@ impl Scenario {
         };
         let placed = obstacles.map(|(obstacle, speed_bound, stationary)| {
             Ok(PlacedObstacle {
-                speed_bound,
                 stationary,
+                speed_bound,
                 ..place(&limits, obstacle, rules.control_period, &sensing)?
             })
         });
