@@ -61,6 +61,9 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     // Positions between two samples are wanted only for robots that are measured late.
     let late = groups.first().is_some_and(|runs| runs.past.is_some());
     let longest = if late { 1 } else { STEPS_PER_BLOCK };
+    // A group by itself that keeps no rows needs the obstacles between two samples only where they
+    // are near; several groups share them.
+    let alone = groups.len() == 1 && !C::EVERY_STEP && !staged;
     let blocks_per_question = (BLOCKS_PER_QUESTION / scenario.obstacles.len().max(1)).max(1);
     let mut until_question = blocks_per_question;
     let mut first = 0;
@@ -68,25 +71,25 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
         let steps = until_sample.min(clock.steps - first).min(longest);
         let samples = until_sample == clock.steps_per_sample;
-        scene.advance(&clock, first);
-        let block = Block {
-            scene: &scene,
-            stop: Stop(interrupted),
-            first,
-            steps,
-        };
+        let span = (first, steps);
+        scene.begin(&clock, first);
+        if !alone {
+            scene.complete(&clock, first, |_| true);
+        }
         let measured = sensor
             .as_mut()
             .filter(|_| samples)
             .map(|sensor| sensor.measure(clock.time(first), &scene.frames[0], &mut seen));
-        let known = if sensor.is_some() {
-            &seen
-        } else {
-            &scene.frames[0]
-        };
-        if led && samples && groups[0].feels_any(known) {
-            led = false;
-            follow(&mut groups);
+        if led && samples {
+            let known = if sensor.is_some() {
+                &seen
+            } else {
+                &scene.frames[0]
+            };
+            if groups[0].feels_any(known) {
+                led = false;
+                follow(&mut groups);
+            }
         }
         let active = if led { 1 } else { groups.len() };
         let members = groups.iter_mut().zip(team.iter_mut()).take(active);
@@ -96,11 +99,30 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 if plan.shortcuts {
                     runs.end_hopeless(&scene.frames[0], time);
                 }
-                sample(runs, member, known, measured, &block)
-                    .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
+                let known = if sensor.is_some() {
+                    &seen
+                } else {
+                    &scene.frames[0]
+                };
+                sample(
+                    runs,
+                    member,
+                    known,
+                    measured,
+                    &Block::of(&scene, Stop(interrupted), span),
+                )
+                .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
+            }
+            if alone {
+                scene.complete(&clock, first, |obstacle| runs.watched[obstacle]);
             }
             if runs.running.any() {
-                run_block(runs, member, &block, options);
+                run_block(
+                    runs,
+                    member,
+                    &Block::of(&scene, Stop(interrupted), span),
+                    options,
+                );
                 runs.remember();
             }
         }
@@ -154,6 +176,18 @@ struct Block<'a> {
     first: usize,
     /// Number of its steps.
     steps: usize,
+}
+
+impl<'a> Block<'a> {
+    #[inline(always)]
+    fn of(scene: &'a Scene<&'a Scenario>, stop: Stop<'a>, (first, steps): (usize, usize)) -> Self {
+        Self {
+            scene,
+            stop,
+            first,
+            steps,
+        }
+    }
 }
 
 /// A sample of the force for the runs of a group.

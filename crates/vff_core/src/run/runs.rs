@@ -50,7 +50,7 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     near_goal: bool,
     /// Whether the least distance to each obstacle can change, or a contact with it last, before the
     /// next sample.
-    watched: Vec<bool>,
+    pub watched: Vec<bool>,
     /// Distance in m at which robot and obstacle touch, and the largest speed of each obstacle in
     /// m/s, infinite if there is none.
     reach: Vec<W::Number>,

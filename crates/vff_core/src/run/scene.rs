@@ -91,13 +91,30 @@ impl<S: Deref<Target = Scenario>> Scene<S> {
 
     /// Moves on to the block that begins at a step.
     pub fn advance(&mut self, clock: &Clock, first: usize) {
+        self.begin(clock, first);
+        self.complete(clock, first, |_| true);
+    }
+
+    /// Moves on to the first instant of the block that begins at a step.
+    pub fn begin(&mut self, clock: &Clock, first: usize) {
+        let frame = &mut self.frames[0];
         for (index, placed) in self.scenario.obstacles.iter().enumerate() {
-            if placed.stationary {
+            if !placed.stationary {
+                let cursor = &mut self.cursors[index];
+                frame[index].state = placed.obstacle.motion.at(clock.time(first), cursor);
+            }
+        }
+    }
+
+    /// All later instants of a block that has begun, of the obstacles that are looked at.
+    pub fn complete(&mut self, clock: &Clock, first: usize, looked_at: impl Fn(usize) -> bool) {
+        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+            if placed.stationary || !looked_at(index) {
                 continue;
             }
             let motion = &placed.obstacle.motion;
             let cursor = &mut self.cursors[index];
-            for (step, frame) in self.frames.iter_mut().enumerate() {
+            for (step, frame) in self.frames.iter_mut().enumerate().skip(1) {
                 frame[index].state = motion.at(clock.time(first + step), cursor);
             }
             if self.staged {
