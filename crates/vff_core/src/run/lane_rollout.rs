@@ -115,7 +115,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         for (number, (obstacle, body)) in obstacles.enumerate() {
             obstacle.enter(lane, scene.obstacles.get(number), body);
         }
-        self.place();
+        self.place(|_| true);
         self.runs.enter(lane, self.scenes, &self.bodies);
     }
 
@@ -125,13 +125,16 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         self.steps * R::splat(self.runs.clock.step)
     }
 
-    /// Brings the obstacles of every lane to its instant.
+    /// Brings obstacles of every lane to its instant, chosen by whether they are watched between two
+    /// samples.
     #[inline(always)]
-    fn place(&mut self) {
+    fn place(&mut self, chosen: impl Fn(bool) -> bool) {
         let time = self.time();
         let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
         for (number, (obstacle, body)) in obstacles.enumerate() {
-            body.state = obstacle.place(time, (&self.scenes, number));
+            if chosen(self.runs.watched[number]) {
+                body.state = obstacle.place(time, (&self.scenes, number));
+            }
         }
     }
 
@@ -160,6 +163,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         if !self.runs.running.any() {
             return Ok(());
         }
+        self.place(|watched| !watched);
         self.sample(law, time, stop)?;
         for _ in 0..self.runs.clock.steps_per_sample {
             self.step(options)?;
@@ -204,7 +208,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
             Integrator::Rk4 => rk4_held(&mut self.runs),
         }
         self.steps += R::splat(1.0);
-        self.place();
+        self.place(|watched| watched);
         let later = self.time();
         self.runs.account(&self.bodies, before, later, false);
         if options.stop_on_contact {
