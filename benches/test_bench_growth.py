@@ -1,0 +1,73 @@
+"""What a control period costs with many obstacles: ten, a hundred, and a thousand that are far away.
+
+Robots go 20 m through discs that are spread over 18 m by 16 m, or that stay 60 m away; processor time,
+best of rounds, one core. Nothing here asserts a time: machines differ.
+"""
+
+from __future__ import annotations
+
+import functools
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import navigation as nav
+
+ROUNDS = 5
+AWAY = 60.0
+LAWS: dict[str, nav.Law] = {
+    "field": nav.VirtualForceField(),
+    "Masoud": nav.Masoud(),
+    "Khatib": nav.Khatib(),
+    "Ge and Cui": nav.GeCui(),
+    "Borenstein and Koren": nav.BorensteinKoren(),
+    "impedance": nav.laws.VirtualImpedanceLaw(),
+    "velocity obstacle": nav.VelocityObstacle(),
+    "ORCA": nav.OptimalReciprocalCollisionAvoidance(),
+}
+
+
+@functools.cache
+def scene(obstacles: int, *, far: bool = False) -> nav.Scenario:
+    """Return a scene with so many discs that move slowly."""
+    rng = np.random.default_rng(3)
+    around = rng.uniform(-np.pi, np.pi, obstacles)
+    near = np.stack([rng.uniform(1.0, 19.0, obstacles), rng.uniform(-8.0, 8.0, obstacles)], axis=-1)
+    ring = AWAY * rng.uniform(1.0, 2.0, obstacles)[:, None] * np.stack([np.cos(around), np.sin(around)], axis=-1)
+    speed, course = rng.uniform(0.0, 0.5, obstacles), rng.uniform(-np.pi, np.pi, obstacles)
+    velocity = np.stack([speed * np.cos(course), speed * np.sin(course)], axis=-1)
+    discs = [
+        nav.MovingDisc(
+            center=(float(x), float(y)),
+            velocity=(float(u), float(v)),
+            radius=0.1,
+            critical_radius=0.6,
+            active_radius=1.0,
+        )
+        for (x, y), (u, v) in zip(ring if far else near, velocity, strict=True)
+    ]
+    return nav.Scenario(start=(0.0, 0.0), goal=(20.0, 0.0), obstacles=discs, time_limit=20.0)
+
+
+def period(law: nav.Law, where: nav.Scenario) -> float:
+    """Return the processor time of a control period in microseconds."""
+    taken = []
+    for _ in range(ROUNDS):
+        begin = time.process_time()
+        table = nav.simulate_batch([where], law, threads=1)
+        taken.append((time.process_time() - begin) / int(table.force_evaluations[0]))
+    return min(taken) * 1e6
+
+
+@pytest.mark.benchmark(group="a control period among many obstacles, one core")
+@pytest.mark.parametrize("law", LAWS)
+def test_growth(benchmark: Any, law: str) -> None:
+    own = LAWS[law]
+    benchmark.pedantic(nav.simulate_batch, ([scene(100)], own), {"threads": 1}, rounds=ROUNDS, iterations=1)
+    none, ten, hundred = (period(own, scene(count)) for count in (0, 10, 100))
+    away = period(own, scene(1000, far=True))
+    benchmark.extra_info["us_of_none_10_100_and_1000_far"] = [round(each, 2) for each in (none, ten, hundred, away)]
+    benchmark.extra_info["hundred_over_ten"] = round(hundred / ten, 2)
+    benchmark.extra_info["far_over_none"] = round(away / none, 1)
