@@ -40,7 +40,7 @@ fn run(scenario: &Scenario, integrator: Integrator, step: f64) -> Trajectory {
         integrator,
         step,
         hold: false,
-        stop_on_contact: false,
+        ..Options::default()
     };
     let (run, path) = simulate(scenario, off(), &options, &|| false).unwrap();
     assert!((run.end_time - END).abs() < 1e-12);

@@ -272,6 +272,7 @@ fn neither_width_nor_threads_change_a_bit_of_any_integrator() {
             step: 0.03,
             hold,
             stop_on_contact,
+            ..Options::default()
         };
         assert_same_in_every_width(&law, exact, &gain_sets()[..5], options, false);
     }

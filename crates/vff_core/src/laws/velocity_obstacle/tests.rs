@@ -32,14 +32,14 @@ fn crowd(draws: &mut Draws, count: usize) -> Scenario {
             draws.between(0.0, 1.2)
         };
         let course = draws.between(0.0, 6.3);
-        let start = [draws.between(0.5, 9.0), draws.between(-4.0, 4.0)];
+        let start = [draws.between(1.0, 9.0), draws.between(-4.0, 4.0)];
         let velocity = [speed * course.cos(), speed * course.sin()];
         let motion = Motion::moving(start, velocity, [0.0; 2], None).unwrap();
         Obstacle::disc(draws.between(0.05, 0.3), motion, limits).unwrap()
     });
     let obstacles = obstacles.collect();
     let robot = HolonomicRobot::default();
-    Scenario::new(robot, [0.0; 2], [10.0, 0.0], obstacles, Rules::default()).unwrap()
+    Scenario::new(robot, [0.0; 2], [14.0, 0.0], obstacles, Rules::default()).unwrap()
 }
 
 /// The best of all candidates, one after the other.
@@ -80,8 +80,8 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
         Selection::TimeAndRisk { risk: 0.5 },
     ];
     let (mut found, mut nothing) = (0, 0);
-    for case in 0..240 {
-        let count = [1, 3, 8, 20][case % 4];
+    for case in 0..96 {
+        let count = [1, 8, 20, 40][case % 4];
         let scenario = crowd(&mut draws, count);
         let settings = VelocityObstacle {
             selection: selections[case % 3],
@@ -103,6 +103,7 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
         let situation = Situation {
             time,
             bodies: &bodies,
+            ages: &[],
             robot,
             heading: 0.0,
             interval: 0.06,
@@ -122,5 +123,5 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
             nothing += 1;
         }
     }
-    assert!(found > 100 && nothing > 5, "{found} {nothing}");
+    assert!(found > 40 && nothing > 2, "{found} {nothing}");
 }
