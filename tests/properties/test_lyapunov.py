@@ -36,7 +36,7 @@ ROUNDING = 1e-12  # of the terms that cancel in the derivative
 class Sample(NamedTuple):
     """Reported and numerical derivative at one state."""
 
-    reported: nav.laws.Lyapunov
+    reported: nav.Lyapunov
     numerical: float
     switches: bool
     terms: nav.laws.ForceTerms

@@ -22,8 +22,9 @@ from hrsafety.navigation.compare import compare
 from hrsafety.navigation.gains.changes import gain_sensitivity
 from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.navigation.gains.search import optimize_gains
-from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
-from hrsafety.navigation.laws.forces import ForceTerms, force_terms, lyapunov
+from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Masoud, VirtualForceField
+from hrsafety.navigation.laws.force_laws import Law as Law  # listed in `laws`; a name of type hints
+from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
 from hrsafety.navigation.laws.planners import (
     FieldDStar,
     OptimalReciprocalCollisionAvoidance,
@@ -53,7 +54,7 @@ __all__ = [
     "HolonomicRobot",
     "Human",
     "Khatib",
-    "Law",
+    "Lyapunov",
     "Masoud",
     "Measurement",
     "MovingDisc",
