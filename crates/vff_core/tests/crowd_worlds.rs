@@ -387,7 +387,10 @@ fn forces_of_equal_people_on_each_other_cancel() {
 fn threads_and_restarts_change_no_bit() {
     let worlds: Vec<CrowdWorld> = (0..7)
         .map(|seed| {
-            let mut world = world(all_models()[usize::try_from(seed).unwrap() % 5], scattered(30, 8.0, seed));
+            let mut world = world(
+                all_models()[usize::try_from(seed).unwrap() % 5],
+                scattered(30, 8.0, seed),
+            );
             world.people[0].traits.desired_speed = None;
             world.seed = seed;
             world
