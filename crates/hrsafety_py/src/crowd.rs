@@ -294,7 +294,9 @@ fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, Py
     let robots = ended.robots().iter();
     fields.vector(
         "robot_arrival_time",
-        robots.map(|robot| robot.arrival_time()).collect(),
+        robots
+            .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
+            .collect(),
     )?;
     let diverged = ended.divergence().map(|found| {
         let (kind, number) = match found.agent {
@@ -322,7 +324,7 @@ pub fn crowd_simulate<'py>(
     let report = Report::new(progress.as_ref(), cores.len());
     let work = |control: &crate::watch::Control<'_>| {
         simulate_worlds(&cores, threads, &|| control.interrupted(), &|more| {
-            control.count(more)
+            control.count(more);
         })
     };
     let ended = if python || threads == Some(1) {

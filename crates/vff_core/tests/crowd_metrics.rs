@@ -115,12 +115,13 @@ impl Case {
             .iter()
             .map(|ends| Wall::polyline(ends.map(Into::into).to_vec()).unwrap())
             .collect();
-        let without = match self.without.is_empty() {
-            true => None,
-            false => Some(Without {
+        let without = if self.without.is_empty() {
+            None
+        } else {
+            Some(Without {
                 people: Paths::new("people_without", &self.without, count)?,
                 goals: &self.goals,
-            }),
+            })
         };
         evaluate(&Episode {
             robot: &self.robot,
@@ -189,7 +190,7 @@ fn alike(found: f64, expected: f64, tolerance: f64) -> bool {
         || (found - expected).abs() <= tolerance * expected.abs().max(1.0)
 }
 
-fn assert_equal(found: RobotMetrics, expected: &RobotMetrics, tolerance: f64, about: &str) {
+fn assert_equal(found: &RobotMetrics, expected: &RobotMetrics, tolerance: f64, about: &str) {
     let rows = found.into_array().into_iter().zip(expected.into_array());
     for ((found, expected), metric) in rows.zip(ROBOT_METRICS) {
         let name = metric.name;
@@ -248,7 +249,7 @@ fn places_directions_and_numbers_do_not_matter() {
         let expected = case.metrics().unwrap();
         let same = |other: Case, what: &str| {
             let about = format!("{} {what}", case.name);
-            assert_equal(other.metrics().unwrap(), &expected, 1e-9, &about);
+            assert_equal(&other.metrics().unwrap(), &expected, 1e-9, &about);
         };
         same(case.renumbered(), "renumbered");
         same(
@@ -274,7 +275,7 @@ fn whole_periods_do_not_matter_where_the_world_repeats() {
             *place += Point::new(9.0 * turns, -11.0);
         }
         let found = case.metrics().unwrap();
-        assert_equal(found, &expected, 1e-9, &case.name);
+        assert_equal(&found, &expected, 1e-9, &case.name);
         let near = Case {
             rules: Rules {
                 period: Period::default(),

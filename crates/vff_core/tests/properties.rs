@@ -242,7 +242,7 @@ fn options(rk4: bool, hold: bool) -> Options {
         },
         step: 0.02,
         hold,
-        stop_on_contact: false,
+        ..Options::default()
     }
 }
 

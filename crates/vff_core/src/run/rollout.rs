@@ -138,8 +138,18 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     if led {
         follow(&mut groups);
     }
+    hand_over(scenario, &mut groups, team, clock.time(first), &mut keep)
+}
+
+/// Ends what still runs, and hands over every run.
+fn hand_over<R: Real, L, C: Recorder<R>>(
+    scenario: &Scenario,
+    groups: &mut [Runs<&Scenario, R>],
+    team: &mut [Member<L, C>],
+    time: f64,
+    keep: &mut impl FnMut(usize, &Runs<&Scenario, R>, usize, &C),
+) -> Result<()> {
     for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
-        let time = clock.time(first);
         runs.check_finite(time)
             .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
         runs.end(runs.running, time);
