@@ -86,7 +86,8 @@ pub fn differential_mass(
     let arm = x * uy - y * ux;
     let inverse = ux * ux / moving + arm * arm / turning;
     let largest = 1.0 / moving + (x * x + y * y) / turning;
-    if inverse <= NONE * largest {
+    // Where the place is too far away for numbers, nothing says that the base cannot give way.
+    if largest.is_finite() && inverse <= NONE * largest {
         return Ok(f64::INFINITY);
     }
     felt(point, 1.0 / inverse)
