@@ -422,7 +422,7 @@ def _add_benchmark(commands: Any) -> None:
 
 def _add_init(commands: Any) -> None:
     parser = _add_command(commands, "init", summary="write a commented file to start from", example=_INIT_EXAMPLE)
-    parser.add_argument("kind", choices=STARTERS, metavar="KIND", help=", ".join(STARTERS))
+    parser.add_argument("kind", choices=tuple(STARTERS), metavar="KIND", help=", ".join(STARTERS))
     parser.add_argument("file", nargs="?", metavar="FILE", help="where to write it [a name of its kind]")
 
 

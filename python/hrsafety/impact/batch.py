@@ -219,7 +219,7 @@ def metrics_batch(
     ...     closing_speed=[0.4, 1.25], outputs=["hic15", "peak_contact_force"],
     ... )
     >>> few.hic15.round(2).tolist(), few.clip_3ms_g.tolist()
-    ([0.04, 0.73], [nan, nan])
+    ([0.07, 1.15], [nan, nan])
     """
     asked = _asked(fields, outputs)
     constrained = isinstance(head, ConstrainedHead)

@@ -76,7 +76,7 @@ def stream_batch(
     >>> parts = nav.gains.stream_batch([scenarios.configuration("c1")], nav.VirtualForceField(), grid, rows=1000)
     >>> best = max(float(part.performance_total.max()) for part in parts)
     >>> round(best, 2)
-    0.66
+    0.62
     """
     scenes, driver = check_scenarios(scenarios), as_law(law)
     total, part_of = _sets(driver, gains)
