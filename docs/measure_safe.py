@@ -28,7 +28,7 @@ SUITES = (
     ("crowd of 12", "crowd", 1.0, 0, ["field", GUARDED, "orca", "orca+shield", "orca+shield+yielding"]),
     ("crowd of 12", "crowd", 1.6, 0, [GUARDED]),
 )
-RANDOM, SEARCHES, EVALUATIONS = 10_000, 10, 300
+RANDOM, SEARCHES, EVALUATIONS = 20_000, 20, 300
 PURSUED_LAWS = ("field+shield", "orca+shield", "velocity_obstacle+shield")
 BARE = ("field", "orca", "velocity_obstacle")
 BARE_RANDOM = 1000

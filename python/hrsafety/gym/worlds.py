@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hrsafety import scenarios
 from hrsafety._arguments import Pair, count, flag
-from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
-from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
+from hrsafety.navigation.crowd.agents import CrowdRobot
+from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 
@@ -15,6 +15,8 @@ __all__ = ["Task", "bottleneck", "circle_crossing", "corridor", "crossing"]
 
 _PERIOD = 0.25  # time between two commands in s, as in CrowdNav
 _MOST_PEOPLE = 10_000
+
+Area = tuple[Pair, Pair, bool]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +42,19 @@ class Task:
 
     world: World
     circle: bool = False
-    area: tuple[Pair, Pair, bool] | None = None
+    area: Area | None = None
 
 
 def _robot(start: Pair, goal: Pair) -> CrowdRobot:
     return CrowdRobot(start=start, goal=goal, robot=HolonomicRobot(radius=0.3, max_speed=1.0), control_period=_PERIOD)
+
+
+def _among(world: World, robot: CrowdRobot, visible: bool, area: Area | None = None) -> Task:
+    """Return the task of a robot in a world; starts that are drawn anew lie in a corner of their area before."""
+    awareness = 1.0 if flag("visible", visible) else 0.0
+    people = [replace(each, awareness=awareness, start=area[1] if area else each.start) for each in world.people]
+    sources = [replace(each, awareness=awareness) for each in world.sources]
+    return Task(world=replace(world, people=people, sources=sources, robots=[robot]), area=area)
 
 
 def circle_crossing(*, people: int = 5, visible: bool = True, model: Pedestrian | None = None) -> Task:
@@ -97,22 +107,9 @@ def corridor(*, people: int = 10, visible: bool = True, model: Pedestrian | None
     >>> gym.corridor().world.period
     (10.0, 0.0)
     """
-    decide = CollisionFreeSpeed() if model is None else model
-    awareness = 1.0 if flag("visible", visible) else 0.0
-    far = 1e4
-    walkers = [
-        Person(
-            start=(2.0 + 7.0 * (index % 10) / 10.0, 0.5 + 0.6 * (index % 4)),
-            route=[(far if index % 2 == 0 else -far, 1.5)],
-            model=decide,
-            awareness=awareness,
-        )
-        for index in range(count("people", people, least=0, most=_MOST_PEOPLE))
-    ]
-    walls = [[(-far, 0.0), (far, 0.0)], [(-far, 3.0), (far, 3.0)]]
-    robot = _robot((0.5, 1.5), (9.0, 1.5))
-    world = World(people=walkers, robots=[robot], walls=walls, period=(10.0, 0.0), time_limit=30.0)
-    return Task(world=world, area=((1.2, 0.3), (9.7, 2.7), True))
+    walkers = count("people", people, least=0, most=_MOST_PEOPLE)
+    world = scenarios.corridor(walkers, model=model, time_limit=30.0)
+    return _among(world, _robot((0.5, 1.5), (9.0, 1.5)), visible, ((1.2, 0.3), (9.7, 2.7), True))
 
 
 def crossing(*, rate: float = 1.0, visible: bool = True, model: Pedestrian | None = None) -> Task:
@@ -138,18 +135,8 @@ def crossing(*, rate: float = 1.0, visible: bool = True, model: Pedestrian | Non
     >>> len(gym.crossing().world.sources)
     2
     """
-    decide = CollisionFreeSpeed() if model is None else model
-    awareness = 1.0 if flag("visible", visible) else 0.0
-    end, half = 8.0, 1.5
-    walls = [[(x * end, y * half), (x * half, y * half), (x * half, y * end)] for x in (-1.0, 1.0) for y in (-1.0, 1.0)]
-    low, high = 1.0 - end, 1.5 - end
-    streams = [((low, -1.2), (high, 1.2), (end, 0.0)), ((-1.2, low), (1.2, high), (0.0, end))]
-    sources = [
-        Source(low=first, high=last, rate=rate, route=[goal], model=decide, arrival_radius=half, awareness=awareness)
-        for first, last, goal in streams
-    ]
-    robot = _robot((0.0, -5.0), (0.0, 6.0))
-    return Task(world=World(sources=sources, robots=[robot], walls=walls, time_limit=40.0))
+    world = scenarios.crossing(0, rate=rate, model=model, time_limit=40.0)
+    return _among(world, _robot((0.0, -5.0), (0.0, 6.0)), visible)
 
 
 def bottleneck(*, people: int = 20, door: float = 1.0, visible: bool = True, model: Pedestrian | None = None) -> Task:
@@ -177,20 +164,6 @@ def bottleneck(*, people: int = 20, door: float = 1.0, visible: bool = True, mod
     >>> gym.bottleneck(people=5).area
     ((0.4, 0.4), (6.0, 7.6), False)
     """
-    decide = CollisionFreeSpeed() if model is None else model
-    awareness = 1.0 if flag("visible", visible) else 0.0
-    low, high = 4.0 - 0.5 * door, 4.0 + 0.5 * door
-    walls = [[(8.0, low), (8.0, 0.0), (0.0, 0.0), (0.0, 8.0), (8.0, 8.0), (8.0, high)]]
-    walkers = [
-        Person(
-            start=(2.0 + 0.5 * (index % 8), 0.4 + 0.7 * (index // 8 % 10)),
-            route=[(8.0, 4.0), (10.0, 4.0)],
-            model=decide,
-            at_end="leave",
-            awareness=awareness,
-        )
-        for index in range(count("people", people, least=0, most=_MOST_PEOPLE))
-    ]
-    robot = _robot((1.0, 4.0), (10.0, 4.0))
-    world = World(people=walkers, robots=[robot], walls=walls, time_limit=60.0)
-    return Task(world=world, area=((0.4, 0.4), (6.0, 7.6), False))
+    walkers = count("people", people, least=0, most=_MOST_PEOPLE)
+    world = scenarios.bottleneck(walkers, door=door, model=model, time_limit=60.0)
+    return _among(world, _robot((1.0, 4.0), (10.0, 4.0)), visible, ((0.4, 0.4), (6.0, 7.6), False))
