@@ -9,12 +9,12 @@ and picture shows. Nothing is refused here and nothing is changed.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["RANGES", "Range", "ResultWarning", "implausible"]
+__all__ = ["RANGES", "Range", "ResultWarning", "gathered", "implausible"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,40 @@ class ResultWarning:
     def __str__(self) -> str:
         """Return the line that is printed."""
         return f"warning: {self.message}"
+
+
+def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -> tuple[ResultWarning, ...]:
+    """Return the first warning of each kind with the number of the others.
+
+    Parameters
+    ----------
+    found : iterable of (str, iterable of ResultWarning)
+        Names of results with their warnings.
+    among : str
+        What the results are of, in the plural.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One for each code, in the order in which they were found, with the name before subject and message.
+
+    Examples
+    --------
+    >>> from hrsafety.plausibility import ResultWarning, gathered
+    >>> doubt = ResultWarning("implausible", "heading", "heading is 90 rad")
+    >>> print(*gathered([("first", [doubt]), ("second", [doubt])], "scenarios"))
+    warning: first: heading is 90 rad (1 more of this kind in these scenarios)
+    """
+    first: dict[str, ResultWarning] = {}
+    others: dict[str, int] = {}
+    for name, warnings in found:
+        for each in dict.fromkeys(warnings):
+            if each.code in first:
+                others[each.code] = others.get(each.code, 0) + 1
+            else:
+                first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", f"{name}: {each.message}")
+    more = {code: f" ({count} more of this kind in these {among})" for code, count in others.items()}
+    return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
 
 
 class Range(NamedTuple):

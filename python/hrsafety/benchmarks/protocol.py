@@ -68,6 +68,8 @@ class Suite:
         What is asked of an entry, by its name and the speed of people that its shield assumes.
     step : float
         Motion step in s.
+    fastest : float or None
+        Largest speed of people in m/s; ``None``: the data decide.
     scene : callable
         Scenario of an episode, to show it again.
     run : callable
@@ -84,6 +86,7 @@ class Suite:
     available: Callable[[Path | None], int] | None = None
     accepted: Mapping[tuple[str, float | None], str] = field(default_factory=dict)
     step: float = 0.01
+    fastest: float | None
     scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
     run: Callable[[Case], Iterator[Row]]
 

@@ -12,6 +12,7 @@ from hrsafety import scenarios
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
+from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 
 __all__ = ["REACTING"]
@@ -109,16 +110,18 @@ def _touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
     return int(touched[:last].any(axis=0).sum())
 
 
-def _suite(name: str, summary: str, scene: Callable[[Case, int], World], cases: int, most: int = MOST) -> Suite:
-    return Suite(name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=most, run=_worlds(scene))
+def _suite(name: str, summary: str, scene: Callable[[Case, int], World], cases: int, fastest: float) -> Suite:
+    return Suite(
+        name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=MOST, fastest=fastest, run=_worlds(scene)
+    )
 
 
 REACTING = (
-    _suite("circle_crossing", "5 people cross a circle and see the robot", _seen, CASES),
-    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", _unseen, CASES),
-    _suite("antipodal", "19 people and the robot go to the opposite point of a circle", _antipodal, 100),
-    _suite("corridor", "12 people walk both ways in a corridor", _corridor, 100),
-    _suite("crossing", "two streams of people cross at right angles", _crossing, 100),
-    _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", _bottleneck, 20),
+    _suite("circle_crossing", "5 people cross a circle and see the robot", _seen, CASES, 1.0),
+    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", _unseen, CASES, 1.0),
+    _suite("antipodal", "19 people and the robot go to the opposite point of a circle", _antipodal, 100, 1.0),
+    _suite("corridor", "12 people walk both ways in a corridor", _corridor, 100, FASTEST_DRAWN),
+    _suite("crossing", "two streams of people cross at right angles", _crossing, 100, FASTEST_DRAWN),
+    _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", _bottleneck, 20, FASTEST_DRAWN),
 )
 """The suites of people that react."""

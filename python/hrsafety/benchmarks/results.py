@@ -12,6 +12,7 @@ from pathlib import Path
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Result", "Row", "read_rows", "row_text"]
 
@@ -114,10 +115,13 @@ class Result:
         Episodes of every entry.
     accepted : mapping of str to str
         What is asked of an entry: success, contact and fault in percent.
+    warnings : tuple of ResultWarning
+        Where shields assume slower people than the suite has.
     """
 
     suite: str
     rows: Mapping[str, Sequence[Row]]
+    warnings: tuple[ResultWarning, ...] = ()
     accepted: Mapping[str, str] = field(default_factory=dict)
 
     def success(self, name: str) -> Share:

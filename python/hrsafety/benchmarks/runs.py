@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from hrsafety._arguments import callback, checked_seed, count, positive, readable, sequence, thread_count, word
@@ -14,6 +14,8 @@ from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
 from hrsafety.benchmarks.suites import CHUNK, SUITES
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.shield_warnings import ASSUMES_LESS
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["benchmark", "case_of"]
 
@@ -36,8 +38,8 @@ def benchmark(
 
     Parameters
     ----------
-    suite : {"s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"}
-        The protocol.
+    suite : str
+        The protocol, one of `SUITES`.
     laws : sequence of str or None
         Entries such as ``"field+shield+yielding"``; those of the suite when ``None``.
     cases : int or None
@@ -113,7 +115,22 @@ def benchmark(
         for speed in (None, person_speed)
         if (name, speed) in kind.accepted
     }
-    return Result(suite=kind.name, rows=rows, accepted=asked)
+    shielded = any("shield" in each.parts for each in entries)
+    doubts = tuple(_doubts(kind, person_speed)) if shielded else ()
+    return Result(suite=kind.name, rows=rows, accepted=asked, warnings=doubts)
+
+
+def _doubts(kind: Suite, person_speed: float) -> Iterator[ResultWarning]:
+    """Warn where people of a suite are, or may be, faster than shields assume."""
+    if kind.fastest is not None and person_speed >= kind.fastest:
+        return
+    fastest = "may be faster in the data" if kind.fastest is None else f"move at up to {kind.fastest:g} m/s"
+    yield ResultWarning(
+        ASSUMES_LESS,
+        "person_speed",
+        f"shields assume people of up to {person_speed:g} m/s, but people of {kind.name} {fastest}: what a shield "
+        "proves does not hold for those who are faster",
+    )
 
 
 def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -> Case:

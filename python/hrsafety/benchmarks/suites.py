@@ -208,6 +208,7 @@ SUITES: dict[str, Suite] = {
     for suite in (
         Suite(
             name="s4",
+            fastest=1.0,
             summary="3 discs drift across 10 m",
             laws=_GUARDED,
             cases=DRAWN,
@@ -219,6 +220,7 @@ SUITES: dict[str, Suite] = {
         ),
         Suite(
             name="s5",
+            fastest=1.0,
             summary="12 discs drift across 10 m",
             laws=_GUARDED,
             cases=DRAWN,
@@ -234,6 +236,7 @@ SUITES: dict[str, Suite] = {
         ),
         Suite(
             name="crowd",
+            fastest=1.0,
             summary="12 people cross the way of the robot and do not give way",
             laws=("field", "field+shield+yielding", "orca", "orca+shield", "orca+shield+yielding"),
             cases=1000,
@@ -249,6 +252,7 @@ SUITES: dict[str, Suite] = {
         ),
         Suite(
             name="recordings",
+            fastest=None,
             summary="the robot crosses recorded people",
             laws=("field", "field+shield+yielding"),
             cases=RUNS,
@@ -261,6 +265,7 @@ SUITES: dict[str, Suite] = {
         ),
         Suite(
             name="adversary",
+            fastest=PERSON_SPEED,
             summary="a person who sees the robot wants it to be at fault",
             laws=("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield"),
             cases=1000,
@@ -271,6 +276,7 @@ SUITES: dict[str, Suite] = {
         ),
         Suite(
             name="barn",
+            fastest=0.0,
             summary="300 fields of cylinders that the map shows",
             laws=barn.LAWS,
             cases=300,
@@ -285,6 +291,7 @@ SUITES: dict[str, Suite] = {
         *(
             Suite(
                 name=name,
+                fastest=None,
                 summary=f"60 worlds of cylinders that move, in 10 phases, a robot of {most:g} m/s^2",
                 laws=barn.DYNAMIC_LAWS,
                 cases=600,

@@ -48,11 +48,11 @@ def run_suite(options: argparse.Namespace) -> None:
         name = OPTIONS.get(error.argument)
         raise error if name is None else error.renamed(name) from None
     print(terminal.table([HEAD], result.cells(), left=(0,)))
-    if place is None:
-        return
-    print()
-    for path in _write(options, result, Path(options.out)):
-        print(f"wrote {path}")
+    if place is not None:
+        print()
+        for path in _write(options, result, Path(options.out)):
+            print(f"wrote {path}")
+    output.report_warnings(result.warnings, options.strict)
 
 
 def _write(options: argparse.Namespace, result: Result, place: Path) -> Iterator[Path]:
@@ -69,6 +69,7 @@ def _write(options: argparse.Namespace, result: Result, place: Path) -> Iterator
         head=HEAD,
         rows=result.cells(),
         pictures=pictures,
+        warned=result.warnings,
         person_speed=options.person_speed,
     )
     yield output.write_text(place / f"{stem}.html", page)

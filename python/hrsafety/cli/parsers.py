@@ -399,6 +399,7 @@ def _add_benchmark(commands: Any) -> None:
         summary="run laws through a fixed protocol and show the shares of success, contact and fault",
         example=_BENCHMARK_EXAMPLE,
     )
+    _add_strict(parser)
     parser.add_argument("suite", choices=SUITE_NAMES, metavar="SUITE", help=", ".join(SUITE_NAMES))
     parser.add_argument(
         "--laws",

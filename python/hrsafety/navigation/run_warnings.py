@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 from hrsafety.navigation.knowledge import warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
@@ -12,7 +11,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
 from hrsafety.navigation.shield_warnings import of_shield
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["of_run", "of_runs", "of_scenes"]
 
@@ -65,18 +64,9 @@ def of_runs(
         One for each code, in the order in which they were found.
     """
     kept = list(laws)
-    first: dict[str, ResultWarning] = {}
-    others: dict[str, int] = {}
-    for name, scenario in zip(names, scenarios, strict=True):
-        seen = {each: None for law in kept for each in of_run(scenario, law, built)}
-        for each in seen:
-            if each.code in first:
-                others[each.code] = others.get(each.code, 0) + 1
-            else:
-                message = f"{name}: {each.message}"
-                first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", message)
-    more = {code: f" ({count} more of this kind in these scenarios)" for code, count in others.items()}
-    return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
+    named = zip(names, scenarios, strict=True)
+    found = ((name, [each for law in kept for each in of_run(scenario, law, built)]) for name, scenario in named)
+    return gathered(found, "scenarios")
 
 
 def of_scenes(scenarios: Sequence[Scenario], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:

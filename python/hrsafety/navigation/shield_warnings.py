@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import own_speed
+from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["of_shield"]
+__all__ = ["ASSUMES_LESS", "of_shield", "of_surroundings"]
 
 ASSUMES_LESS = "shield_assumes_less"
 SEES_LESS = "shield_sees_less"
@@ -36,14 +38,14 @@ def of_shield(scenario: Scenario, shield: Shield, built: AsBuilt | None = None) 
     ResultWarning
         Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
-    for name, assumed, least, why in _needed(scenario, shield):
-        if assumed < least * (1.0 - ROUNDING):
-            yield ResultWarning(
-                ASSUMES_LESS,
-                f"shield.{name}",
-                f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; give at "
-                f"least {name}={least:.4g}",
-            )
+    others = ((f"obstacles[{index}]", own_speed(obstacle)) for index, obstacle in enumerate(scenario.obstacles))
+    yield from of_surroundings(
+        shield,
+        others,
+        measurement=scenario.measurement,
+        control_period=scenario.control_period,
+        own_speed=scenario.robot.max_speed,
+    )
     if built is not None and (built.obstacle_vision is not None or built.sensors):
         yield ResultWarning(
             SEES_LESS,
@@ -53,13 +55,58 @@ def of_shield(scenario: Scenario, shield: Shield, built: AsBuilt | None = None) 
         )
 
 
-def _needed(scenario: Scenario, shield: Shield) -> Iterator[tuple[str, float, float, str]]:
-    """Yield name, assumed value, the least one that covers the scene, and what asks for it."""
-    if shield.person_speed is not None:
-        for index, obstacle in enumerate(scenario.obstacles):
-            speed = own_speed(obstacle)
-            yield "person_speed", shield.person_speed, speed, f"obstacles[{index}] moves at up to {speed:.4g} m/s"
-    measured = scenario.measurement
+def of_surroundings(
+    shield: Shield,
+    others: Iterable[tuple[str, float]],
+    *,
+    measurement: Measurement | None,
+    control_period: float,
+    own_speed: float,
+    owner: str = "shield",
+) -> Iterator[ResultWarning]:
+    """Warn of bounds of a shield that others or a measurement exceed.
+
+    Parameters
+    ----------
+    shield : Shield
+        What is assumed.
+    others : iterable of (str, float)
+        Who moves, and the largest speed in m/s.
+    measurement : Measurement or None
+        How the robot knows them.
+    control_period : float
+        Time between two measurements in s.
+    own_speed : float
+        Largest speed of the robot in m/s.
+    owner : str
+        How the warnings call the shield.
+
+    Yields
+    ------
+    ResultWarning
+        With the code ``"shield_assumes_less"``.
+    """
+    people = () if shield.person_speed is None else others
+    needed = [("person_speed", shield.person_speed or 0.0, speed, f"{who} {_moves(speed)}") for who, speed in people]
+    needed += _of_measurement(shield, measurement, control_period, own_speed)
+    for name, assumed, least, why in needed:
+        if assumed < least * (1.0 - ROUNDING):
+            mended = f"give at least {name}={least:.4g}" if math.isfinite(least) else "no number covers that"
+            yield ResultWarning(
+                ASSUMES_LESS,
+                f"{owner}.{name}",
+                f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; {mended}",
+            )
+
+
+def _moves(speed: float) -> str:
+    return f"moves at up to {speed:.4g} m/s" if math.isfinite(speed) else "has no largest speed"
+
+
+def _of_measurement(
+    shield: Shield, measured: Measurement | None, control_period: float, own_speed: float
+) -> Iterator[tuple[str, float, float, str]]:
+    """Yield name, assumed value, the least one that covers a measurement, and what asks for it."""
     if measured is None:
         return
     bound, latency = measured._native.error_bound(), measured.latency
@@ -68,9 +115,9 @@ def _needed(scenario: Scenario, shield: Shield) -> Iterator[tuple[str, float, fl
         yield "position_error", shield.position_error, bound, f"positions are wrong by up to {bound:.4g} m"
         if shield.velocity_error is not None:
             # Backward differences of two wrong positions.
-            error = 2.0 * bound / scenario.control_period
+            error = 2.0 * bound / control_period
             why = f"velocities from differences of positions are wrong by up to {error:.4g} m/s"
             yield "velocity_error", shield.velocity_error, error, why
     if measured.of in ("both", "robot"):
-        own = bound + latency * scenario.robot.max_speed
+        own = bound + latency * own_speed
         yield "margin", shield.margin, own, f"the robot knows its own place to {own:.4g} m only"

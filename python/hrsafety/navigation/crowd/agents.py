@@ -15,11 +15,13 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 
-__all__ = ["AtEnd", "CrowdRobot", "Person", "Source"]
+__all__ = ["FASTEST_DRAWN", "AtEnd", "CrowdRobot", "Person", "Source"]
 
 AtEnd = Literal["stay", "leave", "repeat"]
 
 _MOST_GROUPS = 2**32 - 1
+FASTEST_DRAWN = 2.2
+"""Largest speed that is drawn for people, in m/s, Weidmann (1993)."""
 
 
 def _route(name: str, points: object) -> tuple[Pair, ...]:

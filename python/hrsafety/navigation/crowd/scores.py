@@ -12,7 +12,8 @@ from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.episode import Episode
-from hrsafety.navigation.metrics.scores import MetricTable, WorldMetrics, evaluate_many, evaluate_world
+from hrsafety.navigation.metrics.scores import MetricTable, WorldMetrics, evaluate_world, table_of
+from hrsafety.plausibility import gathered
 
 __all__ = ["crowd_batch", "episodes_of", "world_metrics"]
 
@@ -117,7 +118,8 @@ def crowd_batch(
     if people_alone:
         alone = list(simulate_crowds([replace(world, robots=()) for world in given], threads=threads))
     episodes = [each for run, other in zip(runs, alone, strict=True) for each in episodes_of(run, other)]
-    return evaluate_many(episodes, threads=threads)
+    named = ((f"worlds[{index}]", world.warnings) for index, world in enumerate(given))
+    return table_of(episodes, gathered(named, "worlds"), threads=threads)
 
 
 def world_metrics(run: CrowdTrajectories) -> WorldMetrics:

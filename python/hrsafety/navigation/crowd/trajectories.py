@@ -9,6 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety.navigation.crowd.world import World
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, plane
 
 __all__ = ["CrowdTrajectories", "Divergence"]
@@ -74,6 +75,11 @@ class CrowdTrajectories(Table):
     arrival_time: Array
     robot_arrival_time: Array
     diverged: Divergence | None = None
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Those of the world."""
+        return self.world.warnings
 
     @property
     def outcomes(self) -> tuple[str, ...]:

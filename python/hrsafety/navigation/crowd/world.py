@@ -10,7 +10,9 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, sequence
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.crowd.doubts import of_robots
 from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["WallShape", "World", "native_walls"]
 
@@ -132,3 +134,8 @@ class World(Parameters):
             seed=self.seed,
         )
         self._set(_native=native)
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Bounds of the robots' shields that people, other robots or measurements exceed."""
+        return of_robots(tuple(self.people), tuple(self.sources), tuple(self.robots), self.step)

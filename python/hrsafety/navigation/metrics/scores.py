@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -23,12 +24,14 @@ __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluat
 class _Scores(Table):
     """Values by the names of declared metrics."""
 
-    __slots__ = ("_values",)
+    __slots__ = ("_values", "warnings")
     _metrics: Mapping[str, Metric] = METRICS
     _values: dict[str, Any]
+    warnings: tuple[ResultWarning, ...]
 
-    def __init__(self, values: Mapping[str, Any]) -> None:
+    def __init__(self, values: Mapping[str, Any], warnings: Iterable[ResultWarning] = ()) -> None:
         object.__setattr__(self, "_values", dict(values))
+        object.__setattr__(self, "warnings", tuple(warnings))
 
     def __getattr__(self, name: str) -> Any:
         # Pickling asks before there are values.
@@ -41,7 +44,7 @@ class _Scores(Table):
         raise AttributeError(f"{type(self).__name__} cannot be changed", name=name, obj=self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._values,)
+        return type(self), (self._values, self.warnings)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -87,7 +90,7 @@ class _One(_Scores):
             value = self._values[metric.name]
             shown = f"{value:.6g}" if isinstance(value, float) else str(value)
             lines.append(f"  {metric.name} = {shown}{' ' if metric.unit else ''}{metric.unit}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *self._doubts()])
 
 
 @with_metrics(METRICS)
@@ -188,7 +191,12 @@ def evaluate(
     """
     episode = _episode(run, people, options)
     found = _hrsafety.crowd_metrics([episode._native], 1, None)
-    return EpisodeMetrics({name: values[0].item() for name, values in found.items()})
+    return EpisodeMetrics({name: values[0].item() for name, values in found.items()}, _warnings(run))
+
+
+def _warnings(run: object) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a run; positions have none."""
+    return run.warnings if isinstance(run, Trajectory) else ()
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -245,9 +253,21 @@ def evaluate_many(
     ([False, True], [0.5, 1.0])
     """
     given = sequence("episodes", "be a sequence of episodes", episodes)
-    natives = [_native(f"episodes[{index}]", each) for index, each in enumerate(given)]
+    named = ((f"episodes[{index}]", _warnings(each)) for index, each in enumerate(given))
+    return table_of(given, gathered(named, "episodes"), threads=threads, progress=progress)
+
+
+def table_of(
+    episodes: Sequence[Episode | Trajectory],
+    warnings: Iterable[ResultWarning],
+    *,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None = None,
+) -> MetricTable:
+    """Return the table of `evaluate_many` with the warnings of what the episodes come from."""
+    natives = [_native(f"episodes[{index}]", each) for index, each in enumerate(episodes)]
     found = _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
-    return MetricTable(found)
+    return MetricTable(found, warnings)
 
 
 def _native(name: str, given: object) -> _hrsafety.CrowdEpisode:

@@ -1,0 +1,100 @@
+"""Worlds, their runs, tables and benchmarks say where a shield assumes less than there is."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import pytest
+
+from hrsafety import navigation as nav
+from hrsafety.benchmarks import benchmark
+from hrsafety.cli import exit_codes, main
+
+
+def shielded(**shield: Any) -> nav.SafeNavigation:
+    return nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**shield))
+
+
+def world(law: Any, person: dict[str, Any] | None = None, **robot: Any) -> nav.crowd.World:
+    walker = nav.crowd.Person(**({"start": (4, 1), "route": [(0, 1)], "desired_speed": 1.0} | (person or {})))
+    driven = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 0), law=law, **robot)
+    return nav.crowd.World(people=[walker], robots=[driven], time_limit=1.0)
+
+
+def subjects(place: nav.crowd.World) -> list[str]:
+    return [each.subject for each in place.warnings]
+
+
+def test_enough_is_no_doubt() -> None:
+    assert world(shielded(person_speed=1.0)).warnings == ()
+    assert world(shielded(person_speed=None)).warnings == ()
+    assert world(nav.VirtualForceField(), {"desired_speed": 3.0}).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("person", "least"),
+    [
+        ({"desired_speed": 1.2}, "person_speed=1.2"),
+        ({"desired_speed": None}, "person_speed=2.2"),
+        ({"model": nav.crowd.Moussaid()}, "person_speed=1.3"),
+        ({"model": nav.crowd.SocialForce2000()}, "has no largest speed"),
+        ({"recording": ([0.0, 1.0], [(4.0, 1.0), (2.5, 1.0)])}, "person_speed=1.5"),
+    ],
+)
+def test_people_who_may_be_faster_are_told(person: dict[str, Any], least: str) -> None:
+    place = world(shielded(person_speed=1.0), person)
+    assert subjects(place) == ["robots[0].law.shield.person_speed"]
+    assert least in place.warnings[0].message
+
+
+def test_measurements_that_are_worse_are_told() -> None:
+    late = nav.Measurement(scale=0.05, of="both", latency=0.2)
+    place = world(shielded(person_speed=1.0), measurement=late)
+    names = [each.rpartition(".")[2] for each in subjects(place)]
+    assert names == ["latency", "position_error", "margin"]
+
+
+def test_sources_and_other_robots_count() -> None:
+    fast = nav.crowd.Source(low=(8, 0), high=(9, 1), rate=1.0, route=[(0, 0)], desired_speed=2.0)
+    robots = [
+        nav.crowd.CrowdRobot(start=(0, 4 * index), goal=(4, 4 * index), law=shielded(person_speed=speed))
+        for index, speed in enumerate((0.5, 1.9))
+    ]
+    place = nav.crowd.World(sources=[fast], robots=robots)
+    assert subjects(place) == [f"robots[{index}].law.shield.person_speed" for index in (0, 1)]
+    alone = nav.crowd.World(robots=robots)
+    assert subjects(alone) == ["robots[0].law.shield.person_speed"]
+    assert "robots[1] moves" in alone.warnings[0].message
+
+
+def test_runs_and_tables_carry_the_doubts() -> None:
+    place = world(shielded(person_speed=0.5))
+    run = nav.crowd.simulate_crowd(place)
+    assert run.warnings == place.warnings
+    assert place.warnings[0].message in repr(run)
+    table = nav.crowd.crowd_batch([place, place])
+    assert [each.code for each in table.warnings] == ["shield_assumes_less"]
+    assert "1 more of this kind in these worlds" in repr(table)
+    assert pickle.loads(pickle.dumps(table)).warnings == table.warnings
+
+
+def test_metrics_of_a_run_carry_its_doubts() -> None:
+    walker = nav.MovingDisc(center=(2.0, 1.0), velocity=(0.0, -1.5), radius=0.3)
+    scene = nav.Scenario(start=(0, 0), goal=(4, 0), obstacles=[walker], time_limit=4.0)
+    run = nav.simulate(scene, shielded(person_speed=0.5))
+    doubts = {each.code for each in run.warnings}
+    assert "shield_assumes_less" in doubts
+    found = nav.metrics.evaluate(run)
+    assert {each.code for each in found.warnings} == doubts
+    assert "shield" in repr(found)
+    assert {each.code for each in nav.metrics.evaluate_many([run, run]).warnings} == doubts
+
+
+def test_a_benchmark_tells_what_its_shields_do_not_cover(capsys: pytest.CaptureFixture[str]) -> None:
+    fair = benchmark("s5", ["field", "field+shield"], cases=2, person_speed=1.0)
+    assert fair.warnings == ()
+    assert benchmark("s5", ["field"], cases=2, person_speed=0.5).warnings == ()
+    words = ["benchmark", "corridor", "--laws", "field+shield", "--cases", "1", "--strict"]
+    assert main(words) == exit_codes.WARNED
+    assert "people of corridor move at up to 2.2 m/s" in capsys.readouterr().err
