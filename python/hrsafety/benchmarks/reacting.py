@@ -15,7 +15,7 @@ from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 
-__all__ = ["REACTING"]
+__all__ = ["REACTING", "SCENES", "touched_at_fault"]
 
 LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
 CASES = 500
@@ -76,7 +76,7 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
         table = nav.metrics.evaluate_many(episodes, threads=case.threads)
         contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
-            at_fault = _touched_at_fault(episodes[row], float(table.arrival_time[row]))
+            at_fault = touched_at_fault(episodes[row], float(table.arrival_time[row]))
             yield Row(
                 case=index,
                 outcome="collided" if contacts[row] else each.outcomes[0],
@@ -91,7 +91,7 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
     return run
 
 
-def _touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
+def touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
     """Return the number of people toward whom the robot moved at some instant of a contact, up to its arrival."""
     own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
     if people.size == 0 or len(own) < 2:
@@ -110,18 +110,28 @@ def _touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
     return int(touched[:last].any(axis=0).sum())
 
 
-def _suite(name: str, summary: str, scene: Callable[[Case, int], World], cases: int, fastest: float) -> Suite:
-    return Suite(
-        name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=MOST, fastest=fastest, run=_worlds(scene)
-    )
+SCENES: dict[str, Callable[[Case, int], World]] = {
+    "circle_crossing": _seen,
+    "circle_crossing_unseen": _unseen,
+    "antipodal": _antipodal,
+    "corridor": _corridor,
+    "crossing": _crossing,
+    "bottleneck": _bottleneck,
+}
+"""Worlds of the episodes by the name of the suite."""
+
+
+def _suite(name: str, summary: str, cases: int, fastest: float) -> Suite:
+    run = _worlds(SCENES[name])
+    return Suite(name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=MOST, fastest=fastest, run=run)
 
 
 REACTING = (
-    _suite("circle_crossing", "5 people cross a circle and see the robot", _seen, CASES, 1.0),
-    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", _unseen, CASES, 1.0),
-    _suite("antipodal", "19 people and the robot go to the opposite point of a circle", _antipodal, 100, 1.0),
-    _suite("corridor", "12 people walk both ways in a corridor", _corridor, 100, FASTEST_DRAWN),
-    _suite("crossing", "two streams of people cross at right angles", _crossing, 100, FASTEST_DRAWN),
-    _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", _bottleneck, 20, FASTEST_DRAWN),
+    _suite("circle_crossing", "5 people cross a circle and see the robot", CASES, 1.0),
+    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", CASES, 1.0),
+    _suite("antipodal", "19 people and the robot go to the opposite point of a circle", 100, 1.0),
+    _suite("corridor", "12 people walk both ways in a corridor", 100, FASTEST_DRAWN),
+    _suite("crossing", "two streams of people cross at right angles", 100, FASTEST_DRAWN),
+    _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", 20, FASTEST_DRAWN),
 )
 """The suites of people that react."""
