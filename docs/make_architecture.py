@@ -57,7 +57,7 @@ def imported(path: Path) -> set[str]:
 
 
 def levels(graph: Graph) -> dict[str, int]:
-    """Return the height of every part: one more than the highest that it knows."""
+    """Return the height of every part, above all that it knows."""
     known: dict[str, int] = {}
 
     def height(name: str, above: tuple[str, ...] = ()) -> int:
@@ -69,6 +69,11 @@ def levels(graph: Graph) -> dict[str, int]:
 
     for name in graph:
         height(name)
+    # Each part stands as high as its users allow, so that arrows are short.
+    users = {name: [other for other in graph if name in graph[other]] for name in graph}
+    for name in sorted(graph, key=known.__getitem__, reverse=True):
+        if users[name]:
+            known[name] = min(known[other] for other in users[name]) - 1
     return known
 
 
@@ -84,20 +89,30 @@ def needed(graph: Graph) -> Graph:
     }
 
 
+def placed(rows: list[list[str]], graph: Graph) -> dict[str, tuple[float, float]]:
+    """Return where parts stand: in each row in the order of the middle of their users above."""
+    places: dict[str, tuple[float, float]] = {}
+    for level in range(len(rows) - 1, -1, -1):
+        middle = {}
+        for name in rows[level]:
+            above = [places[other][0] for other in places if name in graph[other]]
+            middle[name] = sum(above) / len(above) if above else 5.0
+        row = sorted(rows[level], key=lambda name: (middle[name], name))
+        places |= {name: (10 * (index + 0.5) / len(row), 1.5 * level) for index, name in enumerate(row)}
+    return places
+
+
 def draw(graph: Graph) -> plt.Figure:
     """Return the picture."""
     heights = levels(graph)
-    rows = [sorted(name for name in graph if heights[name] == level) for level in range(max(heights.values()) + 1)]
-    places = {
-        name: (10 * (index + 0.5) / len(row), 1.5 * level)
-        for level, row in enumerate(rows)
-        for index, name in enumerate(row)
-    }
+    rows = [[name for name in sorted(graph) if heights[name] == level] for level in range(max(heights.values()) + 1)]
+    places = placed(rows, needed(graph))
     figure, axes = plt.subplots(figsize=(10, 1.15 * len(rows)), layout="constrained")
     for name, others in needed(graph).items():
         for other in others:
             (x, y), (to_x, to_y) = places[name], places[other]
-            bend = 0.0 if heights[name] - heights[other] == 1 else 0.12
+            # A long arrow goes around the box in between, where one stands on its way.
+            bend = 0.0 if heights[name] - heights[other] == 1 else 1.2 if abs(x - to_x) < 1.0 else 0.12
             arrow = FancyArrowPatch(
                 (x, y - 0.3),
                 (to_x, to_y + 0.3),
