@@ -11,8 +11,10 @@ from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.declared import LAWS
 
-__all__ = ["PARTS", "Entry", "entry"]
+__all__ = ["MARGIN", "PARTS", "Entry", "entry"]
 
+MARGIN = 0.005
+"""Error of the robot's motion that shields assume unless a protocol says otherwise, in m."""
 PARTS = ("guide", "shield", "yielding")
 """Parts that a word may add to a law."""
 _OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField()})
@@ -43,6 +45,7 @@ class Entry:
         preferred_speed: float | None = None,
         latency: float = 0.0,
         position_error: float = 0.0,
+        margin: float = MARGIN,
         map: nav.maps.StaticMap | None = None,
         guide: nav.maps.Guide | None = None,
         yielding: nav.laws.Yielding | None = None,
@@ -58,6 +61,8 @@ class Entry:
             Limit of the wanted velocity in m/s.
         latency, position_error : float
             What the shield assumes of measurements, in s and m.
+        margin : float
+            What it assumes of the robot's motion, in m, and keeps from walls.
         map : StaticMap or None
             What the law knows to stand.
         guide, yielding : Guide, Yielding or None
@@ -72,7 +77,13 @@ class Entry:
         """
         if not self.parts and map is None:
             return self.law
-        shield = nav.laws.Shield(person_speed=person_speed, latency=latency, position_error=position_error)
+        shield = nav.laws.Shield(
+            person_speed=person_speed,
+            latency=latency,
+            position_error=position_error,
+            margin=margin,
+            wall_margin=margin,
+        )
         return nav.laws.SafeNavigation(
             self.law,
             map=map,

@@ -68,6 +68,8 @@ class Suite:
         What is asked of an entry, by its name and the speed of people that its shield assumes.
     step : float
         Motion step in s.
+    execution_error : float
+        How far its robots are off the motion that a shield plans, in m, where that is more than the margin.
     fastest : float or None
         Largest speed of people in m/s; ``None``: the data decide.
     scene : callable
@@ -86,6 +88,7 @@ class Suite:
     available: Callable[[Path | None], int] | None = None
     accepted: Mapping[tuple[str, float | None], str] = field(default_factory=dict)
     step: float = 0.01
+    execution_error: float = 0.0
     fastest: float | None
     scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
     run: Callable[[Case], Iterator[Row]]

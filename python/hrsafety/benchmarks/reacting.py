@@ -9,22 +9,28 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.benchmarks.entries import MARGIN
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
+from hrsafety.navigation.shield_warnings import Motion
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 
 __all__ = ["REACTING", "SCENES", "touched_at_fault"]
 
 LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
+STEP_ERROR = Motion(nav.HolonomicRobot(), 0.05, 0.05).execution_error
+"""How far robots are off the motion that a shield plans, with motion steps of 0.05 s, in m: its margin here."""
+CIRCLE_ERROR = Motion(nav.HolonomicRobot(radius=0.3, max_speed=1.0), 0.25, 0.25).execution_error
+"""The same with the steps of 0.25 s of the circle crossing: no margin would leave the robot room."""
 CASES = 500
 """Cases of CrowdNav."""
 MOST = 1_000_000
 
 
-def _law(case: Case) -> nav.Law:
-    return case.entry.built(person_speed=case.person_speed)
+def _law(case: Case, margin: float = MARGIN) -> nav.Law:
+    return case.entry.built(person_speed=case.person_speed, margin=margin)
 
 
 def _seen(case: Case, index: int) -> World:
@@ -36,11 +42,11 @@ def _unseen(case: Case, index: int) -> World:
 
 
 def _antipodal(case: Case, index: int) -> World:
-    return scenarios.antipodal(20, law=_law(case), robots=1, seed=case.seed + index)
+    return scenarios.antipodal(20, law=_law(case, STEP_ERROR), robots=1, seed=case.seed + index)
 
 
 def _driven(case: Case, start: tuple[float, float], goal: tuple[float, float]) -> CrowdRobot:
-    return CrowdRobot(start=start, goal=goal, law=_law(case))
+    return CrowdRobot(start=start, goal=goal, law=_law(case, STEP_ERROR))
 
 
 def _free(world: World, robot: CrowdRobot) -> World:
@@ -121,14 +127,23 @@ SCENES: dict[str, Callable[[Case, int], World]] = {
 """Worlds of the episodes by the name of the suite."""
 
 
-def _suite(name: str, summary: str, cases: int, fastest: float) -> Suite:
-    run = _worlds(SCENES[name])
-    return Suite(name=name, summary=summary, laws=LAWS, cases=cases, seed=0, most=MOST, fastest=fastest, run=run)
+def _suite(name: str, summary: str, cases: int, fastest: float, error: float = 0.0) -> Suite:
+    return Suite(
+        name=name,
+        summary=summary,
+        laws=LAWS,
+        cases=cases,
+        seed=0,
+        most=MOST,
+        execution_error=error,
+        fastest=fastest,
+        run=_worlds(SCENES[name]),
+    )
 
 
 REACTING = (
-    _suite("circle_crossing", "5 people cross a circle and see the robot", CASES, 1.0),
-    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", CASES, 1.0),
+    _suite("circle_crossing", "5 people cross a circle and see the robot", CASES, 1.0, CIRCLE_ERROR),
+    _suite("circle_crossing_unseen", "5 people cross a circle and do not see the robot", CASES, 1.0, CIRCLE_ERROR),
     _suite("antipodal", "19 people and the robot go to the opposite point of a circle", 100, 1.0),
     _suite("corridor", "12 people walk both ways in a corridor", 100, FASTEST_DRAWN),
     _suite("crossing", "two streams of people cross at right angles", 100, FASTEST_DRAWN),

@@ -118,7 +118,7 @@ def simulate_many(
     drawn = None if seeds is None else checked_seeds(seeds)
     robots = list(places.rows[:1] if isinstance(places, _Numbered) else places.values())
     robot = as_built(robots, built, integrator, hold=hold)
-    study = _Study(places, drivers, sets, drawn, robot)
+    study = _Study(places, drivers, sets, drawn, robot, number("step", step))
     if flag("paths", paths):
         study.check_paths()
     # Only the loop of single runs keeps paths; a point mass has the same bits there.
@@ -126,7 +126,7 @@ def simulate_many(
         robot = as_built(robots, AsBuilt(), integrator, hold=hold)
     if flag("descent", descent) and robot is not None:
         raise InvalidParameterError("descent", "be False for robots as built and runs with paths", descent)
-    options: dict[str, object] = {"step": number("step", step), "threads": thread_count(threads)}
+    options: dict[str, object] = {"step": study.motion_step, "threads": thread_count(threads)}
     options |= {"stop_on_contact": flag("stop_on_contact", stop_on_contact)}
     if robot is None:
         options |= {"integrator": integrator, "hold": flag("hold", hold), "descent": descent, "lanes": None}
@@ -144,6 +144,7 @@ class _Study:
     sets: Sequence[Array]
     seeds: list[int] | None
     built: AsBuilt | None
+    motion_step: float
 
     def __post_init__(self) -> None:
         """Refuse a table that would not fit into memory."""
@@ -250,6 +251,7 @@ class _Study:
             scenario_index=episode // (len(seeds) // len(self.scenarios)),
             seed=seeds[episode],
             built=self.built,
+            motion_step=self.motion_step,
             **columns,
         )
 

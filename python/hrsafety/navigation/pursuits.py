@@ -244,7 +244,7 @@ def falsify(
         **found,
         episodes=runs,
         worst=worst,
-        warnings=run_warnings.of_run(pursued, drives, robot),
+        warnings=run_warnings.of_run(pursued, drives, robot, step),
     )
 
 

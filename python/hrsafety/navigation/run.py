@@ -73,7 +73,7 @@ class Run:
     [-0.5, 0.2]
     """
 
-    __slots__ = ("_built", "_goal", "_how", "_law", "_native", "_robot", "_scenario")
+    __slots__ = ("_built", "_goal", "_how", "_law", "_native", "_robot", "_scenario", "_step")
 
     def __init__(
         self,
@@ -95,11 +95,12 @@ class Run:
         mass, radius, max_speed, max_acceleration = native.point_mass()
         self._robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
         self._goal = fixed(scene.goal)
+        self._step = number("step", step)
         self._native = _hrsafety.Run(
             native,
             None if self._law is None else self._law._native,
             how._native,
-            step=number("step", step),
+            step=self._step,
             stop_on_contact=flag("stop_on_contact", stop_on_contact),
         )
 
@@ -131,7 +132,9 @@ class Run:
         """
         fields = self._native.recorded(motors=self._built)
         law = _COMMANDS if self._law is None else self._law
-        return Trajectory(scenario=self._scenario, law=law, built=self._how if self._built else None, **fields)
+        return Trajectory(
+            scenario=self._scenario, law=law, built=self._how if self._built else None, motion_step=self._step, **fields
+        )
 
     @property
     def trace(self) -> SafetyTrace | None:

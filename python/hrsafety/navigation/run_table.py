@@ -108,6 +108,8 @@ class RunTable(Table):
         Distances to the obstacles at these instants, in m.
     built : AsBuilt or None
         How the robots are built.
+    motion_step : float
+        Motion step of the runs in s.
 
     See Also
     --------
@@ -148,6 +150,7 @@ class RunTable(Table):
     time: Array | None = None
     position: Array | None = None
     distance: Array | None = None
+    motion_step: float = 0.01
     built: AsBuilt | None = None
 
     def __len__(self) -> int:
@@ -171,10 +174,12 @@ class RunTable(Table):
             # What a sensor or a map leaves out is the same in all of them.
             rows = sorted({0, *self.scenarios.doubtful()})
             names = [f"scenarios[{self.scenario_names[row]}]" for row in rows]
-            return run_warnings.of_runs([self.scenarios[row] for row in rows], names, self.laws, self.built)
+            return run_warnings.of_runs(
+                [self.scenarios[row] for row in rows], names, self.laws, self.built, self.motion_step
+            )
         numbered = tuple(self.scenario_names) == tuple(map(str, range(len(self.scenarios))))
         names = [f"scenarios[{name if numbered else repr(name)}]" for name in self.scenario_names]
-        return run_warnings.of_runs(self.scenarios, names, self.laws, self.built)
+        return run_warnings.of_runs(self.scenarios, names, self.laws, self.built, self.motion_step)
 
     @property
     def success(self) -> Share:
@@ -363,7 +368,12 @@ class RunTable(Table):
 
 
 def table_of_batch(
-    scenarios: Sequence[Scenario], law: Law, columns: Mapping[str, Column], *, seed: int | None = None
+    scenarios: Sequence[Scenario],
+    law: Law,
+    columns: Mapping[str, Column],
+    *,
+    motion_step: float,
+    seed: int | None = None,
 ) -> RunTable:
     """Return the native columns of a batch of one law as a table.
 
@@ -375,6 +385,8 @@ def table_of_batch(
         The law.
     columns : mapping of str to ndarray
         What the core returned, the scenarios fastest.
+    motion_step : float
+        Motion step of the runs in s.
     seed : int or None
         Seed of all runs; those of the scenarios when ``None``.
 
@@ -399,5 +411,6 @@ def table_of_batch(
         gain_names=law.GAIN_NAMES,
         law_index=np.zeros(rows, dtype=np.int64),
         seed=np.tile(own, rows // len(own)),
+        motion_step=motion_step,
         **columns,  # type: ignore[arg-type]  # each under its own name
     )

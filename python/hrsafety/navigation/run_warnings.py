@@ -16,7 +16,9 @@ from hrsafety.plausibility import ResultWarning, gathered
 __all__ = ["of_run", "of_runs", "of_scenes"]
 
 
-def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[ResultWarning, ...]:
+def of_run(
+    scenario: Scenario, law: Law, built: AsBuilt | None = None, motion_step: float = 0.01
+) -> tuple[ResultWarning, ...]:
     """Return the warnings of a scenario that matter for a law, and of sensors that see less than they must.
 
     Parameters
@@ -28,6 +30,8 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
         says nothing about the other laws, nor about one that a shield keeps safe.
     built : AsBuilt or None
         How the robot is built; a point mass that is told of everything when ``None``.
+    motion_step : float
+        Of the run, in s.
 
     Returns
     -------
@@ -39,11 +43,15 @@ def of_run(scenario: Scenario, law: Law, built: AsBuilt | None = None) -> tuple[
     of_scene = (each for each in scenario.warnings if each.code not in about_regions)
     of_sensors = () if built is None else warnings_of(scenario, built)
     shield = law.shield if isinstance(law, SafeNavigation) else None
-    return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built)))
+    return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built, motion_step)))
 
 
 def of_runs(
-    scenarios: Sequence[Scenario], names: Sequence[str], laws: Iterable[Law], built: AsBuilt | None = None
+    scenarios: Sequence[Scenario],
+    names: Sequence[str],
+    laws: Iterable[Law],
+    built: AsBuilt | None = None,
+    motion_step: float = 0.01,
 ) -> tuple[ResultWarning, ...]:
     """Return the warnings of many runs, the first of each kind with the number of the others.
 
@@ -57,6 +65,8 @@ def of_runs(
         What drives the robots.
     built : AsBuilt or None
         How they are built.
+    motion_step : float
+        Of the runs, in s.
 
     Returns
     -------
@@ -65,10 +75,14 @@ def of_runs(
     """
     kept = list(laws)
     named = zip(names, scenarios, strict=True)
-    found = ((name, [each for law in kept for each in of_run(scenario, law, built)]) for name, scenario in named)
+    found = (
+        (name, [each for law in kept for each in of_run(scenario, law, built, motion_step)]) for name, scenario in named
+    )
     return gathered(found, "scenarios")
 
 
-def of_scenes(scenarios: Sequence[Scenario], laws: Iterable[Law]) -> tuple[ResultWarning, ...]:
+def of_scenes(
+    scenarios: Sequence[Scenario], laws: Iterable[Law], motion_step: float = 0.01
+) -> tuple[ResultWarning, ...]:
     """Return the warnings of many runs in scenarios that have numbers for names, see `of_runs`."""
-    return of_runs(scenarios, [f"scenarios[{index}]" for index in range(len(scenarios))], laws)
+    return of_runs(scenarios, [f"scenarios[{index}]" for index in range(len(scenarios))], laws, None, motion_step)

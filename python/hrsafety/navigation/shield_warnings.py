@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.obstacles import Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import own_speed
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["ASSUMES_LESS", "of_shield", "of_surroundings"]
+__all__ = ["ASSUMES_LESS", "Motion", "of_shield", "of_surroundings"]
 
 ASSUMES_LESS = "shield_assumes_less"
 SEES_LESS = "shield_sees_less"
@@ -21,7 +24,32 @@ SEES_LESS = "shield_sees_less"
 ROUNDING = 1e-4
 
 
-def of_shield(scenario: Scenario, shield: Shield, built: AsBuilt | None = None) -> Iterator[ResultWarning]:
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How a robot takes up a velocity.
+
+    Attributes
+    ----------
+    robot : HolonomicRobot or DifferentialDriveRobot
+        Its limits.
+    control_period, step : float
+        Time between two commands and motion step, in s.
+    """
+
+    robot: HolonomicRobot | DifferentialDriveRobot
+    control_period: float
+    step: float
+
+    @property
+    def execution_error(self) -> float:
+        """Largest deviation from an even change of velocity within a control period, in m: half a motion step."""
+        change = min(self.robot.max_acceleration * self.control_period, 2.0 * self.robot.max_speed)
+        return 0.5 * change * min(self.step, self.control_period)
+
+
+def of_shield(
+    scenario: Scenario, shield: Shield, built: AsBuilt | None = None, motion_step: float = 0.01
+) -> Iterator[ResultWarning]:
     """Warn of bounds that a scene exceeds: people who are faster, positions that are later or less exact.
 
     Parameters
@@ -32,6 +60,8 @@ def of_shield(scenario: Scenario, shield: Shield, built: AsBuilt | None = None) 
         What is assumed.
     built : AsBuilt or None
         Sensors of the robot; without them the obstacles are known as the scenario says.
+    motion_step : float
+        Of the run, in s.
 
     Yields
     ------
@@ -43,8 +73,8 @@ def of_shield(scenario: Scenario, shield: Shield, built: AsBuilt | None = None) 
         shield,
         others,
         measurement=scenario.measurement,
-        control_period=scenario.control_period,
-        own_speed=scenario.robot.max_speed,
+        motion=Motion(scenario.robot, scenario.control_period, motion_step),
+        walls=any(isinstance(obstacle, Rectangle) for obstacle in scenario.obstacles),
     )
     if built is not None and (built.obstacle_vision is not None or built.sensors):
         yield ResultWarning(
@@ -60,8 +90,8 @@ def of_surroundings(
     others: Iterable[tuple[str, float]],
     *,
     measurement: Measurement | None,
-    control_period: float,
-    own_speed: float,
+    motion: Motion,
+    walls: bool,
     owner: str = "shield",
 ) -> Iterator[ResultWarning]:
     """Warn of bounds of a shield that others or a measurement exceed.
@@ -74,10 +104,10 @@ def of_surroundings(
         Who moves, and the largest speed in m/s.
     measurement : Measurement or None
         How the robot knows them.
-    control_period : float
-        Time between two measurements in s.
-    own_speed : float
-        Largest speed of the robot in m/s.
+    motion : Motion
+        How the robot moves.
+    walls : bool
+        Whether there are any.
     owner : str
         How the warnings call the shield.
 
@@ -88,7 +118,10 @@ def of_surroundings(
     """
     people = () if shield.person_speed is None else others
     needed = [("person_speed", shield.person_speed or 0.0, speed, f"{who} {_moves(speed)}") for who, speed in people]
-    needed += _of_measurement(shield, measurement, control_period, own_speed)
+    needed += _of_measurement(shield, measurement, motion)
+    error = motion.execution_error
+    why = f"with motion steps of {motion.step:g} s the robot is up to {error:.4g} m off the motion that is planned"
+    needed += [(name, getattr(shield, name), error, why) for name in ("margin", "wall_margin")[: 1 + walls]]
     for name, assumed, least, why in needed:
         if assumed < least * (1.0 - ROUNDING):
             mended = f"give at least {name}={least:.4g}" if math.isfinite(least) else "no number covers that"
@@ -104,7 +137,7 @@ def _moves(speed: float) -> str:
 
 
 def _of_measurement(
-    shield: Shield, measured: Measurement | None, control_period: float, own_speed: float
+    shield: Shield, measured: Measurement | None, motion: Motion
 ) -> Iterator[tuple[str, float, float, str]]:
     """Yield name, assumed value, the least one that covers a measurement, and what asks for it."""
     if measured is None:
@@ -115,9 +148,9 @@ def _of_measurement(
         yield "position_error", shield.position_error, bound, f"positions are wrong by up to {bound:.4g} m"
         if shield.velocity_error is not None:
             # Backward differences of two wrong positions.
-            error = 2.0 * bound / control_period
+            error = 2.0 * bound / motion.control_period
             why = f"velocities from differences of positions are wrong by up to {error:.4g} m/s"
             yield "velocity_error", shield.velocity_error, error, why
     if measured.of in ("both", "robot"):
-        own = bound + latency * own_speed
+        own = bound + latency * motion.robot.max_speed
         yield "margin", shield.margin, own, f"the robot knows its own place to {own:.4g} m only"

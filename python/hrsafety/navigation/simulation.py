@@ -115,7 +115,7 @@ def simulate(
             step=number("step", step),
             stop_on_contact=flag("stop_on_contact", stop_on_contact),
         )
-        return Trajectory(scenario=scenario, law=law, built=robot, **columns)
+        return Trajectory(scenario=scenario, law=law, built=robot, motion_step=float(step), **columns)
     fields = _hrsafety.simulate(
         scenario._native,
         law._native,
@@ -126,7 +126,7 @@ def simulate(
         record=names,
         every=rows,
     )
-    return Trajectory(scenario=scenario, law=law, **fields)
+    return Trajectory(scenario=scenario, law=law, motion_step=float(step), **fields)
 
 
 def _kept(record: Sequence[str] | None) -> list[str]:
@@ -193,16 +193,16 @@ def evaluate(
         free = replace(without_obstacles(scenario), measurement=None, seed=0)
         return Performance(
             **parts,
-            trajectory=Trajectory(scenario=scenario, law=law, built=robot, **real),
-            nominal=Trajectory(scenario=free, law=law, built=robot.seeing_all(), **ideal),
+            trajectory=Trajectory(scenario=scenario, law=law, built=robot, motion_step=float(step), **real),
+            nominal=Trajectory(scenario=free, law=law, built=robot.seeing_all(), motion_step=float(step), **ideal),
         )
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)
     )
     return Performance(
         **scores,
-        trajectory=Trajectory(scenario=scenario, law=law, **run),
-        nominal=Trajectory(scenario=without_obstacles(scenario), law=law, **nominal),
+        trajectory=Trajectory(scenario=scenario, law=law, motion_step=float(step), **run),
+        nominal=Trajectory(scenario=without_obstacles(scenario), law=law, motion_step=float(step), **nominal),
     )
 
 

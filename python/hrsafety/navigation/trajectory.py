@@ -104,6 +104,8 @@ class Trajectory(Table):
         Position of the robot as the law knows it since the last sample, in m.
     built : AsBuilt or None
         How the robot is built.
+    motion_step : float
+        Motion step of the run in s.
     speed, turn_rate : ndarray of shape (n,), or None
         Forward speed in m/s and turn rate in rad/s over the step that ends at the row; of a run after a
         reference, as all that follows.
@@ -148,6 +150,7 @@ class Trajectory(Table):
     map_contact_time: float = math.nan
     map_contact_speed: float = math.nan
     map_clearance: float = math.inf
+    motion_step: float = 0.01
     stabilizing: Array | Any = None
     lyapunov: Array | Any = None
     wheel_speed: Array | None = None
@@ -238,7 +241,7 @@ class Trajectory(Table):
         """
         if self.scenario is None:
             return ()
-        return run_warnings.of_run(self.scenario, self.law, self.built)
+        return run_warnings.of_run(self.scenario, self.law, self.built, self.motion_step)
 
     @property
     def sensing(self) -> Sensing:

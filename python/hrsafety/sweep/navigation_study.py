@@ -249,7 +249,7 @@ class NavigationStudy(Study):
             with contextlib.suppress(InvalidParameterError):
                 scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
         words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
-        return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law])
+        return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
         """Yield calls that cover all rows: those that share everything but the gains run together."""

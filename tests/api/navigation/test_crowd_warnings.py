@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ from hrsafety.cli import exit_codes, main
 
 
 def shielded(**shield: Any) -> nav.SafeNavigation:
-    return nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**shield))
+    return nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**({"margin": 0.0125} | shield)))
 
 
 def world(law: Any, person: dict[str, Any] | None = None, **robot: Any) -> nav.crowd.World:
@@ -53,6 +54,35 @@ def test_measurements_that_are_worse_are_told() -> None:
     place = world(shielded(person_speed=1.0), measurement=late)
     names = [each.rpartition(".")[2] for each in subjects(place)]
     assert names == ["latency", "position_error", "margin"]
+    assert "knows its own place" in place.warnings[2].message
+
+
+def test_long_motion_steps_need_a_margin() -> None:
+    # Up to 0.5 m/s in a control period of 0.05 s, reached at once where the plan has a ramp.
+    place = world(shielded(person_speed=1.0, margin=0.005))
+    assert subjects(place) == ["robots[0].law.shield.margin"]
+    assert "margin=0.0125" in place.warnings[0].message
+    wall = [[(0.0, -2.0), (4.0, -2.0)]]
+    assert "robots[0].law.shield.wall_margin" in subjects(replace(world(shielded(person_speed=1.0)), walls=wall))
+    assert replace(world(shielded(person_speed=1.0, wall_margin=0.0125)), walls=wall).warnings == ()
+
+
+@pytest.mark.parametrize("step", [0.01, 0.06])
+def test_the_motion_step_of_runs_counts(step: float) -> None:
+    scene = nav.Scenario(start=(0, 0), goal=(4, 0), time_limit=4.0)
+    law = shielded(margin=0.005)
+    run = nav.Run(scene, law, step=step)
+    run.step()
+    found = [
+        nav.simulate(scene, law, step=step),
+        nav.evaluate(scene, law, step=step).trajectory,
+        run.trajectory,
+        nav.simulate_many(scene, law, step=step),
+        nav.simulate_batch([scene], law, step=step),
+        nav.falsify(scene, law, episodes=2, step=step),
+    ]
+    margins = [[each for each in result.warnings if each.subject.endswith("margin")] for result in found]
+    assert [len(each) for each in margins] == [int(step > 0.05)] * len(found)
 
 
 def test_sources_and_other_robots_count() -> None:

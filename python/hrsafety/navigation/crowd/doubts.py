@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
-from hrsafety.navigation.shield_warnings import of_surroundings
+from hrsafety.navigation.shield_warnings import Motion, of_surroundings
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_robots"]
 
 
 def of_robots(
-    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], step: float
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], step: float, *, walls: bool
 ) -> tuple[ResultWarning, ...]:
     """Return the warnings of shields in a world, for each bound of a robot the one that is exceeded most.
 
@@ -24,6 +24,8 @@ def of_robots(
         Who is in the world.
     step : float
         Its step in s, the control period of robots without one.
+    walls : bool
+        Whether there are any.
 
     Returns
     -------
@@ -41,8 +43,8 @@ def of_robots(
             law.shield,
             () if fastest is None else (fastest,),
             measurement=robot.measurement,
-            control_period=step if robot.control_period is None else robot.control_period,
-            own_speed=robot.robot.max_speed,
+            motion=Motion(robot.robot, step if robot.control_period is None else robot.control_period, step),
+            walls=walls,
             owner=f"robots[{index}].law.shield",
         )
     return tuple(found)

@@ -138,4 +138,5 @@ class World(Parameters):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Bounds of the robots' shields that people, other robots or measurements exceed."""
-        return of_robots(tuple(self.people), tuple(self.sources), tuple(self.robots), self.step)
+        own = tuple(self.people), tuple(self.sources), tuple(self.robots)
+        return of_robots(*own, self.step, walls=len(self.walls) > 0)

@@ -52,6 +52,8 @@ class Scorer:
         Whose gains are searched.
     seeds : sequence of int
         Noise seeds, one for each batch; none if there is one batch with the scenarios' own.
+    motion_step : float
+        Of the runs, in s.
     """
 
     def __init__(
@@ -62,6 +64,7 @@ class Scorer:
         scenarios: Sequence[Scenario],
         law: Law,
         seeds: Sequence[int],
+        motion_step: float,
     ) -> None:
         self.objectives = objectives
         self.constraints = constraints
@@ -69,12 +72,13 @@ class Scorer:
         self.scenarios = scenarios
         self.law = law
         self.seeds = seeds
+        self.motion_step = motion_step
 
     def __call__(self, tables: Sequence[Mapping[str, Any]]) -> tuple[Array, Array]:
         """Return values (n, objectives) and margins (n, constraints) of the batches of all seeds."""
         seeds: Sequence[int | None] = self.seeds or [None]
         batches = [
-            table_of_batch(self.scenarios, self.law, columns, seed=seed)
+            table_of_batch(self.scenarios, self.law, columns, motion_step=self.motion_step, seed=seed)
             for columns, seed in zip(tables, seeds, strict=True)
         ]
         rows = int(batches[0].gain_index[-1]) + 1
@@ -134,7 +138,7 @@ def gain_problem(
     }
     if settings.method != "front" and objectives:
         objectives = {"objective": next(iter(objectives.values()))}
-    called = Scorer(objectives, constraints, factor, settings.scenarios, settings.law, seeds)
+    called = Scorer(objectives, constraints, factor, settings.scenarios, settings.law, seeds, settings.step)
     return _hrsafety.GainProblem(
         scenarios=[scenario._native for scenario in settings.scenarios],
         law=settings.law._native,

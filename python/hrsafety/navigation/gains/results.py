@@ -205,7 +205,7 @@ class GainSearch(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
-        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law])
+        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law], self.settings.step)
 
     @property
     def best(self) -> Law:
@@ -364,7 +364,7 @@ class ParetoFront(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
-        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law])
+        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law], self.settings.step)
 
     def __len__(self) -> int:
         """Return the number of gain sets."""
