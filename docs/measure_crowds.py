@@ -1,22 +1,27 @@
-"""Measure how laws fare among people that react: the tables of the guide to crowds.
+"""Measure how laws fare among people that react, or write it into the page on validation.
 
-    python docs/measure_crowds.py RECORDING.csv
-
-prints contacts in 24 crossings of a recording in which everybody reacts, and rows of 500 cases of the circle
-crossing, with people who see the robot and people who do not. Without a recording only the latter.
+``python docs/measure_crowds.py`` prints, ``--write`` replaces what stands between the marks of docs/validation.md. The
+recording is zara01.csv of ``HRSAFETY_RECORDINGS``; without that folder ``--only crossings`` cannot be made.
 """
 
 from __future__ import annotations
 
+import os
 import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
-from hrsafety.benchmarks import entry
+from hrsafety.benchmarks import SUITES, entry
+from hrsafety.benchmarks.protocol import Case
+from hrsafety.benchmarks.reacting import SCENES, touched_at_fault
+from page_tables import DOCS, head, line, percent, print_or_write
 
-CASES = 500
 MODELS = (
     nav.crowd.CollisionFreeSpeed,
     nav.crowd.SocialForce2000,
@@ -24,43 +29,41 @@ MODELS = (
     nav.crowd.Moussaid,
     nav.crowd.SocialForce1995,
 )
-ENTRIES = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
-PERSON_SPEED = 1.0
-"""What the shield assumes of people, in m/s: as fast as people of the circle crossing walk."""
+LAWS = (
+    *("field", "khatib", "borenstein_koren", "masoud", "ge_cui", "impedance", "velocity_obstacle", "orca", "dstar"),
+    "rrt",
+)
+CROSSINGS = 24
+SUITE_CASES = {"circle_crossing": 500, "circle_crossing_unseen": 500, "antipodal": 100, "bottleneck": 20}
+LEFT_OUT = {("bottleneck", "dstar"), ("bottleneck", "rrt")}
+"""Among 100 people they take 10 ms or more for a control step."""
+COUNTED = ("antipodal", "bottleneck")
+STANDS = 0.05
+"""Speed in m/s up to which a robot stands."""
 
 
-def share(flags: np.ndarray) -> str:
-    """Return a share in percent with its 95 % interval."""
-    found = nav.metrics.wilson(int(flags.sum()), len(flags))
-    return f"{100 * found.value:.1f} ({100 * found.low:.1f} to {100 * found.high:.1f})"
+def say(*words: object) -> None:
+    """Tell what is under way."""
+    print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
 
 
-def row(word: str, visible: bool) -> str:
-    """Return a row of the table."""
-    law = entry(word).built(person_speed=PERSON_SPEED)
-    worlds = [scenarios.circle_crossing(case, law=law, visible=visible) for case in range(CASES)]
-    table = nav.crowd.crowd_batch(worlds, people_alone=True)
-    contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts > 0
-    seen = "yes" if visible else "no"
-    cells = [
-        word,
-        seen,
-        share(table.success),
-        share(contacts),
-        share(table.robot_on_person > 0),
-        f"{np.nanmean(table.arrival_time):.2f}",
-        f"{np.mean(table.min_clearance):.2f}",
-        f"{np.nanmean(table.person_delay):.2f}",
-    ]
-    return "| " + " | ".join(cells) + " |"
+def crossings() -> str:
+    """Return the contacts in crossings of a recording whose people react."""
+    recording = datasets.load_pedestrians(Path(os.environ["HRSAFETY_RECORDINGS"]) / "zara01.csv")
+    laws = {"field": nav.VirtualForceField(), "ORCA": nav.OptimalReciprocalCollisionAvoidance()}
+    lines = head("people", *(f"{law}: {what}" for law in laws for what in ("standing", "moving")))
+    for model in MODELS:
+        say(model.__name__)
+        cells = [count for law in laws.values() for count in encounters(model(), recording, law)]
+        lines.append(line(f"`{model.__name__}`", *cells))
+    return "\n".join(lines) + "\n"
 
 
-def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording) -> str:
-    """Return how many of 24 crossings have a contact with the standing and with the moving robot."""
+def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording, law: nav.Law) -> tuple[int, int]:
+    """Return how many crossings have a contact with the standing and with the moving robot."""
     standing = moving = 0
-    for crossing in scenarios.crossings(recording, runs=24):
+    for crossing in scenarios.crossings(recording, runs=CROSSINGS):
         scene = crossing.scenario
-        law = nav.OptimalReciprocalCollisionAvoidance()
         robot = nav.crowd.CrowdRobot(start=scene.start, goal=scene.goal, law=law, robot=scene.robot)
         world = scenarios.with_recording(
             recording, 1.0, model=model, robots=[robot], start_time=crossing.start_time, radius=0.4
@@ -68,25 +71,79 @@ def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording) -> st
         run = nav.crowd.simulate_crowd(world)
         gap = np.hypot(*np.moveaxis(run.position - run.robot_position, -1, 0)) - run.radius - scene.robot.radius
         speed = np.hypot(*run.robot_velocity[:, 0].T)
-        touched = np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=1) < 0.0
-        standing += bool((touched & (speed <= 0.05)).any())
-        moving += bool((touched & (speed > 0.05)).any())
-    return f"| `{type(model).__name__}` | {standing} | {moving} |"
+        touched = np.min(np.where(np.isnan(gap), np.inf, gap), axis=1, initial=np.inf) < 0.0
+        standing += bool((touched & (speed <= STANDS)).any())
+        moving += bool((touched & (speed > STANDS)).any())
+    return standing, moving
 
 
-def main() -> None:
-    """Print the tables."""
-    if len(sys.argv) > 1:
-        recording = datasets.load_pedestrians(sys.argv[1])
-        print("| people | contacts with the standing robot, of 24 | with the moving robot |\n|---|---|---|")
-        for kind in MODELS:
-            print(encounters(kind(), recording), flush=True)
-    names = ("law", "seen", "success %", "contact %", "robot on person %", "time s", "least gap m", "delay of people s")
-    print(f"| {' | '.join(names)} |\n|{'---|' * len(names)}")
-    for visible in (True, False):
-        for word in ENTRIES:
-            print(row(word, visible), flush=True)
+def suites() -> str:
+    """Return a table for each suite: every law with and without a shield."""
+    return "\n".join("\n".join(suite(name)) + "\n" for name in SUITE_CASES)
+
+
+def suite(name: str) -> Iterator[str]:
+    """Yield the lines of a suite."""
+    kind, speed = SUITES[name], SUITES[name].fastest
+    yield f"`{name}`, {SUITE_CASES[name]} episodes: {kind.summary}; shields assume people of up to {speed:g} m/s."
+    yield ""
+    words = ("law", "success %", "contact %", "at fault %", "time, s", "least gap, m", "delay of people, s")
+    yield from head(*words, *(("exits, 1/s", "deadlocked %") if name in COUNTED else ()))
+    alone = nav.crowd.simulate_crowds([replace(world, robots=()) for world in worlds_of(name, LAWS[0])])
+    for law in LAWS:
+        for word in (law, f"{law}+shield"):
+            if (name, law) not in LEFT_OUT:
+                say(name, word)
+                yield row(worlds_of(name, word), word, alone, counted=name in COUNTED)
+
+
+def worlds_of(name: str, word: str) -> list[nav.crowd.World]:
+    """Return the worlds of a suite with a law."""
+    speed = SUITES[name].fastest or 0.0
+    cases = range(SUITE_CASES[name])
+    case = Case(cases=cases, entry=entry(word), person_speed=speed, data=None, seed=0, threads=None)
+    return [SCENES[name](case, index) for index in cases]
+
+
+def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTrajectories], *, counted: bool) -> str:
+    """Return the row of a law."""
+    runs = nav.crowd.simulate_crowds(worlds)
+    episodes = [nav.crowd.episodes_of(run, other)[0] for run, other in zip(runs, alone, strict=True)]
+    table = nav.metrics.evaluate_many(episodes)
+    contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
+    faults = [
+        touched_at_fault(episode, float(arrival)) > 0 or walls > 0
+        for episode, arrival, walls in zip(episodes, table.arrival_time, table.wall_contacts, strict=True)
+    ]
+    whole = [nav.crowd.world_metrics(run) for run in runs]
+    ends = ()
+    if counted:
+        exits = np.mean([each.throughput for each in whole])
+        ends = (f"{exits:.2f}", f"{100 * np.mean([each.deadlocked_share for each in whole]):.1f}")
+    # Of those who leave the last place is not kept, but the time is.
+    delays = [run.arrival_time - other.arrival_time for run, other in zip(runs, alone, strict=True)]
+    counts = (int(table.success.sum()), int((contacts > 0).sum()), sum(faults))
+    return line(
+        word,
+        *(percent(count, len(worlds)) for count in counts),
+        f"{mean(table.arrival_time):.2f}",
+        f"{np.mean(table.min_clearance):.2f}",
+        f"{mean(np.concatenate(delays)):.2f}",
+        *ends,
+    )
+
+
+def mean(values: np.ndarray) -> float:
+    """Return the mean of what is a number; NaN if nothing is."""
+    known = values[~np.isnan(values)]
+    return float(known.mean()) if len(known) else float("nan")
 
 
 if __name__ == "__main__":
-    main()
+    print_or_write(
+        DOCS / "validation.md",
+        {
+            "crossings": ("crossings of measure_crowds.py", crossings),
+            "suites": ("suites of measure_crowds.py", suites),
+        },
+    )
