@@ -208,21 +208,29 @@ impl Ear {
     pub fn heard(&self) -> Option<Heard> {
         self.heard
     }
-}
 
-impl Sensor for Ear {
+    /// Hears a source in m, if there is one, at a sample of a robot that knows its frame.
     #[inline]
-    fn observe(&mut self, truth: &Truth<'_>, known: &Frame, _bodies: &mut [Body]) {
+    pub fn listen(&mut self, source: Option<Vector2<f64>>, known: &Frame) {
         self.heard = None;
         if self.left > 0 {
             self.left -= 1;
             return;
         }
         self.left = self.between - 1;
-        if let Some(source) = truth.source {
-            let offset = known.inward(source - known.position);
-            let (range, direction) = self.fixes.fix(offset, &mut self.normals);
-            self.heard = Some(Heard { range, direction });
-        }
+        self.heard = source.map(|source| self.fix(source, known));
+    }
+
+    fn fix(&mut self, source: Vector2<f64>, known: &Frame) -> Heard {
+        let offset = known.inward(source - known.position);
+        let (range, direction) = self.fixes.fix(offset, &mut self.normals);
+        Heard { range, direction }
+    }
+}
+
+impl Sensor for Ear {
+    #[inline]
+    fn observe(&mut self, truth: &Truth<'_>, known: &Frame, _bodies: &mut [Body]) {
+        self.listen(truth.source, known);
     }
 }

@@ -5,6 +5,9 @@ use nalgebra::Vector2;
 use crate::error::{Result, finite, finite_pair, not_negative, positive};
 use crate::lanes::{Planar, Real, Wide, widened};
 
+/// More than what rounding adds to a distance, as a share.
+pub(crate) const SLACK: f64 = 1.0 + 1e-9;
+
 /// A convex outline around a center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape<B: Real = f64> {

@@ -248,10 +248,12 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Brings obstacles and source to a time in s.
+    /// Brings obstacles and source to a time in s, of a run with a least squared distance so far in
+    /// m^2.
     #[inline]
-    fn look(&mut self, time: f64) {
-        self.source = self.around.look(self.scene, time, &self.pose);
+    fn look(&mut self, time: f64, least_before: f64) {
+        let around = &mut self.around;
+        self.source = around.look(self.scene, time, &self.pose, least_before);
         for (body, shape) in self.bodies.iter_mut().zip(&self.around.shapes) {
             body.state.position = shape.center.into();
         }
@@ -350,13 +352,16 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
     #[inline]
     fn look_around(&mut self, clock: &Clock, step: usize) {
         let time = clock.time(step);
-        self.place.look(time);
+        // A touch counts however near the sensors look.
+        let touch = self.body_radius * self.body_radius;
+        let heeded = self.outcome.least_clearance.max(touch);
+        self.place.look(time, heeded);
         let (place, outcome) = (&self.place, &mut self.outcome);
         let to_source = place.source - place.pose.position;
         outcome.end_time = time;
         outcome.least_clearance = outcome.least_clearance.min(place.around.least);
         outcome.source_distance = to_source.dot(&to_source).sqrt();
-        if place.around.least < self.body_radius * self.body_radius {
+        if place.around.least < touch {
             outcome.contact = Some(place.around.contact(&place.pose));
             self.ended = true;
         }
@@ -380,12 +385,14 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
 
     #[inline]
     fn sense(&mut self, clock: &Clock, step: usize) {
-        let (truth, senses) = (self.place.truth(clock.time(step)), &mut self.senses);
-        let known = self.place.pose;
-        senses.ear.observe(&truth, &known, &mut []);
+        let (place, senses) = (&self.place, &mut self.senses);
+        senses.ear.listen(Some(place.source), &place.pose);
         match &mut senses.camera {
-            Some(camera) => camera.observe(&truth, &known, &mut senses.seen),
-            None => senses.sonar.observe(&truth, &known, &mut []),
+            Some(camera) => {
+                let truth = place.truth(clock.time(step));
+                camera.observe(&truth, &place.pose, &mut senses.seen);
+            }
+            None => senses.sonar.fire(&place.pose, &place.around.near),
         }
     }
 }

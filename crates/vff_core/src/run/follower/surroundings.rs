@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::run::follower::scene::FollowerScene;
 use crate::world::frame::Frame;
-use crate::world::shape::PlacedShape;
+use crate::world::shape::{PlacedShape, SLACK, Shape};
 
 /// A touch of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,16 +15,29 @@ pub struct Touch {
     pub bearing: f64,
 }
 
+/// What is known of the motion of an obstacle.
+struct Track {
+    /// Piece of the motion that was the last one.
+    cursor: usize,
+    /// When it stands for good, in s.
+    stands_from: f64,
+    /// Whether it does.
+    stands: bool,
+    /// No point of it is farther from its center, in m.
+    extent: f64,
+}
+
 /// Obstacles at one time.
 pub(super) struct Surroundings {
     /// The obstacles.
     pub shapes: Vec<PlacedShape>,
-    /// Pieces of the motions that were the last ones.
-    cursors: Vec<usize>,
+    /// How each of them moves.
+    tracks: Vec<Track>,
     leader_cursor: usize,
     /// Those that a sensor may see.
     pub near: Vec<PlacedShape>,
-    /// Squared distance of the nearest one from the center, in m^2.
+    /// Squared distance of the nearest one from the center, in m^2, if it is less than ever before or
+    /// within the horizon.
     pub least: f64,
     nearest: usize,
     /// No sensor can see anything that is farther from the center, in m.
@@ -40,7 +53,19 @@ impl Surroundings {
                 .iter()
                 .map(|each| each.at(0.0, &mut 0))
                 .collect(),
-            cursors: vec![0; scene.obstacles.len()],
+            tracks: scene
+                .obstacles
+                .iter()
+                .map(|each| {
+                    let stands_from = each.motion.stands_from();
+                    Track {
+                        cursor: 0,
+                        stands_from,
+                        stands: stands_from <= 0.0,
+                        extent: SLACK * extent(&each.shape),
+                    }
+                })
+                .collect(),
             leader_cursor: 0,
             near: Vec::with_capacity(scene.obstacles.len() + 1),
             least: f64::INFINITY,
@@ -49,15 +74,31 @@ impl Surroundings {
         }
     }
 
-    /// Puts the obstacles where they are; returns the place of the source in m.
+    /// Puts the obstacles where they are; returns the place of the source in m. Who is beyond the
+    /// horizon, and farther than the square root of `least_before`, in m^2, is only known to be so.
     #[inline]
-    pub fn look(&mut self, scene: &FollowerScene, time: f64, pose: &Frame) -> Vector2<f64> {
+    pub fn look(
+        &mut self,
+        scene: &FollowerScene,
+        time: f64,
+        pose: &Frame,
+        least_before: f64,
+    ) -> Vector2<f64> {
         self.near.clear();
         self.least = f64::INFINITY;
         let horizon = self.horizon * self.horizon;
-        let cursors = self.cursors.iter_mut();
-        for (index, (obstacle, cursor)) in scene.obstacles.iter().zip(cursors).enumerate() {
-            let shape = obstacle.at(time, cursor);
+        let heeded = self.horizon.max(SLACK * least_before.sqrt());
+        let tracks = self.tracks.iter_mut().zip(&mut self.shapes);
+        for (index, (obstacle, (track, shape))) in scene.obstacles.iter().zip(tracks).enumerate() {
+            if !track.stands {
+                *shape = obstacle.at(time, &mut track.cursor);
+                track.stands = time >= track.stands_from;
+            }
+            let away = shape.center - pose.position;
+            let within = heeded + track.extent;
+            if away.dot(&away) > within * within {
+                continue;
+            }
             let to = shape.nearest(pose.position);
             let square = to.dot(&to);
             if square < self.least {
@@ -65,9 +106,8 @@ impl Surroundings {
                 self.nearest = index;
             }
             if square <= horizon {
-                self.near.push(shape);
+                self.near.push(*shape);
             }
-            self.shapes[index] = shape;
         }
         let leader = &scene.leader;
         let source = leader
@@ -93,5 +133,17 @@ impl Surroundings {
             obstacle: self.nearest,
             bearing: to.y.atan2(to.x),
         }
+    }
+}
+
+/// Distance of the farthest point of an outline from its center, in m.
+fn extent(shape: &Shape) -> f64 {
+    match *shape {
+        Shape::Disc { radius } => radius,
+        Shape::Rectangle {
+            half_length,
+            half_width,
+            axis,
+        } => half_length.hypot(half_width) * axis.norm(),
     }
 }

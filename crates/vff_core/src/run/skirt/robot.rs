@@ -10,11 +10,10 @@ use crate::run::Interrupted;
 use crate::run::episode::{Episode, Parts};
 use crate::run::options::Clock;
 use crate::run::skirt::scene::DiscScene;
-use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::ring::{PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP, Ring};
 use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
 use crate::world::frame::Frame;
-use crate::world::shape::PlacedShape;
+use crate::world::shape::{PlacedShape, SLACK};
 use numeric::random::Stream;
 
 /// How the skirt senses and decides.
@@ -266,7 +265,13 @@ impl<W> SkirtParts<'_, W> {
         let (mut clearance, mut nearest) = (f64::INFINITY, 0);
         for (index, disc) in self.scene.discs.iter().enumerate() {
             let to = disc.center - self.robot.frame.position;
-            let gap = to.dot(&to).sqrt() - disc.shape.inner_radius() - self.chassis_radius;
+            let (square, radius) = (to.dot(&to), disc.shape.inner_radius());
+            let least = (clearance + radius + self.chassis_radius) * SLACK;
+            // Who is farther than the nearest so far needs no root.
+            if square > least * least && clearance > 0.0 {
+                continue;
+            }
+            let gap = square.sqrt() - radius - self.chassis_radius;
             // A state that is no number must not pass for a distance.
             if gap < clearance || gap.is_nan() {
                 (clearance, nearest) = (gap, index);
@@ -347,12 +352,7 @@ impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
     }
 
     #[inline]
-    fn sense(&mut self, clock: &Clock, step: usize) {
-        let robot = &self.robot;
-        let truth = Truth {
-            outlines: &self.outlines,
-            ..Truth::alone(clock.time(step), &robot.frame, robot.velocity)
-        };
-        self.sonar.observe(&truth, &robot.frame, &mut []);
+    fn sense(&mut self, _clock: &Clock, _step: usize) {
+        self.sonar.fire(&self.robot.frame, &self.outlines);
     }
 }

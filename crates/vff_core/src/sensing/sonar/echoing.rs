@@ -45,9 +45,11 @@ impl Sonar {
         &self.readings
     }
 
-    /// Reads the sensors whose turn it is.
+    /// Reads the sensors whose turn it is, on a robot in a frame among outlines.
+    ///
+    /// The frame is taken where it lies: a copy that was written just before is slow to read again.
     #[inline]
-    fn fire(&mut self, body: &Frame, shapes: &[PlacedShape]) {
+    pub fn fire(&mut self, body: &Frame, shapes: &[PlacedShape]) {
         let (array, readings) = (&self.array, &mut self.readings);
         array.measure(body, shapes, self.samples, readings, &mut self.noise);
         if self.silent.is_finite() {
