@@ -225,7 +225,7 @@ pub fn contact_speed(
     let setup = shared.setup()?;
     let row = single(numbers)?;
     let (found, bare) = watched(py, Report::none(), |control: &Control<'_>| {
-        setup.allowed(&row, None, &|| control.interrupted())
+        setup.allowed(&row, None, &mut None, &|| control.interrupted())
     })?;
     let fields = Fields::new(py);
     fields.value("speed", found.speed)?;

@@ -96,5 +96,9 @@ def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.ND
     if covering is not None:
         for place, name in enumerate(covering.material.keys.values()):
             names[names.index(f"material_{place}")] = name
-    all_words = np.asarray([*words, *(f"invalid_{name}" for name in names), "invalid_covering"])
-    return np.asarray(all_words[np.minimum(codes, len(all_words) - 1)])
+    all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
+    places = np.minimum(codes, len(all_words) - 1)
+    # Only as wide as the words that are there: the longest one takes many times the room of its code.
+    there = np.bincount(places.ravel(), minlength=len(all_words)) > 0
+    found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=True)])
+    return np.asarray(found[places])

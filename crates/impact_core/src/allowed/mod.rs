@@ -251,15 +251,40 @@ impl Contact<'_> {
         self.pad.map_or(0.0, |pad| pad.work(compression)) + self.region.work(force)
     }
 
+    /// What is stored at each limit.
+    #[must_use]
+    pub fn stored(&self) -> Stored {
+        let at_limits = self.at_limits();
+        Stored {
+            energies: at_limits
+                .map(|limit| limit.map(|(force, compression)| self.energy(force, compression))),
+            compressions: at_limits.map(|limit| self.pad.and(limit).map_or(f64::NAN, |(_, d)| d)),
+        }
+    }
+
     /// Allowed closing speed from the stored energy.
     #[must_use]
     pub fn closed_form(&self) -> Allowed {
-        let mass = reduced_mass(self.robot_mass, self.body_mass);
-        let limits = self.at_limits();
-        let speeds = limits.map(|limit| match limit {
-            Some((force, compression)) => (2.0 * self.energy(force, compression) / mass).sqrt(),
-            None => f64::NAN,
-        });
+        self.stored()
+            .allowed(reduced_mass(self.robot_mass, self.body_mass))
+    }
+}
+
+/// What a contact stores at the limits of force, pressure and strain, whatever moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// Energies, in J; `None` where a limit is not there or beyond the data.
+    energies: [Option<f64>; 3],
+    /// Compressions of the covering, in m; NaN without one.
+    compressions: [f64; 3],
+}
+
+impl Stored {
+    /// Allowed closing speed of a reduced mass in kg.
+    #[must_use]
+    pub fn allowed(&self, mass: f64) -> Allowed {
+        let speed = |energy: f64| (2.0 * energy / mass).sqrt();
+        let speeds = self.energies.map(|energy| energy.map_or(f64::NAN, speed));
         let status = if mass.is_infinite() {
             SpeedStatus::UnboundedMass
         } else {
@@ -267,11 +292,10 @@ impl Contact<'_> {
         };
         let mut found = governed(speeds, status);
         let place = Governs::ALL.iter().position(|each| *each == found.governs);
-        if self.pad.is_some()
-            && mass.is_finite()
-            && let Some((_, compression)) = place.and_then(|place| *limits.get(place)?)
+        if mass.is_finite()
+            && let Some(compression) = place.and_then(|place| self.compressions.get(place))
         {
-            found.compression = compression;
+            found.compression = *compression;
         }
         found
     }

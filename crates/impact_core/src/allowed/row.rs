@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use numeric::threads::Interrupted;
 
-use super::{Allowed, Contact, Limits, SpeedStatus, Thickness, least_thickness, numeric_speed};
+use super::{
+    Allowed, Contact, Limits, SpeedStatus, Stored, Thickness, least_thickness, numeric_speed,
+};
 use crate::collision::{Body, Collision, Outcome, Region, Stop, Wanted, simulate};
 use crate::covering::{
     Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Table, Unloading,
@@ -142,6 +144,22 @@ pub(super) fn is_of_law(place: usize) -> bool {
     place >= FIRST_MATERIAL || place == BOTTOMING
 }
 
+/// What energies and compressions at limits do not depend on.
+pub(super) const MASSES: [usize; 2] = [ROBOT_MASS, BODY_MASS];
+
+/// What is known of rows that differ in their masses only.
+#[derive(Clone, Debug)]
+pub struct Known {
+    pad: Option<Pad>,
+    /// Energy of the bare region at the force limit in J, NaN without one.
+    bare_energy: f64,
+    stored: Stored,
+    /// Whether the stored energy is all there is.
+    at_rest: bool,
+    area: Option<f64>,
+    limits: Limits,
+}
+
 /// How rows are made into contacts.
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -156,6 +174,15 @@ fn given(value: f64) -> Option<f64> {
 }
 
 impl Row {
+    fn check_masses(&self) -> Result<()> {
+        for place in MASSES {
+            if self.0[place] != f64::INFINITY {
+                positive(CALLED[place], self.0[place])?;
+            }
+        }
+        Ok(())
+    }
+
     fn limits(&self) -> Limits {
         Limits {
             force: given(self.0[FORCE_LIMIT]),
@@ -183,13 +210,13 @@ impl Row {
         let number = |place: usize| self.0[FIRST_MATERIAL + place];
         let material = match law {
             Law::Linear => Material::Linear { modulus: number(0) },
-            Law::GibsonAshby => Material::GibsonAshby(GibsonAshby {
-                modulus: number(0),
-                plateau: number(1),
-                lock: number(2),
-                d: number(3),
-                m: number(4),
-            }),
+            Law::GibsonAshby => Material::GibsonAshby(GibsonAshby::new([
+                number(0),
+                number(1),
+                number(2),
+                number(3),
+                number(4),
+            ])),
             Law::Rusch => Material::Rusch {
                 a: number(0),
                 p: number(1),
@@ -307,11 +334,7 @@ impl Setup {
     /// # Errors
     /// A number is out of its range.
     pub fn contact<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Contact<'a>> {
-        for place in [ROBOT_MASS, BODY_MASS] {
-            if row.0[place] != f64::INFINITY {
-                positive(CALLED[place], row.0[place])?;
-            }
-        }
+        row.check_masses()?;
         let region = row.region(self.kind.region)?;
         if pad.is_none() && region == Region::Rigid {
             let given = Shown::Found("none on a rigid region".into());
@@ -347,7 +370,8 @@ impl Setup {
     }
 
     /// Allowed speed of a row: from the stored energy where that is exact, by simulation elsewhere; and that
-    /// at the force limit without the covering.
+    /// at the force limit without the covering. What was known of a row that differs in its masses
+    /// only is used again.
     ///
     /// # Errors
     /// A number is out of its range.
@@ -355,24 +379,20 @@ impl Setup {
         &self,
         row: &Row,
         fixed: Option<&Material>,
+        known: &mut Option<Known>,
         interrupted: Interrupted<'_>,
     ) -> Result<(Allowed, f64)> {
-        let pad = self.pad(row, fixed)?;
-        let contact = self.contact(row, pad.as_ref())?;
-        let bare = match row.0[FORCE_LIMIT] {
-            force if contact.region == Region::Rigid || force.is_nan() => f64::NAN,
-            force => {
-                let mass = crate::collision::reduced_mass(contact.robot_mass, contact.body_mass);
-                (2.0 * contact.region.work(force) / mass).sqrt()
+        let known = match known {
+            Some(known) => {
+                row.check_masses()?;
+                known
             }
+            None => known.insert(self.known(row, fixed)?),
         };
-        let closed = contact.closed_form();
-        let stored = pad
-            .as_ref()
-            .is_none_or(|pad| pad.covering.damping == 0.0 && pad.covering.rate.is_none());
-        let held = [ROBOT_DAMPING, ROBOT_STIFFNESS, BODY_DAMPING, BODY_STIFFNESS];
-        let free = held.iter().all(|place| row.0[*place] == 0.0) && row.0[STOP_TIME].is_nan();
-        if (stored && free) || closed.status == SpeedStatus::UnboundedMass {
+        let mass = crate::collision::reduced_mass(row.0[ROBOT_MASS], row.0[BODY_MASS]);
+        let bare = (2.0 * known.bare_energy / mass).sqrt();
+        let closed = known.stored.allowed(mass);
+        if known.at_rest || closed.status == SpeedStatus::UnboundedMass {
             return Ok((closed, bare));
         }
         let moving = Row({
@@ -380,10 +400,33 @@ impl Setup {
             numbers[CLOSING_SPEED] = 1.0;
             numbers
         });
-        let collision = self.collision(&moving, pad.as_ref())?;
-        let limited = (&contact.limits, contact.area);
+        let collision = self.collision(&moving, known.pad.as_ref())?;
+        let limited = (&known.limits, known.area);
         let found = numeric_speed(&collision, limited, closed.speed, interrupted);
         Ok((found, bare))
+    }
+
+    /// What does not depend on the masses of a row.
+    fn known(&self, row: &Row, fixed: Option<&Material>) -> Result<Known> {
+        let pad = self.pad(row, fixed)?;
+        let contact = self.contact(row, pad.as_ref())?;
+        let bare_energy = match row.0[FORCE_LIMIT] {
+            force if contact.region == Region::Rigid || force.is_nan() => f64::NAN,
+            force => contact.region.work(force),
+        };
+        let elastic = pad
+            .as_ref()
+            .is_none_or(|pad| pad.covering.damping == 0.0 && pad.covering.rate.is_none());
+        let held = [ROBOT_DAMPING, ROBOT_STIFFNESS, BODY_DAMPING, BODY_STIFFNESS];
+        let free = held.iter().all(|place| row.0[*place] == 0.0) && row.0[STOP_TIME].is_nan();
+        Ok(Known {
+            bare_energy,
+            stored: contact.stored(),
+            at_rest: elastic && free,
+            area: contact.area,
+            limits: contact.limits,
+            pad,
+        })
     }
 
     /// Least thickness for the closing speed of a row.

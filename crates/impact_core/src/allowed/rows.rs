@@ -3,7 +3,9 @@
 use numeric::parallel::Work;
 use numeric::threads::{map, on_threads};
 
-use super::row::{CALLED, COUNT, FIRST_MATERIAL, NAMES, OPTIONAL, Row, Setup, is_of_law};
+use super::row::{
+    CALLED, COUNT, FIRST_MATERIAL, Known, MASSES, NAMES, OPTIONAL, Row, Setup, is_of_law,
+};
 use super::{Governs, SpeedStatus, ThicknessStatus};
 use crate::collision::{Status, Wanted};
 use crate::columns::Column;
@@ -29,12 +31,30 @@ impl Given<'_> {
         Row(std::array::from_fn(|place| self.columns[place].at(index)))
     }
 
-    /// Whether the law of the covering differs from row to row.
-    fn varies(&self) -> bool {
+    /// Places of the numbers that have a column.
+    fn varying(&self) -> Vec<usize> {
         let columns = self.columns.iter().enumerate();
         columns
             .filter(|(_, column)| matches!(column, Column::Array(_)))
-            .any(|(place, _)| is_of_law(place))
+            .map(|(place, _)| place)
+            .collect()
+    }
+
+    /// Makes a row that of another index; whether something else than masses has changed.
+    fn advance(&self, row: &mut Row, varying: &[usize], index: usize) -> bool {
+        let mut changed = false;
+        for place in varying {
+            let value = self.columns[*place].at(index);
+            let same = value.to_bits() == row.0[*place].to_bits();
+            changed |= !same && !MASSES.contains(place);
+            row.0[*place] = value;
+        }
+        changed
+    }
+
+    /// Whether the law of the covering differs from row to row.
+    fn varies(&self) -> bool {
+        self.varying().into_iter().any(is_of_law)
     }
 
     /// Refuses a row whose column has no number there: only a number that no row has is not given.
@@ -89,12 +109,15 @@ pub struct Columns {
 
 /// Results of all rows in blocks over the threads; `words` statuses come before those of invalid rows, which
 /// have `nothing` as their second code.
-fn each_row<const N: usize>(
+///
+/// What is remembered of a row is there for the next one as long as rows differ in their masses only.
+fn each_row<const N: usize, M: Default>(
     (setup, given): (&Setup, &Given<'_>),
     (names, words, nothing): ([&'static str; N], usize, u8),
     work: Work<'_>,
-    of: impl Fn(&Row, Option<&Material>) -> Result<Found<N>> + Sync,
+    of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync,
 ) -> Result<Columns> {
+    let varying = given.varying();
     let block = |index: usize| -> Result<Vec<([f64; N], u8, u8)>> {
         let rows = index * BLOCK..given.rows.min((index + 1) * BLOCK);
         let fixed = if given.rows == 0 || given.varies() {
@@ -102,17 +125,21 @@ fn each_row<const N: usize>(
         } else {
             setup.material(&given.row(0))
         };
-        let one = |row: usize| {
-            given.check(row)?;
+        let one = |index: usize, row: &Row, remembered: &mut M| {
+            given.check(index)?;
             let material = fixed.as_ref().map_err(Clone::clone)?;
-            of(&given.row(row), material.as_ref())
+            of(row, material.as_ref(), remembered)
         };
         let mut found = Vec::with_capacity(rows.len());
-        for row in rows {
+        let (mut row, mut remembered) = (given.row(rows.start), M::default());
+        for index in rows {
             if (work.interrupted)() {
                 return Err(Failure::Interrupted);
             }
-            found.push(match one(row) {
+            if given.advance(&mut row, &varying, index) {
+                remembered = M::default();
+            }
+            found.push(match one(index, &row, &mut remembered) {
                 Ok((numbers, status, word)) => (numbers, code_of(status), word),
                 Err(failure) => ([f64::NAN; N], invalid(setup, &failure, words), nothing),
             });
@@ -121,18 +148,21 @@ fn each_row<const N: usize>(
         Ok(found)
     };
     let blocks = on_threads(work.threads, || Ok(map(given.rows.div_ceil(BLOCK), block)))?;
-    let mut all = Vec::with_capacity(given.rows);
+    let mut numbers = names.map(|name| (name, Vec::with_capacity(given.rows)));
+    let mut status = Vec::with_capacity(given.rows);
+    let mut word = Vec::with_capacity(given.rows);
     for part in blocks {
-        all.extend(part?);
+        let part = part?;
+        for (place, (_, column)) in numbers.iter_mut().enumerate() {
+            column.extend(part.iter().map(|(numbers, ..)| numbers[place]));
+        }
+        status.extend(part.iter().map(|(_, status, _)| *status));
+        word.extend(part.iter().map(|(.., word)| *word));
     }
-    let column = |(place, name)| {
-        let values = all.iter().map(|(numbers, ..)| numbers[place]).collect();
-        (name, values)
-    };
     Ok(Columns {
-        numbers: names.into_iter().enumerate().map(column).collect(),
-        status: all.iter().map(|(_, status, _)| *status).collect(),
-        word: all.iter().map(|(.., word)| *word).collect(),
+        numbers: numbers.into(),
+        status,
+        word,
     })
 }
 
@@ -174,7 +204,7 @@ pub fn collide_rows(
     work: Work<'_>,
 ) -> Result<Columns> {
     let kind = (LOADS, Status::ALL.len(), 0);
-    each_row((setup, given), kind, work, |row, fixed| {
+    each_row((setup, given), kind, work, |row, fixed, (): &mut ()| {
         let found = setup.collide(row, fixed, wanted, work.interrupted)?;
         let bottomed = BOTTOMED * u8::from(found.bottomed);
         let word = bottomed + RISING * u8::from(found.rising);
@@ -197,23 +227,28 @@ pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Co
     ];
     let nothing = code_of(place_of(&Governs::ALL, &Governs::Nothing));
     let kind = (names, SpeedStatus::ALL.len(), nothing);
-    each_row((setup, given), kind, work, |row, fixed| {
-        let (found, bare) = setup.allowed(row, fixed, work.interrupted)?;
-        let [force, pressure, strain] = found.speeds;
-        let governs = code_of(place_of(&Governs::ALL, &found.governs));
-        Ok((
-            [
-                found.speed,
-                force,
-                pressure,
-                strain,
-                bare,
-                found.compression,
-            ],
-            place_of(&SpeedStatus::ALL, &found.status),
-            governs + RISING * u8::from(found.rising),
-        ))
-    })
+    each_row(
+        (setup, given),
+        kind,
+        work,
+        |row, fixed, known: &mut Option<Known>| {
+            let (found, bare) = setup.allowed(row, fixed, known, work.interrupted)?;
+            let [force, pressure, strain] = found.speeds;
+            let governs = code_of(place_of(&Governs::ALL, &found.governs));
+            Ok((
+                [
+                    found.speed,
+                    force,
+                    pressure,
+                    strain,
+                    bare,
+                    found.compression,
+                ],
+                place_of(&SpeedStatus::ALL, &found.status),
+                governs + RISING * u8::from(found.rising),
+            ))
+        },
+    )
 }
 
 /// Least thicknesses of all rows at their closing speed.
@@ -222,7 +257,7 @@ pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Co
 /// The caller asked to stop.
 pub fn thickness_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Columns> {
     let kind = (["thickness"], ThicknessStatus::ALL.len(), 0);
-    each_row((setup, given), kind, work, |row, fixed| {
+    each_row((setup, given), kind, work, |row, fixed, (): &mut ()| {
         let found = setup.thickness(row, fixed)?;
         let status = place_of(&ThicknessStatus::ALL, &found.status);
         Ok(([found.thickness], status, 0))

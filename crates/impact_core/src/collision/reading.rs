@@ -31,13 +31,13 @@ fn material(value: &Value) -> Result<Material> {
     let of = |name: &str| number_or(value, name, f64::NAN);
     Ok(match value["law"].as_str().unwrap_or("") {
         "linear" => Material::Linear { modulus: of("E") },
-        "gibson_ashby" => Material::GibsonAshby(GibsonAshby {
-            modulus: of("E"),
-            plateau: of("plateau"),
-            lock: of("e_D"),
-            d: number_or(value, "D", 2.3),
-            m: number_or(value, "m", 1.0),
-        }),
+        "gibson_ashby" => Material::GibsonAshby(GibsonAshby::new([
+            of("E"),
+            of("plateau"),
+            of("e_D"),
+            number_or(value, "D", 2.3),
+            number_or(value, "m", 1.0),
+        ])),
         "rusch" => Material::Rusch {
             a: of("a"),
             p: of("p"),

@@ -150,13 +150,7 @@ fn an_interrupted_collision_is_unfinished() {
 fn coverings() -> Vec<Covering> {
     let laws = [
         Material::Linear { modulus: 2e5 },
-        Material::GibsonAshby(GibsonAshby {
-            modulus: 3e5,
-            plateau: 15e3,
-            lock: 0.9,
-            d: 2.3,
-            m: 1.0,
-        }),
+        Material::GibsonAshby(GibsonAshby::new([3e5, 15e3, 0.9, 2.3, 1.0])),
         Material::Rusch {
             a: 18e3,
             p: 0.5,

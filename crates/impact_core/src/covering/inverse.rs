@@ -3,6 +3,9 @@
 /// Steps after which a bracket has no room left.
 const MAX_STEPS: usize = 200;
 
+/// Steps after which plain Newton steps are too slow.
+const FEW_STEPS: usize = 12;
+
 /// Largest argument in [0, `bound`) whose value is at most `target`, of a function from (0, 0) that does
 /// not fall; it gives its value and slope. Newton steps on logarithms, in which power laws are lines.
 #[must_use]
@@ -54,4 +57,29 @@ pub fn between(target: f64, low: f64, bound: f64, function: impl Fn(f64) -> [f64
         x = next;
     }
     x
+}
+
+/// The same in [`low`, `bound`) of a function that rises steeply from there on, as on a backing; it
+/// may have the value `at_low` and the slope `slope` at `low`. Newton steps from beyond, where they
+/// cannot jump over the solution of a convex function.
+#[must_use]
+pub fn beyond(
+    target: f64,
+    (low, at_low, slope): (f64, f64, f64),
+    bound: f64,
+    function: impl Fn(f64) -> [f64; 2],
+) -> f64 {
+    let mut x = low + (target - at_low) / slope;
+    for _ in 0..FEW_STEPS {
+        if !(x > low && x < bound) {
+            break;
+        }
+        let [value, slope] = function(x);
+        let newton = x - (value - target) / slope;
+        if (newton - x).abs() <= 2.0 * f64::EPSILON * x {
+            return x;
+        }
+        x = newton;
+    }
+    between(target, low, bound, function)
 }

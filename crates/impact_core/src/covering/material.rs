@@ -68,6 +68,9 @@ pub struct GibsonAshby {
     pub d: f64,
     /// `m`.
     pub m: f64,
+    plateau_end: f64,
+    /// `s_p/D e_D^m (e_D - e_p)^(1-m)`, in Pa.
+    dense_scale: f64,
 }
 
 impl GibsonAshby {
@@ -77,10 +80,26 @@ impl GibsonAshby {
         self.plateau / self.modulus
     }
 
+    /// A law from its numbers: `E` and `s_p` in Pa, `e_D`, `D`, `m`.
+    #[must_use]
+    pub fn new([modulus, plateau, lock, d, m]: [f64; 5]) -> Self {
+        let plateau_end = lock * (1.0 - d.powf(-1.0 / m));
+        let first = lock - plateau_end;
+        Self {
+            modulus,
+            plateau,
+            lock,
+            d,
+            m,
+            plateau_end,
+            dense_scale: plateau / d * lock.powf(m) * first.powf(1.0 - m),
+        }
+    }
+
     /// Strain `e_p` at which the plateau ends.
     #[must_use]
     pub fn plateau_end(&self) -> f64 {
-        self.lock * (1.0 - self.d.powf(-1.0 / self.m))
+        self.plateau_end
     }
 
     /// Stress of densification, and its slope.
@@ -91,14 +110,20 @@ impl GibsonAshby {
         [stress, self.m * stress / left]
     }
 
-    /// Work and integral of the work above `e_p`, without what the strain before it adds.
-    fn dense_works(&self, strain: f64) -> [f64; 2] {
-        let Self { lock, m, .. } = *self;
-        let first = lock - self.plateau_end();
+    /// Logarithm of the share that the strain has left of what was left at `e_p`.
+    fn length(&self, strain: f64) -> f64 {
+        ((self.lock - self.plateau_end) / (self.lock - strain)).ln()
+    }
+
+    /// Work above `e_p`, without what the strain before it adds.
+    fn dense_work(&self, strain: f64) -> f64 {
         // With r = e_D - e = first exp(-l): int r^-m = first^(1-m) expm1((m-1) l)/(m-1).
-        let length = (first / (lock - strain)).ln();
-        let scale = self.plateau / self.d * lock.powf(m) * first.powf(1.0 - m);
-        let once = growth(m - 1.0, length);
+        self.dense_scale * growth(self.m - 1.0, self.length(strain))
+    }
+
+    /// Integral of the work above `e_p`, without what the strain before it adds.
+    fn dense_work_integral(&self, strain: f64) -> f64 {
+        let (m, length) = (self.m, self.length(strain));
         let twice = if (m - 1.0).abs() < NEAR_ONE && m != 1.0 {
             length * unit_integral(|y| growth(m - 1.0, y * length) * (-y * length).exp())
         } else if m == 1.0 {
@@ -107,7 +132,7 @@ impl GibsonAshby {
         } else {
             (growth(m - 2.0, length) + (-length).exp_m1()) / (m - 1.0)
         };
-        [scale * once, scale * first * twice]
+        self.dense_scale * (self.lock - self.plateau_end) * twice
     }
 }
 
@@ -228,7 +253,7 @@ impl Material {
         }
         match self {
             Self::Linear { modulus } => 0.5 * modulus * strain * strain,
-            Self::GibsonAshby(law) => gibson_works(law, strain)[0],
+            Self::GibsonAshby(law) => gibson_work(law, strain),
             Self::Rusch { a, p, b, q } => {
                 strain
                     * (power(*a, *p, strain)[0] / (p + 1.0) + power(*b, *q, strain)[0] / (q + 1.0))
@@ -247,7 +272,7 @@ impl Material {
         let square = strain * strain;
         match self {
             Self::Linear { modulus } => modulus * square * strain / 6.0,
-            Self::GibsonAshby(law) => gibson_works(law, strain)[1],
+            Self::GibsonAshby(law) => gibson_work_integral(law, strain),
             Self::Rusch { a, p, b, q } => {
                 let part = |factor, exponent: f64| {
                     power(factor, exponent, strain)[0] / ((exponent + 1.0) * (exponent + 2.0))
@@ -311,22 +336,36 @@ pub(super) fn power(factor: f64, exponent: f64, x: f64) -> [f64; 2] {
     [value, exponent * value / x]
 }
 
-fn gibson_works(law: &GibsonAshby, strain: f64) -> [f64; 2] {
-    let (start, end) = (law.yield_strain(), law.plateau_end());
+/// Work and its integral up to the end of the plateau.
+fn gibson_works_before(law: &GibsonAshby, strain: f64) -> [f64; 2] {
+    let start = law.yield_strain();
     let elastic = strain.min(start);
     let mut once = 0.5 * law.modulus * elastic * elastic;
     let mut twice = once * elastic / 3.0;
     if strain > start {
-        let length = strain.min(end) - start;
+        let length = strain.min(law.plateau_end) - start;
         twice += length * (once + 0.5 * law.plateau * length);
         once += law.plateau * length;
     }
-    if strain > end {
-        let [more, twice_more] = law.dense_works(strain);
-        twice += once * (strain - end) + twice_more;
-        once += more;
-    }
     [once, twice]
+}
+
+fn gibson_work(law: &GibsonAshby, strain: f64) -> f64 {
+    let [once, _] = gibson_works_before(law, strain);
+    if strain > law.plateau_end {
+        once + law.dense_work(strain)
+    } else {
+        once
+    }
+}
+
+fn gibson_work_integral(law: &GibsonAshby, strain: f64) -> f64 {
+    let [once, twice] = gibson_works_before(law, strain);
+    if strain > law.plateau_end {
+        twice + (once * (strain - law.plateau_end) + law.dense_work_integral(strain))
+    } else {
+        twice
+    }
 }
 
 fn within(name: &str, value: f64, most: f64) -> Result<f64> {

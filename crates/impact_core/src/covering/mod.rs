@@ -317,7 +317,10 @@ impl Pad {
             0.0
         };
         if start > 0.0 {
-            return Some(inverse::between(force, start, bound, |d| self.force(d)));
+            let [at_start, slope] = self.force(start);
+            let steep = slope + self.covering.bottoming.stiffness;
+            let from = (start, at_start, steep);
+            return Some(inverse::beyond(force, from, bound, |d| self.force(d)));
         }
         Some(inverse::largest(force, bound, |d| self.force(d)))
     }

@@ -26,15 +26,7 @@ fn pad(material: Material, shape: Shape) -> Pad {
 }
 
 fn laws() -> Vec<Material> {
-    let gibson = |m| {
-        Material::GibsonAshby(GibsonAshby {
-            modulus: 3e5,
-            plateau: 15e3,
-            lock: 0.9,
-            d: 2.3,
-            m,
-        })
-    };
+    let gibson = |m| Material::GibsonAshby(GibsonAshby::new([3e5, 15e3, 0.9, 2.3, m]));
     let strain = vec![0.0, 0.05, 0.1, 0.3, 0.5, 0.85];
     let stress = vec![0.0, 6e3, 9e3, 9e3, 16e3, 160e3];
     vec![
@@ -209,13 +201,7 @@ fn refusals_name_the_number() {
         covering.prepared().unwrap_err().to_string()
     };
     let gibson = |modulus, plateau, d| {
-        Material::GibsonAshby(GibsonAshby {
-            modulus,
-            plateau,
-            lock: 0.9,
-            d,
-            m: 1.0,
-        })
+        Material::GibsonAshby(GibsonAshby::new([modulus, plateau, 0.9, d, 1.0]))
     };
     for (material, words) in [
         (
