@@ -1,5 +1,7 @@
 """Environments for learners, for Gymnasium: one robot among people that react, single or a thousand side by side.
 
+`parallel_env` has many robots in one world, for PettingZoo.
+
 Importing this module registers ``hrsafety/CircleCrossing-v0``, ``hrsafety/Corridor-v0``, ``hrsafety/Crossing-v0`` and
 ``hrsafety/Bottleneck-v0``; ``gymnasium.make("hrsafety.gym:hrsafety/CircleCrossing-v0")`` imports it by itself. It needs
 ``pip install hrsafety[gym]``.
@@ -12,6 +14,7 @@ from hrsafety.errors import MissingExtraError
 if importlib.util.find_spec("gymnasium") is None:
     raise MissingExtraError("environments for learners need gymnasium: pip install hrsafety[gym]")
 
+from hrsafety.gym.parallel import parallel_env
 from hrsafety.gym.registration import IDS, register
 from hrsafety.gym.single import CrowdEnv
 from hrsafety.gym.vector import CrowdVectorEnv
@@ -26,6 +29,7 @@ __all__ = [
     "circle_crossing",
     "corridor",
     "crossing",
+    "parallel_env",
     "register",
 ]
 

@@ -246,7 +246,7 @@ def test_plotting_computes_nothing_reactive(path: Path) -> None:
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
-    optional |= {"jinja2", "markupsafe", "rich", "shtab", "gymnasium"}
+    optional |= {"jinja2", "markupsafe", "rich", "shtab", "gymnasium", "pettingzoo"}
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
     parts += ("arms", "contact", "standards", "benchmarks")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])

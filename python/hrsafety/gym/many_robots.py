@@ -1,0 +1,312 @@
+"""Robots of one world that a learner drives side by side, with the interface of PettingZoo."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+from pettingzoo import ParallelEnv
+
+from hrsafety._arguments import Array, numbers, positive, word
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.gym.environments import ActionKind, Frame
+from hrsafety.gym.single import RENDER_MODES, CrowdEnv
+from hrsafety.gym.worlds import Task
+from hrsafety.navigation.crowd.agents import CrowdRobot
+from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.laws.situation import Situation
+
+__all__ = ["CrowdParallelEnv"]
+
+Action = npt.NDArray[np.float32]
+
+
+class _Told:
+    """What drives a robot in the worlds of the others: what its learner says, rest once its episode has ended."""
+
+    def __init__(self, robot: CrowdRobot, action: str, turn: float, acceleration: float) -> None:
+        self.kind, self.fastest = action, robot.robot.max_speed
+        self.force, self.turn = robot.robot.mass * acceleration, turn
+        self.ahead = math.atan2(robot.goal[1] - robot.start[1], robot.goal[0] - robot.start[0])
+        self.reset()
+
+    def reset(self) -> None:
+        """Start an episode."""
+        self.wanted, self.heading, self.resting = (0.0, 0.0), self.ahead, False
+
+    def tell(self, action: Array) -> None:
+        """Take an action in [-1, 1], as the environment does."""
+        x, y = (min(max(float(share), -1.0), 1.0) for share in action)
+        if self.kind == "unicycle":
+            self.heading += y * self.turn
+            self.wanted = math.cos(self.heading) * (x * self.fastest), math.sin(self.heading) * (x * self.fastest)
+            return
+        if self.kind == "acceleration":
+            self.wanted = x * self.force, y * self.force
+            return
+        length = math.sqrt(x * x + y * y)
+        if length > 1.0:
+            x, y = x / length, y / length
+        self.wanted = x * self.fastest, y * self.fastest
+
+    def rest(self) -> None:
+        """Come to rest and stay there."""
+        self.resting = True
+
+    def law(self) -> _Forces | _Velocities:
+        """Return the law: of velocities, or of forces for accelerations."""
+        return _Forces(self) if self.kind == "acceleration" else _Velocities(self)
+
+
+class _Velocities:
+    """A law of what is told as velocities."""
+
+    name = "driven by a learner"
+
+    def __init__(self, told: _Told) -> None:
+        self.told = told
+
+    def velocity(self, _: Situation, /) -> tuple[float, float]:
+        """Return the velocity in m/s."""
+        return (0.0, 0.0) if self.told.resting else self.told.wanted
+
+
+class _Forces:
+    """A law of what is told as forces."""
+
+    name = "driven by a learner"
+
+    def __init__(self, told: _Told) -> None:
+        self.told = told
+
+    def command(self, seen: Situation, /) -> Array | tuple[float, float]:
+        """Return the force in N."""
+        stop: Array = -seen.robot.mass * seen.velocity / seen.control_period
+        return stop if self.told.resting else self.told.wanted
+
+
+def _driven(world: World) -> list[int]:
+    """Return which robots a learner drives."""
+    found = [index for index, robot in enumerate(world.robots) if robot.law is None]
+    if not found:
+        raise InvalidParameterError("world.robots", "hold a robot without a law, to drive", Shown("none"))
+    periods = {index: world.robots[index].control_period or world.step for index in found}
+    for index, period in periods.items():
+        if not math.isclose(period, periods[found[0]], rel_tol=1e-9):
+            rule = f"share the control period of robots[{found[0]}], {periods[found[0]]:g} s"
+            raise InvalidParameterError(f"world.robots[{index}].control_period", rule, period)
+    return found
+
+
+class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # PettingZoo has no types
+    """Robots that a learner drives side by side in one world; made by `parallel_env`.
+
+    Parameters
+    ----------
+    world : World or Task
+        As of `parallel_env`.
+    render_mode : {"rgb_array"} or None
+        Whether pictures are asked for.
+    **options
+        As of `CrowdEnv`.
+
+    Attributes
+    ----------
+    possible_agents, agents : list of str
+        All robots that are driven, and those whose episode is under way.
+
+    Raises
+    ------
+    InvalidParameterError
+        As `parallel_env`.
+
+    Examples
+    --------
+    >>> from hrsafety import gym, scenarios
+    >>> env = gym.parallel_env(scenarios.antipodal(6, robots=2))
+    >>> env.possible_agents
+    ['robot_0', 'robot_1']
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012  # as PettingZoo has it
+        "name": "hrsafety_crowd",
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 4,
+        "is_parallelizable": True,
+    }
+
+    def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
+        """Make the environment."""
+        if not isinstance(world, (World, Task)):
+            raise InvalidParameterError("world", "be a World or Task", world)
+        task = Task(world=world) if isinstance(world, World) else world
+        driven = _driven(task.world)
+        self.render_mode = render_mode
+        self.possible_agents = [f"robot_{index}" for index in driven]
+        self.agents: list[str] = []
+        self._told = {name: self._listener(task.world, index, options) for name, index in self._numbered(driven)}
+        self._envs = {
+            name: CrowdEnv(self._seen_by(task, index), render_mode=render_mode, **options)
+            for name, index in self._numbered(driven)
+        }
+        self._action_spaces = {name: env.action_space for name, env in self._envs.items()}
+        self._observation_spaces = {name: env.observation_space for name, env in self._envs.items()}
+        self._seeded, self._shown = False, self.possible_agents[0]
+
+    def _numbered(self, driven: list[int]) -> list[tuple[str, int]]:
+        return list(zip(self.possible_agents, driven, strict=True))
+
+    @staticmethod
+    def _listener(world: World, index: int, options: Mapping[str, Any]) -> _Told:
+        """Return what repeats the actions of a robot in the worlds of the others."""
+        robot = world.robots[index]
+        acceleration = options.get("max_acceleration")
+        return _Told(
+            robot,
+            word("action", options.get("action", "velocity"), get_args(ActionKind)),
+            positive("max_turn_rate", options.get("max_turn_rate", math.pi)) * (robot.control_period or world.step),
+            robot.robot.max_acceleration if acceleration is None else positive("max_acceleration", acceleration),
+        )
+
+    def _seen_by(self, task: Task, index: int) -> Task:
+        """Return the task with a robot in front of the others, which are told what to do."""
+        robots = list(task.world.robots)
+        for name, told in self._told.items():
+            other = int(name.removeprefix("robot_"))
+            robots[other] = replace(robots[other], law=None if other == index else told.law())
+        robots[0], robots[index] = robots[index], robots[0]
+        return replace(task, world=replace(task.world, robots=robots))
+
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """Return what a robot may see, always the same object.
+
+        Parameters
+        ----------
+        agent : str
+            Which robot.
+
+        Returns
+        -------
+        gymnasium.spaces.Space
+            As of `CrowdEnv`.
+        """
+        return self._observation_spaces[agent]
+
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """Return what a robot may be told, always the same object.
+
+        Parameters
+        ----------
+        agent : str
+            Which robot.
+
+        Returns
+        -------
+        gymnasium.spaces.Space
+            As of `CrowdEnv`.
+        """
+        return self._action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+        """Start an episode of all robots: the first one of a seed, else the next one.
+
+        Parameters
+        ----------
+        seed : int or None
+            Seed of this episode and those that follow.
+        options : dict or None
+            Not used.
+
+        Returns
+        -------
+        observations, infos : dict
+            Of each robot.
+        """
+        if seed is None and not self._seeded:
+            seed = int(np.random.default_rng().integers(2**62))  # the same for the worlds of all robots
+        self._seeded = True
+        for told in self._told.values():
+            told.reset()
+        self.agents = list(self.possible_agents)
+        self._shown = self.agents[0]
+        found = {name: env.reset(seed=seed, options=options) for name, env in self._envs.items()}
+        infos = {name: info | self._apart(name) for name, (_, info) in found.items()}
+        return {name: seen for name, (seen, _) in found.items()}, infos
+
+    def step(
+        self, actions: Mapping[str, npt.ArrayLike]
+    ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+        """Drive all robots whose episode is under way for one control period.
+
+        Parameters
+        ----------
+        actions : mapping of str to array_like, shape (2,)
+            Numbers from -1 to 1 for each of ``agents``.
+
+        Returns
+        -------
+        observations, rewards, terminations, truncations, infos : dict
+            Of each robot whose episode was under way.
+        """
+        given = self._checked(actions)
+        for name, action in given.items():
+            self._told[name].tell(action)
+        found = {name: self._envs[name].step(action) for name, action in given.items()}
+        for name, (_, _, terminated, truncated, _) in found.items():
+            if terminated or truncated:
+                self._told[name].rest()
+        infos = {name: each[4] | self._apart(name) for name, each in found.items()}
+        self.agents = [name for name, each in found.items() if not (each[2] or each[3])]
+        # The world of a robot stands still when its episode has ended.
+        self._shown = next(iter(self.agents or found), self._shown)
+        seen = {name: each[0] for name, each in found.items()}
+        ends = {name: each[2] for name, each in found.items()}, {name: each[3] for name, each in found.items()}
+        return seen, {name: each[1] for name, each in found.items()}, *ends, infos
+
+    def _checked(self, actions: Mapping[str, npt.ArrayLike]) -> dict[str, Array]:
+        """Return an action for each robot under way, in their order."""
+        if not isinstance(actions, Mapping) or set(actions) != set(self.agents):
+            named = list(actions) if isinstance(actions, Mapping) else actions
+            raise InvalidParameterError("actions", f"name each of {self.agents}", named)
+        found = {name: numbers(f"actions[{name!r}]", actions[name]) for name in self.agents}
+        for name, action in found.items():
+            if action.shape != (2,):
+                raise ShapeError(f"actions[{name!r}]", "(2,)", action.shape)
+            if not np.isfinite(action).all():
+                raise InvalidParameterError(f"actions[{name!r}]", "be finite", action.tolist())
+        return found
+
+    def _apart(self, name: str) -> dict[str, float]:
+        """Return the gap to the nearest other robot in m; infinite without any."""
+        env = self._envs[name]
+        (place, radius), _, others = env._all.places(0)
+        wrap = env._all.task.world.period
+        gaps = [math.hypot(*_wrapped(other, place, wrap)) - radius - room for other, room in others]
+        return {"robot_clearance": min(gaps, default=math.inf)}
+
+    def render(self) -> Frame | None:
+        """Return a picture of the world, if pictures are asked for.
+
+        Returns
+        -------
+        ndarray of uint8, shape (height, width, 3), or None
+            The picture.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn('render() needs render_mode="rgb_array" when the environment is made')
+            return None
+        return self._envs[self._shown].render()
+
+
+def _wrapped(to: tuple[float, float], start: tuple[float, float], period: tuple[float, float]) -> list[float]:
+    """Return the difference of two places in a world that repeats itself."""
+    away = [end - begin for end, begin in zip(to, start, strict=True)]
+    return [each - size * round(each / size) if size else each for each, size in zip(away, period, strict=True)]
