@@ -18,7 +18,7 @@ import hrsafety
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
-EXAMPLES = sorted((REPOSITORY / "examples").glob("*.py"))
+EXAMPLES = [*sorted((REPOSITORY / "examples").glob("*.py")), REPOSITORY / "examples" / "ppo" / "learned_law.py"]
 MODULES = sorted(entry.name for entry in pkgutil.walk_packages(hrsafety.__path__, "hrsafety."))
 
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
