@@ -24,6 +24,8 @@ _WORDS, _BOUND, _RANGE = _hrsafety.environment_words()
 OUTCOMES = np.array(_WORDS, dtype=object)
 RUNNING, TIMED_OUT = _WORDS.index("running"), _WORDS.index("timed_out")
 _OWN, _PERSON = 6, 5
+ELAPSED = _OWN - 1
+"""Place of the share of the time limit in an observation."""
 _MOST_SEEN = 10_000
 _MOST_ENVIRONMENTS = 2**20
 
@@ -143,7 +145,7 @@ class Environments:
         """Return the space of one observation."""
         low = np.full(self.size, -_BOUND, dtype=np.float32)
         high = np.full(self.size, _BOUND, dtype=np.float32)
-        low[_OWN - 1], high[_OWN - 1] = 0.0, 1.0
+        low[ELAPSED], high[ELAPSED] = 0.0, 1.0
         if self.lidar:
             low[-self.lidar :], high[-self.lidar :] = 0.0, _RANGE
         if not self.is_dict:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety.gym.environments import Environments, Frame
-from hrsafety.plotting.runs.crowd_instants import crowd_instant
+from hrsafety.gym.environments import ELAPSED, Environments, Frame
+from hrsafety.plotting.crowds.instants import crowd_instant
 
 __all__ = ["picture"]
 
@@ -16,8 +16,8 @@ def picture(environments: Environments, index: int) -> Frame:
     """Return a picture of one environment, shape (height, width, 3)."""
     robot, people, robots = environments.places(index)
     world = environments.task.world
-    ends = {"start": world.robots[0].start, "goal": world.robots[0].goal}
-    figure = crowd_instant(robot=robot, people=people, robots=robots, walls=world.walls, **ends)
+    elapsed = float(environments.observations[index, ELAPSED]) * world.time_limit
+    figure = crowd_instant(world, time=elapsed, robot=robot, people=people, robots=robots)
     # Imported when a picture is asked for, as all of matplotlib is.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

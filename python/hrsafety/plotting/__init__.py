@@ -10,7 +10,7 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_below
-from hrsafety.plotting import arms, comparisons, contacts, gains, impacts, reactive, robots, runs, sweeps
+from hrsafety.plotting import arms, comparisons, contacts, crowds, gains, impacts, reactive, robots, runs, sweeps
 from hrsafety.plotting.arms.ellipses import mass_ellipse
 from hrsafety.plotting.comparisons.law_runs import comparison_distances, comparison_paths, comparison_sequence
 from hrsafety.plotting.comparisons.repeated import repeated_distances, repeated_paths
@@ -42,6 +42,7 @@ __all__ = [
     "comparison_standings",
     "comparisons",
     "contacts",
+    "crowds",
     "distances",
     "energy",
     "flatness",
@@ -77,5 +78,5 @@ __all__ = [
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
     __getattr__, __dir__ = names_below(
-        __name__, __all__, [arms, comparisons, contacts, gains, impacts, reactive, robots, runs, sweeps]
+        __name__, __all__, [arms, comparisons, contacts, crowds, gains, impacts, reactive, robots, runs, sweeps]
     )

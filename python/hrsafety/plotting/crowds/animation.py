@@ -1,0 +1,185 @@
+"""Moving pictures of a world of people and robots, as GIF or MP4."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hrsafety._arguments import callback
+from hrsafety.plotting import floor, movies, notes, style
+from hrsafety.plotting.crowds import scenes
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+
+__all__ = ["animate_crowd"]
+
+DPI = 85
+
+
+@style.styled
+def animate_crowd(
+    run: CrowdTrajectories,
+    path: str | os.PathLike[str],
+    *,
+    frames_per_second: float = 20,
+    speed: float = 1.0,
+    color_by: str = "model",
+    title: str | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Write an animation of a world to a GIF or MP4 file.
+
+    Shown are walls, people, robots with their trails, goals, contacts and a clock. The file appears under its
+    name only when it is complete.
+
+    Parameters
+    ----------
+    run : CrowdTrajectories
+        What happened.
+    path : str or path-like
+        Where to write; ``.gif`` needs Pillow, ``.mp4`` the program ffmpeg.
+    frames_per_second : float
+        Frames in a second of viewing time; at most 50 for a GIF.
+    speed : float
+        Simulated time over viewing time: 2 plays twice as fast.
+    color_by : {"model", "group"}
+        What the colors of people tell.
+    title : str or None
+        Title above the scene.
+    progress : callable or None
+        Called with ``(done, total)`` after each frame that was drawn.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is not positive and finite, a word is unknown, the suffix is neither ``.gif`` nor ``.mp4``, the
+        folder does not exist, or more than 6000 frames would be needed.
+    MissingExtraError
+        If matplotlib, Pillow or ffmpeg is needed and missing.
+    HrsafetyError
+        If ffmpeg fails.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import navigation as nav, plotting, scenarios
+    >>> run = nav.crowd.simulate_crowd(scenarios.bottleneck(10, time_limit=4))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = plotting.crowds.animate_crowd(run, pathlib.Path(folder) / "door.gif", frames_per_second=4)
+    ...     file.name
+    'door.gif'
+    """
+    run = scenes.checked_crowd(run)
+    kinds = scenes.kinds_of_people(run, color_by)
+    target = movies.checked_target(path)
+    instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
+    rows = [*(int(np.abs(run.time - instant).argmin()) for instant in instants), len(run.time) - 1]
+    frames = _frames(run, rows, kinds, title=title)
+    movies.write(target, movies.counted(frames, len(rows), callback("progress", progress)), frames_per_second)
+    return target
+
+
+class _Stage:
+    """What moves in the picture of a world: its artists, and how they show one row."""
+
+    def __init__(self, axes: Axes, run: CrowdTrajectories, place: scenes.Floor, kinds: Sequence[str]) -> None:
+        self.run, self.place = run, place
+        colors = scenes.color_of(kinds)
+        self.people = [
+            _circle(axes, radius, colors[kind], 3.2) for kind, radius in zip(kinds, run.radius.tolist(), strict=True)
+        ]
+        looks = [str(look["color"]) for look in scenes.robot_looks(len(run.world.robots))]
+        self.trails = [axes.plot([], [], color=color, linewidth=2.0, zorder=4.0, animated=True)[0] for color in looks]
+        self.robots = [
+            _circle(axes, robot.robot.radius, color, 5.0) for robot, color in zip(run.world.robots, looks, strict=True)
+        ]
+        self.touched = scenes.contacts(run)
+        self.contacts = axes.plot([], [], zorder=7.0, animated=True, **floor.CONTACT)[0]
+        box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+        where: style.Properties = {"x": 0.015, "y": 0.975, "transform": axes.transAxes, "ha": "left", "va": "top"}
+        self.clock = axes.text(s="", **where, bbox=box, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
+
+    def artists(self) -> list[Artist]:
+        """Return everything that moves, from back to front."""
+        return [*self.people, *self.trails, *self.robots, self.contacts, self.clock]
+
+    def show(self, row: int) -> None:
+        """Put everything where it is at one row of the run."""
+        run = self.run
+        for body, where in zip(self.people, self.place.wrapped(run.position[row]), strict=True):
+            present = bool(np.isfinite(where).all())
+            body.set_visible(present)
+            if present:
+                body.set_center(where)
+        for index, (body, trail) in enumerate(zip(self.robots, self.trails, strict=True)):
+            body.set_center(run.robot_position[row, index])
+            trail.set_data(*run.robot_position[: row + 1, index].T)
+        places = [run.robot_position[instant, robot] for instant, robot in self.touched if instant <= row]
+        self.contacts.set_data(*np.array(places).reshape(-1, 2).T)
+        self.clock.set_text(f"{run.time[row]:5.2f} s")
+
+
+def _circle(axes: Axes, radius: float, color: str, zorder: float) -> Any:
+    """Add a circle at the origin that will be moved."""
+    from matplotlib.patches import Circle
+
+    look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 1.0, "animated": True}
+    return axes.add_patch(Circle((0.0, 0.0), radius, zorder=zorder, **look))
+
+
+def _background(
+    run: CrowdTrajectories, place: scenes.Floor, kinds: Sequence[str], *, title: str | None
+) -> tuple[Figure, Axes]:
+    """Return a figure with everything that does not move."""
+    handles = _handles(run, kinds)
+    height = style.scene_height(place.limits, titled=title is not None, legend_rows=-(-len(handles) // 3))
+    figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
+    axes = figure.subplots()
+    style.frame_scene(axes, place.limits)
+    scenes.add_walls(axes, run.world, place)
+    scenes.add_goals(axes, run.world)
+    style.legend_below(figure, handles, columns=3)
+    notes.add_warnings(figure, run)
+    return figure, axes
+
+
+def _handles(run: CrowdTrajectories, kinds: Sequence[str]) -> list[Artist]:
+    """Return the legend."""
+    handles: list[Artist] = []
+    if run.world.robots:
+        look: style.Properties = {"marker": "o", "markersize": 9, "linestyle": "-", "linewidth": 2.0}
+        handles.append(floor.handle("robot, path so far", color=style.RUN_COLORS[0], **look))
+    handles += scenes.people_handles(kinds) + scenes.scene_handles(run.world)
+    if scenes.contacts(run):
+        handles.append(floor.handle("first contact", **floor.CONTACT))
+    return handles
+
+
+def _frames(
+    run: CrowdTrajectories, rows: Sequence[int], kinds: Sequence[str], *, title: str | None
+) -> Iterator[movies.Frame]:
+    """Return the pictures: only what moves is drawn again."""
+    place = scenes.Floor.of(run)
+    figure, axes = _background(run, place, kinds, title=title)
+    stage = _Stage(axes, run, place, kinds)
+    artists = stage.artists()
+
+    def shown(row: int) -> list[Artist]:
+        stage.show(row)
+        return artists
+
+    return movies.drawn(figure, axes, rows, shown)

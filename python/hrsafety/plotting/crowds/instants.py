@@ -1,0 +1,74 @@
+"""A robot among people at one instant, seen from above: a frame of an environment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hrsafety.plotting import floor, style
+from hrsafety.plotting.crowds import scenes
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
+
+    from hrsafety.navigation.crowd.world import World
+
+__all__ = ["crowd_instant"]
+
+FAR = 15.0  # m around robots; walls beyond are not in view
+Body = tuple[tuple[float, float], float]
+
+PERSON_COLOR, OTHER_COLOR, ROBOT_COLOR = scenes.PEOPLE_COLORS[0], style.RUN_COLORS[4], style.RUN_COLORS[0]
+
+
+@style.styled
+def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Body], robots: Sequence[Body]) -> Figure:
+    """Return a picture of a robot, people, other robots and walls; all of one world have the same view.
+
+    Parameters
+    ----------
+    world : World
+        Its first robot is the one that is driven.
+    time : float
+        The instant in s.
+    robot : ((float, float), float)
+        Position and radius in m of the robot that is driven.
+    people, robots : sequence of ((float, float), float)
+        Positions and radii of the people and of other robots, in m.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+    """
+    driven = world.robots[0]
+    ends = np.array([driven.start, driven.goal], dtype=np.float64)
+    # Nothing may bound the floor: as wide as long.
+    half = 0.5 * max(float(np.abs(ends[0] - ends[1]).max()), 1.0)
+    square = np.array([ends.mean(axis=0) - half, ends.mean(axis=0) + half])
+    place = scenes.Floor.cell(world).showing(world, square, near=FAR)
+    handles = _handles(world)
+    title = f"t = {time:.2f} s"
+    figure, (axes,) = floor.panels(place.limits, entries=len(handles), legend_columns=3, title=title)
+    scenes.add_walls(axes, world, place)
+    scenes.add_goals(axes, world)
+    drawn = ((people, PERSON_COLOR, 3.2), (robots, OTHER_COLOR, 4.4), ([robot], ROBOT_COLOR, 4.5))
+    for bodies, color, zorder in drawn:
+        look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": zorder}
+        for where, radius in bodies:
+            scenes.draw_body(axes, place, np.asarray(where), radius, **look)
+    return floor.finish(figure, handles, columns=3)
+
+
+def _handles(world: World) -> list[Artist]:
+    """Return the legend."""
+    look: style.Properties = {"marker": "o", "markersize": 9}
+    handles: list[Artist] = [floor.handle("robot", color=ROBOT_COLOR, **look)]
+    if len(world.robots) > 1:
+        handles.append(floor.handle("other robot", color=OTHER_COLOR, **look))
+    if world.people or world.sources:
+        handles.append(floor.handle("person", color=PERSON_COLOR, **look))
+    return handles + scenes.scene_handles(world)
