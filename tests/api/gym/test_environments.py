@@ -11,6 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
+from api.trees import same
 from hrsafety import gym
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -32,22 +33,6 @@ def one_person(**options: Any) -> gym.CrowdEnv:
     )
     world = nav.crowd.World(people=[person], robots=[robot], step=0.25, time_limit=5.0)
     return gym.CrowdEnv(world, **options)
-
-
-def same(found: Any, expected: Any) -> None:
-    """Assert that two trees of dictionaries, tuples, arrays and values are the same, bit for bit."""
-    if isinstance(expected, dict):
-        assert found.keys() == expected.keys()
-        for name in expected:
-            same(found[name], expected[name])
-    elif isinstance(expected, tuple) or (isinstance(expected, np.ndarray) and expected.dtype == object):
-        assert len(found) == len(expected)
-        for one, other in zip(found, expected, strict=True):
-            same(one, other)
-    elif isinstance(expected, np.ndarray):
-        np.testing.assert_array_equal(found, expected, strict=True)
-    else:
-        assert found == expected
 
 
 @pytest.mark.parametrize("name", gym.IDS)
