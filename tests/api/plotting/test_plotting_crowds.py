@@ -14,7 +14,7 @@ from PIL import Image
 
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plotting import style
 from hrsafety.plotting.crowds import scenes
 from pictures import assert_readable
@@ -85,6 +85,9 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "space and time, oblique": lambda: plotting.crowds.space_time(crossed(), along=(1.0, 1.0), origin=(0.0, -4.0)),
     "space and time, many robots": lambda: plotting.crowds.space_time(many_robots()),
     "space and time, nobody": lambda: plotting.crowds.space_time(nobody()),
+    "fundamental diagram": lambda: plotting.crowds.fundamental_diagram(
+        [0.5, 1.0, 2.0], {"a": [1.2, 1.0, np.nan], "b": [1.3, 1.3, 1.2]}, reference=[1.3, 1.1, 0.6], title="Corridor"
+    ),
 }
 
 
@@ -155,6 +158,23 @@ def test_positions_over_time_have_the_colors_of_speeds() -> None:
     first = segments[0, 0]
     assert first.tolist() == [0.0, run.position[0, 0, 0] % 10.0]
     assert values[0] == speed[0, 0]
+
+
+def test_a_diagram_has_a_curve_for_each_model_and_the_reference() -> None:
+    figure = plotting.crowds.fundamental_diagram([0.5, 1.0], {"a": [1.2, 1.0]}, reference=[1.3, 1.1])
+    drawn = [line.get_xydata().tolist() for line in figure.axes[0].lines]
+    assert drawn == [[[0.5, 1.3], [1.0, 1.1]], [[0.5, 1.2], [1.0, 1.0]]]
+    assert legend(figure) == ["Weidmann 1993", "a"]
+    for density, speeds, message in (
+        ([1.0, 0.5], {"a": [1.0, 1.0]}, "density must be positive and increasing"),
+        ([0.0, 0.5], {"a": [1.0, 1.0]}, "density must be positive and increasing"),
+        ([0.5], {}, "speeds must be a mapping"),
+        ([0.5], {"a": [np.inf]}, r"speeds\['a'\] must be finite or NaN"),
+    ):
+        with pytest.raises(InvalidParameterError, match=message):
+            plotting.crowds.fundamental_diagram(density, speeds)
+    with pytest.raises(ShapeError, match=r"speeds\['a'\]"):
+        plotting.crowds.fundamental_diagram([0.5, 1.0], {"a": [1.0]})
 
 
 def test_an_animation_holds_every_frame(tmp_path: Path) -> None:
