@@ -11,6 +11,8 @@ from hrsafety.plotting.crowds.instants import crowd_instant
 
 __all__ = ["picture"]
 
+DPI = 85  # as animations have it
+
 
 def picture(environments: Environments, index: int) -> Frame:
     """Return a picture of one environment, shape (height, width, 3)."""
@@ -21,6 +23,9 @@ def picture(environments: Environments, index: int) -> Frame:
     # Imported when a picture is asked for, as all of matplotlib is.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+    figure.set_dpi(DPI)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
-    return np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3].copy()
+    drawn = np.array(canvas.buffer_rgba(), dtype=np.uint8)
+    height, width = (size - size % 2 for size in drawn.shape[:2])  # videos want even numbers
+    return drawn[:height, :width, :3].copy()

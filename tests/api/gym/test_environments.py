@@ -225,6 +225,12 @@ def test_a_picture_shows_the_world(name: str) -> None:
     picture = env.render()
     assert isinstance(picture, np.ndarray)
     assert picture.dtype == np.uint8
-    assert picture.shape[2] == 3
+    height, width, colors = picture.shape
+    assert (height % 2, width % 2, colors) == (0, 0, 3)  # as videos want it
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
+    env.step(np.array([1.0, 0.0], dtype=np.float32))
+    later = env.render()
+    assert isinstance(later, np.ndarray)
+    assert later.shape == picture.shape
+    assert not np.array_equal(later, picture)
     env.close()
