@@ -112,6 +112,14 @@ def not_negative(name: str, value: object) -> float:
     return given
 
 
+def finite(name: str, value: object) -> float:
+    """Return ``value`` as a finite float, or say that it should have been."""
+    given = number(name, value)
+    if not np.isfinite(given):
+        raise InvalidParameterError(name, "be finite", value)
+    return given
+
+
 def flag(name: str, value: object) -> bool:
     """Return ``value`` if it is a truth value, or say that it should have been."""
     if not isinstance(value, (bool, np.bool_)):
@@ -233,6 +241,14 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
     # The cores read whole floats at their places in memory: other arrays are copied.
     whole = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
     return whole if whole.flags.aligned else whole.copy()
+
+
+def empty(name: str, value: object, rule: str = "be an array of numbers") -> bool:
+    """Return whether ``value`` holds nothing; rows of different lengths are refused."""
+    try:
+        return np.size(value) == 0  # type: ignore[arg-type]  # the failure is the check
+    except (TypeError, ValueError):
+        raise InvalidParameterError(name, rule, value) from None
 
 
 def vector(name: str, value: object) -> Array:

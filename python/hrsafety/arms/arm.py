@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, count, flag, thread_count, word
+from hrsafety._arguments import Array, count, flag, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety.arms.facts import Facts
-from hrsafety.arms.inputs import armature_of, broadcast, locked_of, poses_of, urdf_text, vectors_of
+from hrsafety.arms.inputs import armature_of, broadcast, locked_of, motors_of, poses_of, urdf_text, vectors_of
 from hrsafety.arms.masses import RULES, Extremes, PointMasses, mass_by_rule
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.errors import InvalidParameterError
@@ -70,6 +70,11 @@ class Arm(Facts):
         """Read the URDF and check everything."""
         if not isinstance(self.urdf, str):
             raise InvalidParameterError("urdf", "be the text of a URDF", self.urdf)
+        self._set(
+            payloads=payloads_of(list(sequence("payloads", "be a tuple of Payload", self.payloads))),
+            armature=motors_of(self.armature),
+            locked=locked_of(sequence("locked", "be a tuple of names of joints", self.locked)),
+        )
         loads = [(each.link, each.mass, each.center, each.inertia) for each in self.payloads]
         native = _hrsafety.Arm(self.urdf, loads, list(self.armature), list(self.locked))
         self._set(_native=native, _facts=dict(native.facts()))

@@ -62,6 +62,15 @@ def armature_of(given: object, joint_names: Sequence[str]) -> tuple[tuple[str, f
     return tuple((name, _inertia(name, value)) for name, value in zip(joint_names, every, strict=True))
 
 
+def motors_of(given: object) -> tuple[tuple[str, float], ...]:
+    """Return the motor inertias of pairs of a joint and a number."""
+    rule = "be a tuple of pairs of a joint and its motor inertia"
+    pairs = [sequence("armature", rule, each) for each in sequence("armature", rule, given)]
+    if not all(len(each) == 2 and isinstance(each[0], str) for each in pairs):
+        raise InvalidParameterError("armature", rule, given)
+    return tuple((name, _inertia(name, value)) for name, value in pairs)
+
+
 def _name(argument: str, name: object) -> str:
     if not isinstance(name, str):
         raise InvalidParameterError(argument, "have names of joints as keys", name)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hrsafety._arguments import Parameters, not_negative, numbers
+from hrsafety._arguments import Parameters, finite, not_negative, numbers
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Payload", "payloads_of"]
@@ -54,14 +54,14 @@ class Payload(Parameters):
         center = numbers("center", self.center)
         if center.shape != (3,):
             raise ShapeError("center", "(3,)", center.shape)
-        self._set(center=tuple(center.tolist()))
+        self._set(center=tuple(finite("center", each) for each in center.tolist()))
         given = numbers("inertia", self.inertia)
         if given.shape == (6,):
             xx, xy, xz, yy, yz, zz = given
             given = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         if given.shape != (3, 3):
             raise ShapeError("inertia", "(3, 3) or (6,)", given.shape)
-        self._set(inertia=tuple(tuple(float(each) for each in row) for row in given))
+        self._set(inertia=tuple(tuple(finite("inertia", float(each)) for each in row) for row in given))
 
 
 def payloads_of(given: object) -> tuple[Payload, ...]:

@@ -68,7 +68,10 @@ def read_rows(path: Path) -> list[Row]:
     """Return the rows of a file that was written before; a line that was cut off is left out."""
     if not path.exists():
         return []
-    text = path.read_text(encoding="utf-8")
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InvalidParameterError("out", f"hold text in UTF-8 ({path})", Shown(f"byte {error.start}")) from None
     lines = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
     if not lines:
         return []

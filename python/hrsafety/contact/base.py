@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, not_negative, pair, positive
+from hrsafety._arguments import Array, Pair, finite, not_negative, pair, positive
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import Doubts
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
@@ -119,6 +119,7 @@ class DifferentialBase:
         """Check the values."""
         for name in ("mass", "inertia"):
             object.__setattr__(self, name, positive(f"base.{name}", getattr(self, name)))
+        object.__setattr__(self, "offset", finite("base.offset", self.offset))
         object.__setattr__(self, "wheel_inertia", not_negative("base.wheel_inertia", self.wheel_inertia))
         for name in ("wheel_radius", "half_track"):
             given = getattr(self, name)

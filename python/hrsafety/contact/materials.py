@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, number, vector
+from hrsafety._arguments import Array, finite, vector
 from hrsafety._words import meant
 from hrsafety.errors import InvalidParameterError
 
@@ -24,9 +24,9 @@ class _Law:
     keys: ClassVar[dict[str, str]]
 
     def __post_init__(self) -> None:
-        """Take the numbers as floats."""
+        """Take the numbers as finite floats; a covering checks their ranges."""
         for name in self.keys.values():
-            object.__setattr__(self, name, number(f"material.{name}", getattr(self, name)))
+            object.__setattr__(self, name, finite(f"material.{name}", getattr(self, name)))
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -181,6 +181,8 @@ class StressTable(_Law):
         """Take the points as arrays that nobody changes."""
         for name in ("strain", "stress"):
             points: Array = np.array(vector(f"material.{name}", getattr(self, name)))
+            if not np.isfinite(points).all():
+                raise InvalidParameterError(f"material.{name}", "be finite", float(points[~np.isfinite(points)][0]))
             points.flags.writeable = False
             object.__setattr__(self, name, points)
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from hrsafety._arguments import checked_seed, numbers
+from hrsafety._arguments import checked_seed, numbers, word
 from hrsafety.errors import ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
@@ -84,8 +84,8 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
 
     def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
-        if render_mode is not None and render_mode not in RENDER_MODES:
-            raise ValueError(f"render_mode must be None or one of {RENDER_MODES}, got {render_mode!r}")
+        if render_mode is not None:
+            word("render_mode", render_mode, RENDER_MODES)
         self._all = Environments(world, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
         self.render_mode = render_mode
         self.action_space: spaces.Space[Any] = self._all.action_space()

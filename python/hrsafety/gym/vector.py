@@ -11,7 +11,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from hrsafety._arguments import checked_seed
+from hrsafety._arguments import checked_seed, word
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
@@ -77,8 +77,10 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         **options: Any,
     ) -> None:
         """Make the environments."""
-        if render_mode is not None and render_mode not in RENDER_MODES:
-            raise ValueError(f"render_mode must be None or one of {RENDER_MODES}, got {render_mode!r}")
+        if render_mode is not None:
+            word("render_mode", render_mode, RENDER_MODES)
+        if not isinstance(autoreset_mode, AutoresetMode):
+            word("autoreset_mode", autoreset_mode, [mode.value for mode in AutoresetMode])
         self._mode = AutoresetMode(autoreset_mode)
         self._all = Environments(
             world, num_envs=num_envs, autoreset_mode=self._mode.value, threads=threads, copy=copy, **options

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from hrsafety import scenarios
-from hrsafety._arguments import Pair, count, flag
+from hrsafety._arguments import Pair, count, finite, flag, instance, pair, sequence
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import World
@@ -43,6 +44,23 @@ class Task:
     world: World
     circle: bool = False
     area: Area | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        instance("world", self.world, World)
+        flag("circle", self.circle)
+        if self.area is not None:
+            rule = "be (low, high, level) or None"
+            parts = sequence("area", rule, self.area)
+            if len(parts) != 3:
+                raise InvalidParameterError("area", rule, self.area)
+            area = (_corner("area.low", parts[0]), _corner("area.high", parts[1]), flag("area.level", parts[2]))
+            object.__setattr__(self, "area", area)
+
+
+def _corner(name: str, value: object) -> Pair:
+    x, y = pair(name, value)
+    return finite(name, x), finite(name, y)
 
 
 def _robot(start: Pair, goal: Pair) -> CrowdRobot:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, flag, instance, number, pair, positive, word
+from hrsafety._arguments import Array, Parameters, flag, instance, number, pair, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
@@ -133,9 +132,7 @@ class SetPoint(Parameters):
 
 def _segments(value: object) -> tuple[Segment, ...]:
     rule = "be a sequence of (start, acceleration)"
-    if isinstance(value, (str, bytes)) or not isinstance(value, (Sequence, np.ndarray)):
-        raise InvalidParameterError("segments", rule, value)
-    return tuple(pair("segments", each) for each in value)
+    return tuple(pair("segments", each) for each in sequence("segments", rule, value))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

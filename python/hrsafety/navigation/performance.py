@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from hrsafety._arguments import number
+from hrsafety._arguments import number, sequence
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
@@ -46,9 +46,11 @@ class Performance:
 
 def check_weights(weights: Sequence[float]) -> tuple[float, float, float]:
     """Return three weights that are not negative and sum to 1."""
-    if isinstance(weights, (str, bytes)) or not hasattr(weights, "__len__") or len(weights) != 3:
-        raise InvalidParameterError("weights", "be three numbers (time, distance, energy)", weights)
-    time, distance, energy = (number(f"weights[{i}]", weights[i]) for i in range(3))
+    rule = "be three numbers (time, distance, energy)"
+    given = sequence("weights", rule, weights)
+    if len(given) != 3:
+        raise InvalidParameterError("weights", rule, weights)
+    time, distance, energy = (number(f"weights[{i}]", each) for i, each in enumerate(given))
     if not min(time, distance, energy) >= 0.0 or not abs(time + distance + energy - 1.0) <= 1e-9:
         raise InvalidParameterError("weights", "not be negative and sum to 1", weights)
     return (time, distance, energy)

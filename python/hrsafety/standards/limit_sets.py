@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hrsafety._arguments import instance, word
+from hrsafety._arguments import flag, instance, positive, word
 from hrsafety.standards.contact_limits import CONTACTS, ContactLimit, Quantity
 from hrsafety.tables import Columns, Table
 
@@ -44,6 +44,18 @@ class LimitRow:
     spring_constant: Quantity | None = None
     effective_mass: Quantity | None = None
 
+    def __post_init__(self) -> None:
+        """Check the values."""
+        instance("region", self.region, str)
+        if self.area is not None:
+            instance("area", self.area, str)
+        word("contact", self.contact, CONTACTS)
+        flag("permitted", self.permitted)
+        for name in ("force", "pressure", "spring_constant", "effective_mass"):
+            given = getattr(self, name)
+            if given is not None:
+                positive(name, instance(name, given, Quantity).value)
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class LimitSet(Table):
@@ -78,6 +90,14 @@ class LimitSet(Table):
     note: str
     rows: tuple[LimitRow, ...]
     sources: dict[str, str]
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name in ("id", "title", "edition", "note"):
+            instance(name, getattr(self, name), str)
+        for index, row in enumerate(instance("rows", self.rows, tuple)):
+            instance(f"rows[{index}]", row, LimitRow)
+        instance("sources", self.sources, dict)
 
     @property
     def regions(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, instance, not_negative, number, numbers, pair, points
+from hrsafety._arguments import Array, Parameters, empty, instance, not_negative, number, numbers, pair, points
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
 from hrsafety.navigation.maps.distances import occupied_cells
@@ -76,7 +76,9 @@ class StaticMap(Parameters):
         """Check the values."""
         walls = [checked_wall(f"walls[{i}]", wall) for i, wall in enumerate(items("walls", self.walls))]
         polygons = [points(f"polygons[{i}]", each) for i, each in enumerate(items("polygons", self.polygons))]
-        discs = numbers("discs", self.discs).reshape(0, 3) if np.size(self.discs) == 0 else numbers("discs", self.discs)
+        discs = (
+            numbers("discs", self.discs).reshape(0, 3) if empty("discs", self.discs) else numbers("discs", self.discs)
+        )
         if discs.ndim != 2 or discs.shape[1] != 3:
             raise ShapeError("discs", "(n, 3)", discs.shape)
         grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(items("grids", self.grids))]

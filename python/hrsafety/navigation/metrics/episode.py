@@ -10,7 +10,19 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, Parameters, instance, number, numbers, pair, points, positive, sequence
+from hrsafety._arguments import (
+    Array,
+    Pair,
+    Parameters,
+    empty,
+    instance,
+    number,
+    numbers,
+    pair,
+    points,
+    positive,
+    sequence,
+)
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
 from hrsafety.navigation.obstacles import Disc, Rectangle
@@ -127,7 +139,9 @@ class Episode(Parameters):
             "person_radius": _of_people("person_radius", self.person_radius, people.shape[1]),
             "groups": _whole("groups", self.groups),
             "people_without": without,
-            "person_goals": points("person_goals", self.person_goals) if np.size(self.person_goals) else _NOWHERE,
+            "person_goals": points("person_goals", self.person_goals)
+            if not empty("person_goals", self.person_goals)
+            else _NOWHERE,
         }
         walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
         flat = {name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None}
@@ -247,7 +261,7 @@ def _of_people(name: str, value: npt.ArrayLike, count: int) -> Array:
 
 
 def _whole(name: str, value: npt.ArrayLike) -> npt.NDArray[np.int64]:
-    if np.size(value) == 0:
+    if empty(name, value):
         return np.empty(0, dtype=np.int64)
     array = numbers(name, value)
     if array.ndim != 1 or not (array == np.floor(array)).all() or np.abs(array).max() > 2**53:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, number, numbers, pair, points, sequence, thread_count
+from hrsafety._arguments import Array, callback, empty, number, numbers, pair, points, sequence, thread_count
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
@@ -332,7 +332,7 @@ def evaluate_world(
     (1.0, 0.0)
     """
     places, machines = _places("people", people), _places("robots", robots)
-    goals = points("person_goals", person_goals) if np.size(person_goals) else np.empty((0, 2))
+    goals = points("person_goals", person_goals) if not empty("person_goals", person_goals) else np.empty((0, 2))
     if len(goals) != places.shape[1]:
         raise ShapeError("person_goals", f"({places.shape[1]}, 2)", goals.shape)
     radii = numbers("robot_radius", robot_radius)

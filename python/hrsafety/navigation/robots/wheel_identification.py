@@ -61,6 +61,9 @@ class OpenLoopTest:
         if command == 0.0 or not np.isfinite(command):
             raise InvalidParameterError("command", "be finite and not zero", self.command)
         time, angle = columns(time=self.time, angle=self.angle)
+        for name, samples in (("time", time), ("angle", angle)):
+            if not np.isfinite(samples).all():
+                raise InvalidParameterError(name, "be finite", float(samples[~np.isfinite(samples)][0]))
         for name, value in (("command", command), ("time", time), ("angle", angle)):
             object.__setattr__(self, name, value)
 

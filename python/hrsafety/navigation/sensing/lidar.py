@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_seed, count, flag, instance, number, numbers, pair
+from hrsafety._arguments import Array, checked_seed, count, empty, flag, instance, number, numbers, pair
 from hrsafety._bounds import MOST_RAYS
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -130,7 +130,7 @@ class Lidar(RobotSensor):
         InvalidParameterError
             If an argument is not finite or of another shape.
         """
-        discs = numbers("people", people).reshape(0, 3) if np.size(people) == 0 else numbers("people", people)
+        discs = numbers("people", people).reshape(0, 3) if empty("people", people) else numbers("people", people)
         if discs.ndim != 2 or discs.shape[1] != 3:
             raise ShapeError("people", "(n, 3)", discs.shape)
         if not np.isfinite(discs).all() or (discs[:, 2] <= 0.0).any():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import instance, pair
+from hrsafety._arguments import empty, instance, pair
 from hrsafety._arguments import points as checked_points
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.guide import Plan
@@ -68,7 +68,7 @@ def guide_plan(
     'x (m)'
     """
     drawn, shown = instance("map", map, StaticMap), instance("plan", plan, Plan)
-    places = checked_points("starts", starts) if np.size(starts) else np.empty((0, 2))
+    places = checked_points("starts", starts) if not empty("starts", starts) else np.empty((0, 2))
     limits = inputs.view_limits([*walls.points_of([drawn]), places, [pair("goal", shown.goal)]], margin=MARGIN)
     handles = walls.handles([drawn])
     handles.append(floor.handle("goal", marker="*", color=style.GOAL_COLOR, markersize=12, linestyle="none"))

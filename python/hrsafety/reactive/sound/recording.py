@@ -55,7 +55,7 @@ class SoundRecording:
             raise ShapeError("samples", "(3, n)", array.shape)
         if not np.isfinite(array).all():
             raise InvalidParameterError("samples", "be finite", float(array[~np.isfinite(array)][0]))
-        shares = tuple(count("clipped", each, least=0) for each in self.clipped)
+        shares = tuple(count("clipped", each, least=0) for each in sequence("clipped", "be three counts", self.clipped))
         if len(shares) != 3:
             raise InvalidParameterError("clipped", "be three numbers", self.clipped)
         object.__setattr__(self, "samples", array)
