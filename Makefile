@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test test-fast lint bench docs images check reproduce clean
+.PHONY: build develop hooks test test-fast lint bench docs images fuzz check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -53,6 +53,13 @@ RECORDING ?= zara01.csv
 
 images: build
 	$(BIN)/python docs/make_images.py $(RECORDING)
+
+# Random inputs to constructors, functions and readers: an hour on two cores for ten million.
+INPUTS ?= 10000000
+SEED   ?= 1
+
+fuzz: build
+	$(BIN)/python -m tests.fuzz --inputs $(INPUTS) --seed $(SEED)
 
 bench: build
 	cargo bench --workspace --locked

@@ -1,23 +1,19 @@
-"""Random calls with values that break rules: whatever comes out is a result or an error of the package.
+"""Calls that are right, files that are right, and values that break the rules of most arguments.
 
-Run it for as long as wanted with ``python tests/api/fuzzing.py --calls 100000 --seed 7`` from the
-root of the source tree. A call that is not answered as it should be is printed with its arguments.
+The package `fuzz` spoils them.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-import tempfile
 import wave
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hrsafety import HrsafetyError, arms, datasets, impact, reactive, scenarios, standards, sweep
+from hrsafety import arms, datasets, impact, reactive, scenarios, standards, sweep
 from hrsafety import navigation as nav
 
 NAN, INF = float("nan"), float("inf")
@@ -215,53 +211,6 @@ EVIL: tuple[Any, ...] = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Escape:
-    """A call that ended in something else than a result or an error of the package."""
-
-    call: str
-    arguments: dict[str, Any]
-    error: BaseException
-
-    def __str__(self) -> str:
-        """Return the call and what came out."""
-        return f"{self.call}({self.arguments!r}): {type(self.error).__name__}: {self.error}"
-
-
-def escapes(calls: int, seed: int) -> Iterator[Escape]:
-    """Make random calls and yield those that are not answered as they should be.
-
-    Parameters
-    ----------
-    calls : int
-        How many.
-    seed : int
-        Of the draws: the same calls for the same seed.
-
-    Yields
-    ------
-    Escape
-        One for each call that raises something else.
-    """
-    draws = np.random.default_rng(seed)
-    names = list(CALLS)
-    for _ in range(calls):
-        name = names[draws.integers(len(names))]
-        function, right = CALLS[name]
-        arguments = dict(right)
-        keys = list(arguments)
-        for key in draws.choice(keys, size=min(len(keys), int(draws.integers(1, 3))), replace=False):
-            arguments[str(key)] = EVIL[draws.integers(len(EVIL))]
-        try:
-            function(**arguments)
-        except HrsafetyError as error:
-            str(error)
-        except BaseException as error:
-            if isinstance(error, KeyboardInterrupt):
-                raise
-            yield Escape(name, arguments, error)
-
-
 def right_files(folder: Path) -> dict[Path, Callable[[Path], Any]]:
     """Write a file of each kind that the package reads, and return its readers."""
     sound = folder / "three.wav"
@@ -286,58 +235,3 @@ def right_files(folder: Path) -> dict[Path, Callable[[Path], Any]]:
         people: datasets.load_pedestrians,
         checkpoint: lambda path: nav.optimize_gains([SHORT], checkpoint=path, **options),
     }
-
-
-def damaged(content: bytes, draws: np.random.Generator) -> bytes:
-    """Return content that is cut off, longer, or has some bytes changed."""
-    kind = draws.integers(4)
-    if kind == 0:
-        return content[: draws.integers(len(content))]
-    if kind == 1:
-        return content + draws.bytes(int(draws.integers(1, 20)))
-    changed = bytearray(content)
-    for _ in range(int(draws.integers(1, 4))):
-        place = int(draws.integers(len(changed)))
-        changed[place] = int(draws.integers(256)) if kind == 2 else changed[place] ^ (1 << int(draws.integers(8)))
-    return bytes(changed)
-
-
-def file_escapes(files: int, seed: int) -> Iterator[Escape]:
-    """Read damaged files and yield those whose reader raises something else than an error of the package."""
-    draws = np.random.default_rng(seed)
-    with tempfile.TemporaryDirectory() as place:
-        readers = right_files(Path(place))
-        contents = {path: path.read_bytes() for path in readers}
-        paths = list(readers)
-        for _ in range(files):
-            path = paths[draws.integers(len(paths))]
-            spoiled = damaged(contents[path], draws)
-            path.write_bytes(spoiled)
-            try:
-                readers[path](path)
-            except HrsafetyError as error:
-                str(error)
-            except BaseException as error:
-                if isinstance(error, KeyboardInterrupt):
-                    raise
-                yield Escape(path.name, {"content": spoiled}, error)
-
-
-def main() -> int:
-    """Make many calls and print what escapes; 1 if anything does."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("--calls", type=int, default=100_000)
-    parser.add_argument("--files", type=int, default=20_000)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    found = 0
-    for source in (escapes(options.calls, options.seed), file_escapes(options.files, options.seed)):
-        for escape in source:
-            found += 1
-            print(escape, flush=True)
-    print(f"{found} of {options.calls} calls and {options.files} files were not answered as they should be")
-    return min(found, 1)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

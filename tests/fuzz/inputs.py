@@ -1,0 +1,157 @@
+"""One input by its number: which call, with which arguments, and how it was answered."""
+
+from __future__ import annotations
+
+import dataclasses
+import random
+import tempfile
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from api.fuzzing import CALLS
+from fuzz.constructors import Right, constructors
+from fuzz.readers import damaged, readers
+from fuzz.values import spoiled
+from hrsafety import HrsafetyError
+
+__all__ = ["ANSWERS", "Inputs", "Outcome"]
+
+ANSWERS = ("results", "errors", "escapes")
+"""How a call is answered: with a result, an error of the package, or something else."""
+
+# Of all inputs: calls of functions take milliseconds, constructors microseconds.
+FUNCTION_SHARE, FILE_SHARE = 0.04, 0.02
+MOST_SHOWN = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How an input was answered.
+
+    Attributes
+    ----------
+    target : int
+        Number of the constructor, function or reader in `Inputs.names`.
+    answer : str
+        One of `ANSWERS`.
+    told : str
+        What came out, for an escape; else empty.
+    shown : str
+        The arguments or the content of the file, for an escape; else empty.
+    """
+
+    target: int
+    answer: str
+    told: str = ""
+    shown: str = ""
+
+
+class Inputs:
+    """All inputs of a seed; each is made from the seed and its number alone.
+
+    Parameters
+    ----------
+    seed : int
+        Of the draws.
+    folder : Path
+        For the files that are damaged and read.
+    """
+
+    def __init__(self, seed: int, folder: Path) -> None:
+        self.seed = seed
+        made, self._files = constructors(), readers(folder)
+        self._contents = {name: path.read_bytes() for name, (path, _) in self._files.items()}
+        self._targets: dict[str, tuple[Callable[..., Any], Right]] = {**made, **CALLS}
+        self._groups = (list(made), list(CALLS), list(self._files))
+        self.names = [name for group in self._groups for name in group]
+        self._number = {name: index for index, name in enumerate(self.names)}
+
+    def target(self, draws: random.Random) -> str:
+        """Return what is called."""
+        share = draws.random()
+        group = 2 if share < FILE_SHARE else 1 if share < FILE_SHARE + FUNCTION_SHARE else 0
+        return draws.choice(self._groups[group])
+
+    def answer(self, number: int, begun: Callable[[int], object] = lambda _target: None) -> Outcome:
+        """Make one input and return how it was answered.
+
+        Parameters
+        ----------
+        number : int
+            Of the input.
+        begun : callable
+            Called with the number of the target before it is called.
+        """
+        draws = random.Random((self.seed << 48) ^ number)
+        name = self.target(draws)
+        target = self._number[name]
+        begun(target)
+        if name in self._files:
+            path, reader = self._files[name]
+            content = damaged(self._contents[name], draws)
+            path.write_bytes(content)
+            try:
+                return _answered(target, reader, {"path": path}, content, made=False)
+            finally:
+                path.write_bytes(self._contents[name])
+        function, right = self._targets[name]
+        arguments = _spoiled(right, draws)
+        return _answered(target, function, arguments, arguments, made=name not in CALLS)
+
+
+def _spoiled(right: Right, draws: random.Random) -> Right:
+    """Return right arguments of which one to three are spoiled."""
+    arguments = {key: value for key, value in right.items() if value is not ...}
+    keys = list(right)
+    for key in draws.sample(keys, min(len(keys), draws.choice((1, 1, 2, 3)))):
+        arguments[key] = spoiled(right[key], draws)
+    return arguments
+
+
+def _answered(target: int, function: Callable[..., Any], given: Right, shown: object, *, made: bool) -> Outcome:
+    """Call, and return how it was answered; ``made``: whether a parameter object comes out."""
+    told = ""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = function(given["path"]) if isinstance(shown, bytes) else function(**given)
+        empty = _fields_without_number(result) if made else []
+        if not empty:
+            return Outcome(target, "results")
+        told = f"silent NaN in {', '.join(empty)}"
+    except HrsafetyError as error:
+        if str(error):
+            return Outcome(target, "errors")
+        told = "an error without a message"
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        told = f"{type(error).__name__}: {error}"
+    return Outcome(target, "escapes", told, repr(shown)[:MOST_SHOWN])
+
+
+def _fields_without_number(made: object) -> list[str]:
+    """Return the fields of a parameter object that hold a NaN."""
+    if not dataclasses.is_dataclass(made):
+        return []
+    values = ((field.name, getattr(made, field.name, None)) for field in dataclasses.fields(made))
+    return [name for name, value in values if _has_nan(value)]
+
+
+def _has_nan(value: object) -> bool:
+    if isinstance(value, (float, np.floating)):
+        return bool(value != value)
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind == "f" and bool(np.isnan(value).any())
+    return isinstance(value, (tuple, list)) and any(_has_nan(each) for each in value)
+
+
+def in_new_folder(seed: int) -> tuple[tempfile.TemporaryDirectory[str], Inputs]:
+    """Return the inputs of a seed and the folder of their files, to be cleaned up."""
+    folder = tempfile.TemporaryDirectory(prefix="hrsafety-fuzz-")
+    return folder, Inputs(seed, Path(folder.name))
