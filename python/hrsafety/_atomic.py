@@ -16,7 +16,7 @@ from typing import BinaryIO
 
 from hrsafety.errors import StorageError
 
-__all__ = ["DAMAGE", "only_writer", "replacing", "write_file"]
+__all__ = ["DAMAGE", "create_file", "only_writer", "replacing", "write_file"]
 
 # What reading a damaged archive raises.
 DAMAGE = (
@@ -99,8 +99,37 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
         raise
 
 
+def create_file(path: Path, content: str) -> None:
+    """Write a file in one step unless it exists; of several processes one does.
+
+    Parameters
+    ----------
+    path : Path
+        Where; its folder must exist.
+    content : str
+        What, encoded as UTF-8; on the disk before the file gets its name.
+    """
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content.encode("utf-8"))
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.chmod(0o644)
+        try:
+            os.link(temporary, path)
+        except FileExistsError:
+            return
+        except OSError:  # a file system without links
+            if not path.exists():
+                temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
 @contextmanager
-def only_writer(lock: Path, error: Callable[[str], Exception]) -> Iterator[None]:
+def only_writer(lock: Path, error: Callable[[str], Exception], part: tuple[int, int] | None = None) -> Iterator[None]:
     """Keep other runs from writing what a lock stands for; the system frees it when a process dies.
 
     Parameters
@@ -109,6 +138,8 @@ def only_writer(lock: Path, error: Callable[[str], Exception]) -> Iterator[None]
         File that is locked, and removed at the end; its folder must exist.
     error : callable
         Makes the exception from a sentence when another run is writing.
+    part : tuple of int, or None
+        First and number of the parts that are written, if processes may share the rest; all when ``None``.
 
     Yields
     ------
@@ -122,16 +153,33 @@ def only_writer(lock: Path, error: Callable[[str], Exception]) -> Iterator[None]
             raise error(f"another run of this process is writing into {lock.parent}")
         _WRITTEN.add(own)
     try:
-        with _opened(lock) as file:
-            if not _locked(file):
-                raise error(f"another process is writing into {lock.parent}")
+        with _held(lock, part) as file:
+            if file is None:
+                what = "" if part is None else f" some of the chunks {part[0]}:{part[0] + part[1]}"
+                raise error(f"another process is writing{what} into {lock.parent}")
             try:
                 yield
             finally:
-                with suppress(OSError):
-                    lock.unlink()
+                # The file stays while other processes hold parts of it: they lock the same file.
+                if part is None or _locked(file, None):
+                    with suppress(OSError):
+                        lock.unlink()
     finally:
         _WRITTEN.discard(own)
+
+
+@contextmanager
+def _held(lock: Path, part: tuple[int, int] | None) -> Iterator[BinaryIO | None]:
+    """Yield the locked file, ``None`` if another process holds it."""
+    while True:
+        with _opened(lock) as file:
+            if not _locked(file, part):
+                yield None
+                return
+            # Another run may have ended, and removed the file, since it was opened.
+            if os.fstat(file.fileno()).st_nlink > 0:
+                yield file
+                return
 
 
 def _opened(lock: Path) -> BinaryIO:
@@ -142,16 +190,17 @@ def _opened(lock: Path) -> BinaryIO:
         raise StorageError(lock, error, kept="all that was there", remedy=remedy) from None
 
 
-def _locked(file: BinaryIO) -> bool:
-    """Lock a file until it is closed, where the system can; whether no other process holds it."""
+def _locked(file: BinaryIO, part: tuple[int, int] | None) -> bool:
+    """Lock a file, or a part of it, until it is closed, where the system can; whether no other process holds it."""
     try:
         import fcntl
     except ModuleNotFoundError:  # files are still written whole or not at all
         return True
     try:
-        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        # Another run may have ended, and removed the file, since it was opened.
-        return os.fstat(file.fileno()).st_nlink > 0
+        # A byte stands for each part, which need not exist in the file; a length of 0 is all of them.
+        first, length = (0, 0) if part is None else part
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, length, first)
+        return True
     except (BlockingIOError, PermissionError):
         return False
     except OSError:

@@ -60,6 +60,8 @@ with the pictures, results.json with every value, and the pictures.
 _SWEEP_EXAMPLE = """examples:
   hrsafety sweep examples/impact_sweep.toml --out foams
   hrsafety sweep examples/gain_sweep.toml --out gains --workers 4 --table gains/result.parquet
+  hrsafety sweep examples/gain_sweep.toml --dry-run
+  hrsafety sweep examples/gain_sweep.toml --out gains --chunks 3/16
 
 The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
 is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
@@ -336,6 +338,18 @@ def _add_sweep(commands: Any) -> None:
         "--out", metavar="DIR", default="sweep", help="folder to write into, or to resume in [%(default)s]"
     )
     parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
+    parser.add_argument(
+        "--outputs", metavar="A,B,...", help="columns to keep besides the axes [those of the file, or all]"
+    )
+    parser.add_argument(
+        "--store", choices=("npz", "parquet"), help="files of the chunks; Parquet is smaller [those of DIR, or npz]"
+    )
+    parser.add_argument(
+        "--chunks",
+        metavar="A:B|I/N",
+        help="compute only the chunks A to B-1, or the I-th of N parts; several processes fill one folder",
+    )
+    parser.add_argument("--dry-run", action="store_true", help="show rows, size and time, and write nothing")
     _add_strict(parser)
     parser.add_argument(
         "--threads", type=_count, metavar="N", help="threads of one chunk [all cores; one with workers]"

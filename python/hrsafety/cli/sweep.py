@@ -20,10 +20,13 @@ from hrsafety.cli.sweep_file import SweepFile, load
 from hrsafety.cli.sweep_summary import Summary, summarized
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.pages import Picture, require_jinja
+from hrsafety.sweep.estimates import size_words, time_words
 
 __all__ = ["sweep_file"]
 
 _FORMATS = (".parquet", ".npz")
+# Arguments of a run that options give, and no key of the file.
+_OPTIONS = ("threads", "store", "chunks")
 
 
 def sweep_file(options: argparse.Namespace) -> None:
@@ -39,9 +42,10 @@ def sweep_file(options: argparse.Namespace) -> None:
     KeyboardInterrupt
         After Ctrl-C, when it was said what is finished.
     """
-    output.planned_folder(options.out)
-    output.require_matplotlib("sweep")
-    require_jinja("sweep")
+    if not options.dry_run:
+        output.planned_folder(options.out)
+        output.require_matplotlib("sweep")
+        require_jinja("sweep")
     if options.table is not None:
         output.target("--table", options.table, _FORMATS)
     if options.workers is not None and options.workers < 1:
@@ -49,9 +53,15 @@ def sweep_file(options: argparse.Namespace) -> None:
     if options.workers is not None and options.scheduler is not None:
         raise InvalidParameterError("--workers", "not be given with --scheduler", options.workers)
     with output.located(options.study):
-        described = load(options.study)
+        described = _described(options)
+        if options.dry_run:
+            print("\n".join(_expected(options, described)))
+            return
         begin = time.perf_counter()
         result = _run(options, described)
+    if options.chunks is not None and not result.complete:
+        print(_share_words(options, result))
+        return
     seconds = time.perf_counter() - begin
     summary = summarized(result)
     print("\n".join(_words(options, described, summary, seconds)))
@@ -59,6 +69,47 @@ def sweep_file(options: argparse.Namespace) -> None:
     for path in _write(options, described, summary, Path(options.out)):
         print(f"wrote {path}")
     output.report_warnings(output.warnings_of(result), options.strict)
+
+
+def _described(options: argparse.Namespace) -> SweepFile:
+    """Return what the file describes, with the columns that are asked for."""
+    if options.outputs is None:
+        return load(options.study)
+    try:
+        return load(options.study, tuple(name.strip() for name in options.outputs.split(",")))
+    except InvalidParameterError as error:
+        raise error.renamed("--outputs") if error.argument == "outputs" else error from None
+
+
+def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str]:
+    """Yield what the sweep will take."""
+    try:
+        found = sweep.estimate(
+            described.design,
+            described.study,
+            store=options.store or "npz",
+            chunk_rows=described.chunk_rows,
+            chunks=options.chunks,
+            threads=options.threads,
+        )
+    except InvalidParameterError as error:
+        raise error.renamed(f"--{error.argument}") if error.argument in _OPTIONS else error from None
+    cases = described.study.cases
+    each = 1 if cases is None else len(cases.words)
+    columns = described.study.columns()
+    yield f"study    {options.study}"
+    yield f"rows     {found.rows * each:,} of {len(columns)} columns besides the axes"
+    yield f"chunks   {found.chunk_count:,} of at most {found.chunk_rows * each:,} rows"
+    yield f"size     about {size_words(found.bytes)} in {found.store} files"
+    measured = f"{found.measured_rows * each:,} measured rows"
+    yield f"time     about {time_words(found.seconds)} in one process, from {measured}"
+
+
+def _share_words(options: argparse.Namespace, result: sweep.SweepResult) -> str:
+    """Return what is there when other processes are to compute the rest."""
+    there = f"{len(result.finished):,} of {result.chunk_count:,} chunks are in {options.out}"
+    page = "the same command without --chunks writes the page when all are there"
+    return f"chunks   {options.chunks} finished; {there}\n{page}"
 
 
 def _run(options: argparse.Namespace, described: SweepFile) -> sweep.SweepResult:
@@ -71,14 +122,15 @@ def _run(options: argparse.Namespace, described: SweepFile) -> sweep.SweepResult
                 described.design,
                 described.study,
                 out=options.out,
+                store=options.store,
+                chunks=options.chunks,
                 chunk_rows=described.chunk_rows,
                 threads=options.threads,
                 progress=None if shown is None else lambda done, total: shown("rows", done, total, None),
                 **where,
             )
         except InvalidParameterError as error:
-            # The only argument of the call that an option gives, and no key of the file.
-            raise error.renamed("--threads") if error.argument == "threads" else error from None
+            raise error.renamed(f"--{error.argument}") if error.argument in _OPTIONS else error from None
         except sweep.SweepInterrupted as stop:
             print(f"hrsafety: {stop}", file=sys.stderr, flush=True)
             raise

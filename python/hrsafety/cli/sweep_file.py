@@ -114,7 +114,7 @@ class SweepFile:
 
 
 @kind.top_level(_TOP)
-def load(path: str) -> SweepFile:
+def load(path: str, outputs: tuple[str, ...] | None = None) -> SweepFile:
     """Read a sweep file.
 
     Parameters
@@ -122,6 +122,8 @@ def load(path: str) -> SweepFile:
     path : str
         The file, see ``examples/impact_sweep.toml`` and ``examples/gain_sweep.toml``. Names of
         scenario files in it are relative to it.
+    outputs : tuple of str, or None
+        Columns to keep instead of those that the file names.
 
     Returns
     -------
@@ -136,6 +138,10 @@ def load(path: str) -> SweepFile:
     """
     place = Path(path)
     fields = checked("", files.parsed(place), _TOP, required=("axes",))
+    if outputs is not None:
+        fields["outputs"] = list(outputs)
+        # The file may draw columns that are not kept this time.
+        fields["show"] = [name for name in fields.get("show", []) if name in outputs]
     if "scenarios" in fields:
         _refuse(fields, _IMPACT, "not be given with scenarios")
         study: sweep.Study = _navigation(fields, place.parent)

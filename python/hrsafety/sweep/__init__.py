@@ -8,6 +8,7 @@ tables xarray (extra ``sweep``), clusters dask.distributed (extra ``distributed`
 
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
+from hrsafety.sweep.estimates import SweepEstimate, estimate
 from hrsafety.sweep.function_study import FunctionStudy
 from hrsafety.sweep.impact_study import ImpactStudy
 from hrsafety.sweep.navigation_study import NavigationStudy
@@ -30,9 +31,11 @@ __all__ = [
     "Sobol",
     "Study",
     "SweepError",
+    "SweepEstimate",
     "SweepInterrupted",
     "SweepResult",
     "SweepWarning",
+    "estimate",
     "open",
     "run",
 ]

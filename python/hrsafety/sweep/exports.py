@@ -15,6 +15,7 @@ from hrsafety._atomic import replacing
 from hrsafety.errors import MissingExtraError
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
+from hrsafety.sweep.lazy_columns import LazyColumn, dask_array
 from hrsafety.sweep.storage import SweepError
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class Stored(Protocol):
     def __len__(self) -> int: ...
     def stored_chunks(self, columns: Sequence[Column]) -> Iterator[Mapping[str, npt.NDArray[Any]]]: ...
     def to_numpy(self, names: Sequence[str]) -> dict[str, npt.NDArray[Any]]: ...
+    def lazy(self, column: Column, shape: tuple[int, ...]) -> LazyColumn: ...
 
 
 def _polars() -> Any:
@@ -147,7 +149,7 @@ def to_npz(result: Stored, columns: Sequence[Column], path: Path) -> Path:
     return path
 
 
-def to_xarray(result: Stored, columns: Sequence[Column]) -> xarray.Dataset:
+def to_xarray(result: Stored, columns: Sequence[Column], *, lazy: bool = False) -> xarray.Dataset:
     """Return a dataset, see `SweepResult.to_xarray`."""
     try:
         import xarray
@@ -166,13 +168,24 @@ def to_xarray(result: Stored, columns: Sequence[Column]) -> xarray.Dataset:
             coordinates[axis.name] = ((axis.name,), axis.levels(), _attributes(axis))
     else:
         dimensions, shape = ["row"], [len(result.design), *lengths]
-        own = result.to_numpy([axis.name for axis in result.axes])
+        known = {column.name: column for column in result.columns}
+        own = _arrays(
+            result, [known[axis.name] for axis in result.axes], (shape[0], lengths[0] if lengths else 1), lazy
+        )
         for axis in result.axes:
-            coordinates[axis.name] = (("row",), own[axis.name].reshape(shape[0], -1)[:, 0], _attributes(axis))
+            coordinates[axis.name] = (("row",), own[axis.name][:, 0], _attributes(axis))
     along = (*dimensions, *([case] if case else []))
-    found = result.to_numpy([column.name for column in columns])
-    variables = {each.name: (along, found[each.name].reshape(shape), _attributes(each)) for each in columns}
+    found = _arrays(result, columns, tuple(shape), lazy)
+    variables = {each.name: (along, found[each.name], _attributes(each)) for each in columns}
     return xarray.Dataset(variables, coords=coordinates, attrs={"provenance": json.dumps(result.provenance)})
+
+
+def _arrays(result: Stored, columns: Sequence[Column], shape: tuple[int, ...], lazy: bool) -> dict[str, Any]:
+    """Return columns in a shape, read at once or by Dask when they are looked at."""
+    if lazy:
+        return {column.name: dask_array(result.lazy(column, shape)) for column in columns}
+    found = result.to_numpy([column.name for column in columns])
+    return {name: values.reshape(shape) for name, values in found.items()}
 
 
 def _attributes(named: Any) -> dict[str, str]:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import sequence, word
+from hrsafety._arguments import flag, sequence, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep import exports
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
+from hrsafety.sweep.lazy_columns import LazyColumn
 from hrsafety.sweep.sampled_designs import LatinHypercube, Sobol
 from hrsafety.sweep.storage import Folder, Memory, stored_columns
 
@@ -232,7 +233,11 @@ class SweepResult:
         """
         return exports.to_polars(self, self.selected(names))
 
-    def to_xarray(self, names: Iterable[str] | None = None) -> xarray.Dataset:
+    def lazy(self, column: Column, shape: tuple[int, ...]) -> LazyColumn:
+        """Return a column that is read where it is looked at, in the shape of its dimensions."""
+        return LazyColumn(self._store, column, shape, self._chunk_rows * max(len(self.cases), 1))
+
+    def to_xarray(self, names: Iterable[str] | None = None, *, lazy: bool = False) -> xarray.Dataset:
         """Return an xarray dataset with units and provenance.
 
         A grid has a dimension for each axis, and one for the cases. Other designs have the
@@ -242,6 +247,9 @@ class SweepResult:
         ----------
         names : iterable of str or None
             Columns that are neither axes nor cases; all of them when ``None``.
+        lazy : bool
+            Whether variables are Dask arrays, read block by block when they are computed (extra
+            ``distributed``); results that do not fit into memory need it.
 
         Returns
         -------
@@ -253,12 +261,13 @@ class SweepResult:
         SweepError
             If the sweep is not complete.
         MissingExtraError
-            If xarray is not installed.
+            If xarray is not installed, or Dask for lazy variables.
         """
+        flag("lazy", lazy)
         chosen = self.found if names is None else self.selected(names)
         for column in chosen:
             word("names", column.name, [each.name for each in self.found])
-        return exports.to_xarray(self, chosen)
+        return exports.to_xarray(self, chosen, lazy=lazy)
 
     def to_parquet(self, path: str | os.PathLike[str], names: Iterable[str] | None = None) -> Path:
         """Write a Parquet file, chunk by chunk, through Polars.

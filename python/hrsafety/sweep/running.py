@@ -8,19 +8,21 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy.typing as npt
 
 from hrsafety import __version__
-from hrsafety._arguments import count, flag, instance, thread_count
+from hrsafety._arguments import count, flag, instance, thread_count, word
 from hrsafety._bounds import MOST_TASKS
 from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.sweep.chunk_files import STORES
+from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import Plan, Task, computed, planned
 from hrsafety.sweep.designs import Design, checked_design
 from hrsafety.sweep.result import SweepResult
 from hrsafety.sweep.storage import MANIFEST, Folder, Memory, SweepError, locked, new_manifest
-from hrsafety.sweep.studies import Study
+from hrsafety.sweep.studies import Study, checked_study
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -48,7 +50,9 @@ def run(
     study: Study,
     *,
     out: str | os.PathLike[str] | None = None,
+    store: Literal["npz", "parquet"] | None = None,
     chunk_rows: int | None = None,
+    chunks: range | str | None = None,
     executor: Executor | None = None,
     client: Client | None = None,
     in_flight: int | None = None,
@@ -74,10 +78,17 @@ def run(
         What is computed for each.
     out : path-like or None
         Folder of the results; made if it does not exist.
+    store : {"npz", "parquet"} or None
+        Files of the chunks in the folder. Parquet is smaller and other programs read it; it needs
+        pyarrow (extra ``sweep``). ``None``: that of the folder, if there is a sweep; else NPZ.
     chunk_rows : int or None
         Rows of the design in a chunk. ``None``: those of the folder, if there is a sweep; else
         about 4 MB of results and at most 65536, fewer where that leaves workers idle. Make it
         small when rows take long.
+    chunks : range, str or None
+        Which chunks are computed, so that several processes write into one folder:
+        ``range(0, 8)`` or ``"0:8"`` by their numbers, ``"2/16"`` the second of sixteen equal
+        parts; all when ``None``. Chunks that another process writes are refused.
     executor : concurrent.futures.Executor or None
         Where chunks are computed, for example a ``ProcessPoolExecutor``; here when ``None``.
         Design and study are pickled for other processes.
@@ -128,8 +139,10 @@ def run(
     (48, 'N')
     """
     checked_design(design)
-    if not isinstance(study, Study):
-        raise InvalidParameterError("study", "be an ImpactStudy, NavigationStudy or FunctionStudy", study)
+    checked_study(study)
+    share = checked_share(chunks)
+    if store is not None:
+        word("store", store, tuple(STORES))
     if executor is not None and client is not None:
         raise InvalidParameterError("client", "be None when there is an executor", client)
     if executor is not None:
@@ -144,16 +157,22 @@ def run(
         raise InvalidParameterError("progress", "be callable or None", progress)
     flag("resume", resume)
     path = _folder_path(out)
+    for name, given in (("store", store), ("chunks", chunks)):
+        if path is None and given is not None:
+            raise InvalidParameterError(name, "be None without a folder (out)", given)
     if chunk_rows is None and path is not None and resume and (path / MANIFEST).is_file():
         chunk_rows = Folder(path).manifest["settings"].get("chunk_rows")
     own = threads if threads is not None or (executor is None and client is None) else 1
     most = in_flight or _most_in_flight(executor, client)
-    plan = planned(design, study, chunk_rows=chunk_rows, least_chunks=ROUNDS * most, threads=own)
-    manifest = new_manifest(plan.settings(__version__), study.doubts(design.looked_at()))
-    with contextlib.nullcontext() if path is None else locked(path):
-        store = Memory(manifest) if path is None else Folder.prepared(path, manifest, resume=resume)
-        missing = _missing(plan, store)
-        report = _Report(plan, missing, progress)
+    # Processes that share a folder cut the sweep alike, whatever each of them has of workers.
+    least = ROUNDS * most if share is None else share.parts
+    plan = planned(design, study, chunk_rows=chunk_rows, least_chunks=least, threads=own)
+    wanted = range(len(plan)) if share is None else share.of(len(plan))
+    manifest = new_manifest(plan.settings(__version__), study.doubts(design.looked_at()), store)
+    with contextlib.nullcontext() if path is None else locked(path, None if share is None else wanted):
+        kept = Memory(manifest) if path is None else Folder.prepared(path, manifest, resume=resume, store=store)
+        missing = _missing(wanted, kept)
+        report = _Report(plan, wanted, missing, progress)
         if executor is not None:
             results = _pooled(plan, missing, executor, most)
         elif client is not None:
@@ -163,9 +182,9 @@ def run(
         with _kept(report, path):
             report.show()
             for index, columns in results:
-                store.write(index, columns)
+                kept.write(index, columns)
                 report.finished(index)
-    return SweepResult(store)
+    return SweepResult(kept)
 
 
 def _most_in_flight(executor: Executor | None, client: Any) -> int:
@@ -183,37 +202,40 @@ def _folder_path(out: object) -> Path | None:
     return Path(os.fspath(out))
 
 
-def _missing(plan: Plan, store: Folder | Memory) -> list[int]:
+def _missing(wanted: range, store: Folder | Memory) -> list[int]:
     """Return the chunks that are to be computed, after a look at those that are there."""
     if isinstance(store, Memory):
-        return list(range(len(plan)))
-    store.clear_leftovers()
+        return list(wanted)
+    store.clear_leftovers(wanted)
     whole = set()
     for index in store.finished():
+        if index not in wanted:
+            continue
         if store.damaged(index):
             text = f"{store.file(index)} is damaged and is computed again"
             warnings.warn(text, SweepWarning, stacklevel=3)
         else:
             whole.add(index)
-    return [index for index in range(len(plan)) if index not in whole]
+    return [index for index in wanted if index not in whole]
 
 
 class _Report:
     """What is finished, and who is told."""
 
-    def __init__(self, plan: Plan, missing: Iterable[int], progress: Progress | None) -> None:
+    def __init__(self, plan: Plan, wanted: range, missing: Iterable[int], progress: Progress | None) -> None:
         self._plan, self._progress = plan, progress
+        self._all = sum(stop - start for start, stop in map(plan.span, wanted))
         self._left = sum(stop - start for start, stop in map(plan.span, missing))
 
     @property
     def done(self) -> int:
         """Rows that are finished."""
-        return self._plan.rows - self._left
+        return self._all - self._left
 
     @property
     def total(self) -> int:
-        """All rows."""
-        return self._plan.rows
+        """Rows of the chunks that are wanted."""
+        return self._all
 
     def show(self) -> None:
         """Tell whoever listens."""

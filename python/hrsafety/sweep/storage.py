@@ -8,18 +8,18 @@ import datetime
 import json
 import os
 import platform
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._atomic import DAMAGE, only_writer, replacing
+from hrsafety._atomic import DAMAGE, create_file, only_writer, replacing
 from hrsafety.errors import HrsafetyError, InvalidParameterError, StorageError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
+from hrsafety.sweep.chunk_files import chunk_files
 from hrsafety.sweep.identity import differences, fingerprint
 
 __all__ = ["Folder", "Memory", "SweepError", "locked", "new_manifest"]
@@ -29,12 +29,8 @@ Stored = dict[str, npt.NDArray[Any]]
 MANIFEST = "sweep.json"
 CHUNKS = "chunks"
 LOCK = ".lock"
-FORMAT = 1
-# Member of a chunk file that says which chunk of which sweep it is; no column has such a name.
-MARK = "_chunk"
-PIECE = 1 << 20
-# Length of the record at the end of an archive without a comment.
-END_RECORD = 22
+# Format of a manifest by the files of its chunks.
+FORMATS = {"npz": 1, "parquet": 2}
 # Differences that an error names at most.
 MOST_NAMED = 4
 
@@ -43,10 +39,14 @@ class SweepError(HrsafetyError):
     """A sweep cannot be resumed: its folder belongs to another one, is damaged, or a worker died."""
 
 
-def new_manifest(settings: Mapping[str, Any], warnings: Iterable[ResultWarning] = ()) -> dict[str, Any]:
+def new_manifest(
+    settings: Mapping[str, Any], warnings: Iterable[ResultWarning] = (), store: str | None = None
+) -> dict[str, Any]:
     """Return the manifest of a sweep that begins now; only ``settings`` is ever compared."""
+    files = {} if store in {None, "npz"} else {"store": store}
     return {
-        "format": FORMAT,
+        "format": FORMATS[store or "npz"],
+        **files,
         "fingerprint": fingerprint(settings),
         "settings": dict(settings),
         "warnings": [dataclasses.asdict(each) for each in warnings],
@@ -92,9 +92,10 @@ class Folder:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.manifest = _manifest(path / MANIFEST)
+        self.files = chunk_files(self.manifest.get("store", "npz"), stored_columns(self.manifest["settings"]))
 
     @classmethod
-    def prepared(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool) -> Folder:
+    def prepared(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool, store: str | None = None) -> Folder:
         """Return the folder of a sweep, new or to be resumed.
 
         Parameters
@@ -105,6 +106,8 @@ class Folder:
             Of the sweep that is about to run.
         resume : bool
             Whether a sweep that is there may be resumed.
+        store : str or None
+            Files of the chunks that are asked for; any when ``None``.
 
         Returns
         -------
@@ -116,43 +119,41 @@ class Folder:
         SweepError
             If the folder belongs to another sweep, or to any and resume is off.
         """
+        # Chunks come after the manifest: whoever sees some sees it, too.
+        if (path / CHUNKS).exists() and not (path / MANIFEST).exists():
+            raise SweepError(f"{path} holds chunks but no {MANIFEST}: nothing tells which sweep they belong to")
         if (path / MANIFEST).exists():
-            folder = cls(path)
             if not resume:
                 raise SweepError(f"{path} holds a sweep already; resume it or choose another folder")
-            _same(path, folder.manifest, manifest)
-            (path / CHUNKS).mkdir(exist_ok=True)
-            return folder
-        if (path / CHUNKS).exists():
-            raise SweepError(f"{path} holds chunks but no {MANIFEST}: nothing tells which sweep they belong to")
-        text = json.dumps(manifest, indent=1, ensure_ascii=False) + "\n"
-        with replacing(path / MANIFEST, durable=True) as file:
-            file.write(text.encode("utf-8"))
+        else:
+            chunk_files(store or "npz", ())
+            create_file(path / MANIFEST, json.dumps(manifest, indent=1, ensure_ascii=False) + "\n")
+        folder = cls(path)
+        _same(path, folder.manifest, manifest)
+        if store not in {None, folder.files.name}:
+            raise SweepError(
+                f"{path} holds chunks in {folder.files.name} files, not {store}; leave store out to resume"
+            )
         (path / CHUNKS).mkdir(exist_ok=True)
         _settle(path)
-        return cls(path)
+        return folder
 
     def file(self, index: int) -> Path:
         """Return the file of a chunk."""
-        return self.path / CHUNKS / f"chunk-{index:08d}.npz"
+        return self.path / CHUNKS / f"chunk-{index:08d}{self.files.suffix}"
 
     def finished(self) -> list[int]:
         """Return the chunks whose files are there, unchecked."""
-        names = (path.stem.removeprefix("chunk-") for path in (self.path / CHUNKS).glob("chunk-*.npz"))
+        found = (self.path / CHUNKS).glob(f"chunk-*{self.files.suffix}")
+        names = (path.stem.removeprefix("chunk-") for path in found)
         return sorted(int(name) for name in names if name.isdecimal())
 
     def damaged(self, index: int) -> bool:
         """Return whether a chunk file is not what was written: every byte of it is read."""
         try:
-            with self.file(index).open("rb") as file, zipfile.ZipFile(file) as archive:
-                for name in archive.namelist():
-                    with archive.open(name) as member:
-                        while member.read(PIECE):
-                            pass
-            self.read(index, tuple(each["name"] for each in self.manifest["settings"]["columns"]))
-        except DAMAGE:
-            return True
-        except SweepError:
+            self.files.check(self.file(index))
+            self.read(index, tuple(self.files.columns))
+        except (*DAMAGE, SweepError):
             return True
         return False
 
@@ -160,7 +161,7 @@ class Folder:
         """Write a chunk: on the disk before it has its name."""
         try:
             with replacing(self.file(index), durable=True) as file:
-                write_archive(file, {MARK: self._mark(index), **columns})
+                self.files.write(file, self._mark(index), columns)
         except OSError as error:
             kept = f"{len(self.finished())} finished chunks in {self.path}"
             remedy = "make room and run the same sweep again: it resumes there"
@@ -176,30 +177,34 @@ class Folder:
             If the file is missing, damaged, or of another sweep.
         """
         try:
-            found = read_archive(self.file(index), (MARK, *names))
+            mark, found = self.files.read(self.file(index), names)
         except DAMAGE as error:
             raise SweepError(f"{self.file(index)} is damaged ({error}); run the sweep again to renew it") from None
-        if str(found.pop(MARK)) != str(self._mark(index)):
+        if mark != self._mark(index):
             raise SweepError(f"{self.file(index)} belongs to another chunk or sweep; run the sweep again to renew it")
         return found
 
-    def _mark(self, index: int) -> npt.NDArray[np.str_]:
-        return np.array(f"{self.manifest['fingerprint']} {index}")
+    def _mark(self, index: int) -> str:
+        return f"{self.manifest['fingerprint']} {index}"
 
-    def clear_leftovers(self) -> None:
-        """Remove temporary files of a run that was killed; the folder must be locked."""
+    def clear_leftovers(self, chunks: range) -> None:
+        """Remove temporary files of a run that was killed; these chunks must be locked."""
         for path in (self.path / CHUNKS).glob(".chunk-*"):
-            path.unlink(missing_ok=True)
+            number = path.name.split(".")[1].removeprefix("chunk-")
+            if number.isdecimal() and int(number) in chunks:
+                path.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager
-def locked(path: Path) -> Iterator[None]:
+def locked(path: Path, chunks: range | None = None) -> Iterator[None]:
     """Keep other runs from writing into a folder; the system frees it when a process dies.
 
     Parameters
     ----------
     path : Path
         The folder; made if it does not exist.
+    chunks : range or None
+        What is written, if other runs may write the rest; all when ``None``.
 
     Raises
     ------
@@ -211,39 +216,10 @@ def locked(path: Path) -> Iterator[None]:
     if path.exists() and not path.is_dir():
         raise InvalidParameterError("out", "be a folder or not exist", str(path))
     path.mkdir(parents=True, exist_ok=True)
-    with only_writer(path / LOCK, SweepError):
+    part = None if chunks is None else (chunks.start, len(chunks))
+    # A share without a chunk writes nothing.
+    with contextlib.nullcontext() if chunks == range(0) else only_writer(path / LOCK, SweepError, part):
         yield
-
-
-def write_archive(file: BinaryIO, columns: Mapping[str, npt.NDArray[Any]]) -> None:
-    """Write arrays as an uncompressed NPZ archive: the same bytes for the same arrays."""
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        for name, array in columns.items():
-            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, array, allow_pickle=False)
-
-
-def read_archive(path: Path, names: tuple[str, ...]) -> Stored:
-    """Return arrays of an NPZ archive, every byte of them compared with its checksum."""
-    found = {}
-    with path.open("rb") as file, zipfile.ZipFile(file) as archive:
-        for name in names:
-            with archive.open(f"{name}.npy") as member:
-                found[name] = np.lib.format.read_array(member, allow_pickle=False)
-                if member.read(1):
-                    raise ValueError("bytes behind an array")
-        _check_end(file, archive)
-    return found
-
-
-def _check_end(file: BinaryIO, archive: zipfile.ZipFile) -> None:
-    """Raise unless an archive fills its file: members at their places, nothing behind the end."""
-    size = file.seek(0, os.SEEK_END)
-    behind = len(archive.comment)
-    file.seek(max(size - END_RECORD - behind, 0))
-    first = min((member.header_offset for member in archive.infolist()), default=0)
-    if behind or first or file.read(4) != b"PK\x05\x06":
-        raise ValueError("bytes before or behind the archive")
 
 
 def _settle(folder: Path) -> None:
@@ -263,11 +239,14 @@ def _manifest(path: Path) -> dict[str, Any]:
         raise SweepError(f"{path.parent} holds no sweep: {path.name} is missing") from None
     except (OSError, ValueError) as error:
         raise SweepError(f"{path} cannot be read: {error}") from None
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
-        raise SweepError(f"{path} is not the manifest of a sweep in format {FORMAT}")
-    if fingerprint(found.get("settings", {})) != found.get("fingerprint"):
+    known = isinstance(found, dict) and FORMATS.get(str(found.get("store", "npz"))) == found.get("format")
+    if not known:
+        formats = " or ".join(str(each) for each in FORMATS.values())
+        raise SweepError(f"{path} is not the manifest of a sweep in format {formats}")
+    manifest: dict[str, Any] = found
+    if fingerprint(manifest.get("settings", {})) != manifest.get("fingerprint"):
         raise SweepError(f"{path} was changed: its settings do not have its fingerprint")
-    return found
+    return manifest
 
 
 def _same(path: Path, there: Mapping[str, Any], asked: Mapping[str, Any]) -> None:

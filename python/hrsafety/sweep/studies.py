@@ -14,7 +14,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.identity import described
 
-__all__ = ["Cases", "Found", "Study", "chosen"]
+__all__ = ["Cases", "Found", "Study", "checked_study", "chosen"]
 
 Found = Mapping[str, npt.NDArray[Any]]
 
@@ -108,6 +108,13 @@ class Study(ABC):
         """Return everything that the result depends on, as plain data."""
         found: dict[str, Any] = described(self)
         return found
+
+
+def checked_study(study: object) -> Study:
+    """Return ``study`` if it is one, or say that it should have been."""
+    if not isinstance(study, Study):
+        raise InvalidParameterError("study", "be an ImpactStudy, NavigationStudy or FunctionStudy", study)
+    return study
 
 
 def chosen(columns: Sequence[Column], outputs: object) -> tuple[str, ...] | None:

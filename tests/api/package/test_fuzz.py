@@ -81,8 +81,9 @@ def test_processes_count_every_input(some: Inputs) -> None:
     assert tally.escapes == []
 
 
-def test_command_repeats_one_input() -> None:
-    command = [sys.executable, "-m", "tests.fuzz", "--seed", "1", "--only", "67451"]
+def test_command_repeats_one_input(some: Inputs) -> None:
+    command = [sys.executable, "-m", "tests.fuzz", "--seed", str(some.seed), "--only", "5"]
     found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    outcome = some.answer(5)
     assert found.returncode == 0, found.stdout
-    assert found.stdout.startswith("sweep.NavigationStudy\nerrors")
+    assert found.stdout.split("\n")[:2] == [some.names[outcome.target], f"{outcome.answer}"]

@@ -101,9 +101,9 @@ def test_bytes_behind_a_chunk_are_noticed(behind: bytes, tmp_path: Path) -> None
 def test_full_disk_names_the_chunk_what_is_kept_and_how_to_resume(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from hrsafety.sweep import storage
+    from hrsafety.sweep import chunk_files
 
-    write = storage.write_archive
+    write = chunk_files.write_archive
 
     def fills_up(file: BinaryIO, columns: Any) -> None:
         if len(list((tmp_path / "chunks").glob("chunk-*.npz"))) >= 2:
@@ -111,7 +111,7 @@ def test_full_disk_names_the_chunk_what_is_kept_and_how_to_resume(
         write(file, columns)
 
     with monkeypatch.context() as patched:
-        patched.setattr(storage, "write_archive", fills_up)
+        patched.setattr(chunk_files, "write_archive", fills_up)
         with pytest.raises(StorageError, match=r"chunk-0000.*No space left.*2 finished chunks.*resumes") as caught:
             swept(tmp_path)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
