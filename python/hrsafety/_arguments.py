@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,6 +19,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
 Kind = TypeVar("Kind")
+Each = TypeVar("Each")
 Call = TypeVar("Call", bound=Callable[..., object])
 
 
@@ -201,6 +202,17 @@ def callback(name: str, value: Call | None) -> Call | None:
     if value is not None and not callable(value):
         raise InvalidParameterError(name, "be callable or None", value)
     return value
+
+
+def followed(items: Sequence[Each], progress: Callable[[int, int], object] | None) -> Iterator[Each]:
+    """Yield elements and call ``progress`` with (done, all), at the start and whenever one is done."""
+    told = callback("progress", progress)
+    for done, each in enumerate(items):
+        if told is not None:
+            told(done, len(items))
+        yield each
+    if told is not None:
+        told(len(items), len(items))
 
 
 def with_article(noun: str) -> str:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety._arguments import checked_seed, vector
 from hrsafety._arguments import count as whole
 from hrsafety._bounds import MOST_RESAMPLES
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Mean", "Paired", "Share", "compare_paired", "mean_interval", "wilson"]
@@ -20,6 +21,7 @@ __all__ = ["Mean", "Paired", "Share", "compare_paired", "mean_interval", "wilson
 _Z95 = 1.959963984540054
 
 
+@displayed
 @dataclass(frozen=True, slots=True)
 class Share:
     """A share with its 95 % Wilson interval.
@@ -79,6 +81,7 @@ def wilson(count: int, runs: int) -> Share:
     return Share(count, runs, share, low, high)
 
 
+@displayed
 class Paired(NamedTuple):
     """Two yes-or-no outcomes of the same runs.
 
@@ -133,6 +136,7 @@ def compare_paired(first: npt.NDArray[np.bool_], second: npt.NDArray[np.bool_]) 
     return Paired(only_first, only_second, min(1.0, 2 * tail / 2**differing))
 
 
+@displayed
 @dataclass(frozen=True, slots=True)
 class Mean:
     """A mean with its 95 % bootstrap interval.

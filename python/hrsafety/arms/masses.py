@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hrsafety._arguments import Array, word
+from hrsafety._display import displayed
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["NO_MOTOR_INERTIA", "RULES", "Extremes", "PointMasses", "mass_by_rule"]
@@ -16,6 +17,7 @@ NO_MOTOR_INERTIA = "no motor inertia given: effective masses are lower bounds, o
 RULES = ("larger", "iso", "directional")
 
 
+@displayed
 class Extremes(NamedTuple):
     """The heaviest and the lightest direction of a point; leading axes are those of the poses and points.
 
@@ -37,6 +39,7 @@ class Extremes(NamedTuple):
     least_direction: Array
 
 
+@displayed
 @dataclass(frozen=True, slots=True, eq=False)
 class PointMasses:
     """All masses of a point of an arm: by direction, by ISO/TS 15066, and what to know about both.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from hrsafety._arguments import Array, checked_seed, count, instance, meant, number
+from hrsafety._arguments import Array, callback, checked_seed, count, instance, meant, number
 from hrsafety._bounds import MOST_POINT_STATES
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.histories import plane_of
@@ -19,6 +19,9 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["Workspace", "workspace"]
+
+# Poses of one call of the core.
+_BLOCK = 65_536
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -90,6 +93,7 @@ def workspace(
     fixed: object = None,
     seed: int = 0,
     threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> Workspace:
     """Return the masses of a point over the whole of the joint space.
 
@@ -113,6 +117,8 @@ def workspace(
         Seed of the draws.
     threads : int or None
         Number of threads; all cores when ``None``. It changes no bit.
+    progress : callable or None
+        Called with (poses done, poses in all) at the start and after each 65,536 of them.
 
     Returns
     -------
@@ -137,23 +143,44 @@ def workspace(
         fixed=fixed,
         seed=seed,
     )
-    place: dict[str, Any] = {"link": link, "point": vectors_of("point", point), "threads": threads}
-    extremes = arm.extremes(poses, **place)
-    if direction is None:
-        mass, along = extremes.worst_mass, extremes.worst_direction
-    else:
-        mass = arm.effective_mass(poses, direction=direction, **place)
-        along = np.broadcast_to(vectors_of("direction", direction), extremes.worst_direction.shape)
+    told = callback("progress", progress)
+    blocks = []
+    for start in range(0, len(poses), _BLOCK):
+        if told is not None:
+            told(start, len(poses))
+        rows = slice(start, start + _BLOCK)
+        place: dict[str, Any] = {"link": link, "point": _rows_of("point", point, rows), "threads": threads}
+        toward = None if direction is None else _rows_of("direction", direction, rows)
+        blocks.append(_masses(arm, poses[rows], place, toward))
+    if told is not None:
+        told(len(poses), len(poses))
+    position, mass, along = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     return Workspace(
         joint_names=arm.joint_names,
         joint_kinds=arm.joint_kinds,
         joints=poses,
-        position=arm.position(poses, **place),
+        position=position,
         mass=mass,
         direction=along,
         iso_mass=arm.iso_mass,
         warnings=arm.warnings,
     )
+
+
+def _rows_of(name: str, value: object, rows: slice) -> Array:
+    """Return one vector for all poses, or those of some poses."""
+    vectors = vectors_of(name, value)
+    return vectors if vectors.ndim == 1 or len(vectors) == 1 else vectors[rows]
+
+
+def _masses(arm: Arm, poses: Array, place: dict[str, Any], direction: Array | None) -> tuple[Array, Array, Array]:
+    """Return position, mass and direction of some poses."""
+    position = arm.position(poses, **place)
+    extremes = arm.extremes(poses, **place)
+    if direction is None:
+        return position, extremes.worst_mass, extremes.worst_direction
+    mass = np.asarray(arm.effective_mass(poses, direction=direction, **place))
+    return position, mass, np.broadcast_to(direction, extremes.worst_direction.shape)
 
 
 def _poses_over(

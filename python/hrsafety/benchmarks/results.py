@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
+from hrsafety._display import displayed
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.outcomes import OUTCOMES
@@ -17,6 +18,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["Result", "Row", "read_rows", "row_text"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Row:
     """One episode.

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, finite, not_negative, pair, positive
+from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import Doubts
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
@@ -156,6 +157,7 @@ class DifferentialBase:
 Base = HolonomicBase | DifferentialBase
 
 
+@displayed
 class RegionSpeed(NamedTuple):
     """Allowed closing speed at a region in one class of contact.
 

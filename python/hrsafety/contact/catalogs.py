@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from hrsafety._arguments import readable
+from hrsafety._display import displayed
 from hrsafety._words import meant
 from hrsafety.contact.materials import Material, material
 from hrsafety.errors import InvalidParameterError, Shown
@@ -21,6 +22,7 @@ MOST_MATERIALS = 1000
 _WORDS = ("name", "source", "note")
 
 
+@displayed
 class CatalogMaterial(NamedTuple):
     """A material of a catalog.
 

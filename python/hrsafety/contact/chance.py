@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import checked_seed, count, number, positive, thread_count, word
+from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, implausible_numbers, not_checked
 from hrsafety.contact.rows import TOLERANCE, applying, contact_row, in_order, limits_of, row_name, spring_of
@@ -19,6 +20,7 @@ MOST_DRAWS = 10**8
 _COUNTS = {"normal": 2, "lognormal": 2, "uniform": 2, "triangular": 3}
 
 
+@displayed
 class Exceedance(NamedTuple):
     """Chance that a speed is not allowed.
 

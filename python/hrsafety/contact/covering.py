@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import not_negative, number, positive, word
+from hrsafety._display import displayed
 from hrsafety._words import meant
 from hrsafety.contact.materials import Linear, Material, StressTable, material
 from hrsafety.errors import InvalidParameterError
@@ -26,6 +27,7 @@ _DEEPEST = 0.99
 Numbers = tuple[float, ...]
 
 
+@displayed
 class Column(NamedTuple):
     """A covering at rest under a compression.
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, positive
+from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.many import many
@@ -38,6 +39,7 @@ _FIXED = ("bottoming_strain", "horizon", "backing_stiffness", "unloading_retaine
 """Numbers without a sensitivity: an allowed speed belongs to the first loading."""
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AllowedSpeed:
     """A closing speed at which every limit is just kept.
@@ -323,6 +325,7 @@ def allowed_speeds(
     )
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LeastThickness:
     """Least thickness of a covering for a speed.

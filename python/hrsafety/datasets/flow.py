@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
 
 __all__ = ["Flow", "flow_of"]
@@ -15,6 +16,7 @@ __all__ = ["Flow", "flow_of"]
 Array = npt.NDArray[np.float64]
 
 
+@displayed
 class Flow(NamedTuple):
     """Main direction in which people walk, and where.
 

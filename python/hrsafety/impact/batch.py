@@ -42,7 +42,7 @@ _BEYOND, _BOTTOMED, _INVALID_THICKNESS = (
 
 
 @with_criteria("ndarray")
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ImpactMetricsBatch(Loads[Array], Table):
     """Loads of many impacts: the fields of `ImpactMetrics` as arrays of the broadcast shape.
 

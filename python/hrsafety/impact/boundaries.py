@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, numbers, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.criteria.loads import Doubts, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Head, Manipulator
@@ -20,6 +21,7 @@ AnyHead = Head | ConstrainedHead
 Requirement = tuple[str, float, _hrsafety.Head | _hrsafety.ConstrainedHead]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FoamBoundary:
     """Boundary of the foam stiffness over the foam damping; every point says what it is.

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, not_negative, number, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.boundaries import (
     AnyHead,
@@ -51,6 +52,7 @@ _OF_CONTACT = "contact_compression"
 DEFAULT_DAMPING = np.linspace(0.0, 300.0, 61)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FoamDesign:
     """A manipulator, limits and a closing speed, ready for questions; made by `design_foam`.

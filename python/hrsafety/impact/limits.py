@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from hrsafety._arguments import Parameters, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -82,6 +83,7 @@ class _Shares(NamedTuple):
     least: float
 
 
+@displayed
 class FoamMargin(_Shares):
     """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
 
@@ -104,6 +106,7 @@ class FoamMargin(_Shares):
     status: str = "kept"
 
 
+@displayed
 class FoamFeasibility(NamedTuple):
     """Whether some foam keeps all limits with a margin, and if not how much slower the manipulator has to be.
 

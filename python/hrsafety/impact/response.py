@@ -135,7 +135,7 @@ def _segments(value: object) -> tuple[Segment, ...]:
     return tuple(pair("segments", each) for each in sequence("segments", rule, value))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ImpactResponse(Table):
     """Histories of an impact, one row for each instant.
 

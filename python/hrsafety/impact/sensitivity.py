@@ -8,6 +8,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
+from hrsafety._display import displayed
 from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
@@ -15,6 +16,7 @@ from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 __all__ = ["ImpactGradients", "gradients"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ImpactGradients:
     """Loads of an impact and their derivatives.
@@ -26,7 +28,7 @@ class ImpactGradients:
     metric_names, parameter_names : tuple of str
         Rows and columns of the derivatives.
     values : ndarray of shape (metrics, parameters)
-        Derivative of each load with respect to each parameter, in SI units, loads in g in g;
+        Derivative of each load with respect to each parameter, in SI units, or g as the loads;
         NaN where a load has no derivative.
     parameters : ndarray of shape (parameters,)
         The parameters, in SI units; NaN where there is none.

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, number
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.scenario import Scenario
 
@@ -18,6 +19,7 @@ __all__ = ["Band", "along_the_way", "over_time"]
 _STATIONS = 201
 
 
+@displayed
 class Band(NamedTuple):
     """Where a share of the runs lies.
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, instance, word
 from hrsafety._bounds import MOST_REPEATS
+from hrsafety._display import displayed
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.laws.python_law import AnyLaw
@@ -29,6 +30,7 @@ Metric = Literal["arrival_time", "min_clearance", "energy", "path_length", "perf
 METRICS: tuple[str, ...] = get_args(Metric)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Standing:
     """What one law did over all episodes.

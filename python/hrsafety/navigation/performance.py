@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hrsafety._arguments import number, sequence
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
@@ -13,6 +14,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["Performance", "check_weights"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Performance:
     """Score of a run, each part from 0 to 1 in ordinary cases, Zeng (2011), section 5.6.

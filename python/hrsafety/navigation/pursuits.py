@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, number, positive, thread_count, word
+from hrsafety._display import displayed
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation import run_warnings
@@ -86,6 +87,7 @@ class Pursuit(Table):
         }
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Falsification:
     """What a search for a broken property found.

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import instance, number
+from hrsafety._display import displayed
 from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
@@ -13,6 +14,7 @@ from hrsafety.navigation.sensing.measurement import Measurement
 __all__ = ["Regions", "region_radii"]
 
 
+@displayed
 class Regions(NamedTuple):
     """Radii of the regions of one obstacle.
 

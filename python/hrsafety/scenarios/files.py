@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import readable
+from hrsafety._display import displayed
 from hrsafety.datasets import load_track
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import keys as kind
@@ -21,6 +22,7 @@ from hrsafety.scenarios.laws import law_of, safe_of
 __all__ = ["ScenarioFile", "load"]
 
 
+@displayed
 class ScenarioFile(NamedTuple):
     """What a scenario file describes.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,8 +12,9 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import count as checked_count
-from hrsafety._arguments import word
+from hrsafety._arguments import followed, word
 from hrsafety._bounds import MOST_REPEATS
+from hrsafety._display import displayed
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError, Shown
 
@@ -40,6 +42,7 @@ _SIGHTING_STEP = 0.2
 """Step in s at which people are looked at to count the traffic."""
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Crossing:
     """One run across a recording.
@@ -96,6 +99,7 @@ def crossings(
     person_radius: float = PERSON_RADIUS,
     critical_radius: float = CRITICAL_RADIUS,
     active_radius: float = ACTIVE_RADIUS,
+    progress: Callable[[int, int], object] | None = None,
 ) -> list[Crossing]:
     """Return runs of a robot across the main flow of a recording.
 
@@ -136,6 +140,8 @@ def crossings(
         Longest run in s.
     person_radius, critical_radius, active_radius : float
         Of every person, in m.
+    progress : callable or None
+        Called with (runs done, runs in all) at the start and after each.
 
     Returns
     -------
@@ -184,7 +190,7 @@ def crossings(
             people=tuple(recording.present(start_time, duration=time_limit).tolist()),
             scenario=_scenario(recording, route, robot, start_time, time_limit, body),
         )
-        for start_time, meant in zip(chosen, planned, strict=True)
+        for start_time, meant in followed(list(zip(chosen, planned, strict=True)), progress)
     ]
 
 

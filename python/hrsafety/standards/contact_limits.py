@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, number, numbers
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.verdicts import strictest
 
@@ -24,6 +25,7 @@ CERTAINTIES = ("certain", "likely", "single_source", "not_stated")
 Words = npt.NDArray[np.str_]
 
 
+@displayed
 class Quantity(NamedTuple):
     """A number with what is known about it.
 
@@ -42,6 +44,7 @@ class Quantity(NamedTuple):
     sources: tuple[str, ...]
 
 
+@displayed
 class Verdict(NamedTuple):
     """What a force and a pressure mean for a limit.
 
@@ -58,6 +61,7 @@ class Verdict(NamedTuple):
     pressure: str
 
 
+@displayed
 @dataclass(frozen=True, slots=True)
 class ContactLimit:
     """What a region of the body may bear in one class of contact.

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import number
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["GuardDistance", "minimum_distance"]
@@ -14,6 +15,7 @@ LOWEST_FACTOR = 15.0
 LOWEST_OFFSET = 0.05
 
 
+@displayed
 class GuardDistance(NamedTuple):
     """Least distance of a guard, S = K T + C, and how it came about.
 

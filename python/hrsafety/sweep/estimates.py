@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from hrsafety._arguments import thread_count, word
+from hrsafety._display import displayed
 from hrsafety.sweep.chunk_files import STORES, chunk_files
 from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import Plan, computed, planned
@@ -25,6 +26,7 @@ _GOLDEN = 0.6180339887498949
 _MARK_LENGTH = 36
 
 
+@displayed
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SweepEstimate:
     """What a sweep will take.

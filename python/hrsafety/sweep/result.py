@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -138,6 +139,20 @@ class SweepResult:
         state = "" if self.complete else f", {len(self.finished)} of {self.chunk_count} chunks"
         names = ", ".join(column.name for column in self._columns)
         return f"SweepResult({self._design.kind}, {len(self)} rows{state}: {names}{doubts})"
+
+    def _repr_html_(self) -> str:
+        """Return design, size, columns with units, and warnings as a notebook shows them; no chunk is read."""
+        title = f"SweepResult: {repr(self).split('(', 1)[1].split(':', 1)[0]}"
+        kinds = {axis.name: "axis" for axis in self.axes}
+        if self.cases:
+            kinds[self.columns[len(self.axes)].name] = "case"
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
+            for cells in ((each.name, kinds.get(each.name, each.kind), each.unit) for each in self.columns)
+        )
+        doubts = "".join(f"<p>{html.escape(str(each))}</p>" for each in self.warnings)
+        head = "<thead><tr><th>column</th><th>kind</th><th>unit</th></tr></thead>"
+        return f"<p>{html.escape(title)}</p><table>{head}<tbody>{rows}</tbody></table>{doubts}"
 
     # ---- numbers ------------------------------------------------------------------------------------
 

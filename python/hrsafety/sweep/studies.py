@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, sequence, word
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
@@ -19,6 +20,7 @@ __all__ = ["Cases", "Found", "Study", "checked_study", "chosen"]
 Found = Mapping[str, npt.NDArray[Any]]
 
 
+@displayed
 class Cases(NamedTuple):
     """Several result rows for each row of the design, as those of several scenarios.
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns, flag, instance, number, word
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import LoadRow, with_criteria
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
@@ -35,6 +36,7 @@ Doubts = tuple[ResultWarning, ...]
 PulseShape = Literal["half_sine", "square", "triangle"]
 
 
+@displayed
 @with_criteria("float")
 class ImpactMetrics(LoadRow):
     """Loads of one impact, maxima over the impact period.
@@ -93,6 +95,7 @@ class _Window(NamedTuple):
     end: float
 
 
+@displayed
 class HeadInjury(_Window):
     """Head injury criterion of a signal, and the window that gives it.
 
@@ -113,6 +116,7 @@ class HeadInjury(_Window):
         return with_warnings(super().__repr__(), self.warnings)
 
 
+@displayed
 class MovingLevel(_Window):
     """Level of a signal over 3 ms, and where it is reached.
 

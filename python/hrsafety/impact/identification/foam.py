@@ -13,6 +13,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
 from hrsafety._bounds import MOST_RESAMPLES, MOST_SWINGS
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import THICKNESS, Foam
 from hrsafety.plausibility import ResultWarning, implausible
@@ -36,6 +37,7 @@ class _Line(NamedTuple):
     degrees_of_freedom: int
 
 
+@displayed
 class StaticFit(_Line):
     """Fit of a line to a static test.
 
@@ -60,6 +62,7 @@ class StaticFit(_Line):
     warnings: tuple[ResultWarning, ...] = ()
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FoamFit:
     """Foam parameters from static and drop tests.

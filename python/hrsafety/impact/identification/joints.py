@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns, number, vector
+from hrsafety._display import displayed
 
 __all__ = [
     "DirectDriveFit",
@@ -21,6 +22,7 @@ __all__ = [
 ]
 
 
+@displayed
 class OpenLoopFit(NamedTuple):
     """Fit of theta = A (kappa t - 1 + exp(-kappa t)) / kappa^2 to an open-loop test.
 
@@ -45,6 +47,7 @@ class OpenLoopFit(NamedTuple):
     residual_deviation: float
 
 
+@displayed
 class DirectDriveFit(NamedTuple):
     """Direct-drive joint from open-loop tests at several voltages.
 
@@ -81,6 +84,7 @@ class DirectDriveFit(NamedTuple):
     decay_interval: Array
 
 
+@displayed
 class PdGains(NamedTuple):
     """Gains of the controller of a direct-drive joint.
 
@@ -96,6 +100,7 @@ class PdGains(NamedTuple):
     derivative: float
 
 
+@displayed
 class TubeInertia(NamedTuple):
     """Mass and inertia of a rectangular tube.
 

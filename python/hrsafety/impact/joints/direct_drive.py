@@ -84,7 +84,7 @@ class DirectDrive(Parameters):
         return Manipulator(mass=mass, damping=damping, stiffness=stiffness)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class DirectDriveResponse(Table):
     """Histories of a direct-drive joint in an impact, and their maxima.
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety.navigation.crowd.world import World
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, plane
@@ -15,6 +16,7 @@ from hrsafety.tables import Columns, Table, plane
 __all__ = ["CrowdTrajectories", "Divergence"]
 
 
+@displayed
 @dataclass(frozen=True, slots=True)
 class Divergence:
     """Whose state was no longer finite, which ended the world.

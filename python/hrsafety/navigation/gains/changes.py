@@ -26,7 +26,7 @@ __all__ = ["GainSensitivity", "gain_sensitivity"]
 CHANGES_PERCENT = (-50.0, -20.0, -10.0, -5.0, -2.0, 0.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class GainSensitivity(Table):
     """Runs and scores with one gain changed at a time: g gains, c changes, s scenarios.
 

@@ -6,10 +6,12 @@ import math
 from typing import NamedTuple
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 
 __all__ = ["Confidence", "confidence_of", "student_quantile"]
 
 
+@displayed
 class Confidence(NamedTuple):
     """What the best gain set is worth with noise that the search has not seen.
 

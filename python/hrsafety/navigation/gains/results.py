@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, positive
 from hrsafety._bounds import MOST_POINTS_OF_AXIS
+from hrsafety._display import displayed
 from hrsafety.errors import InfeasibleError, InvalidParameterError
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_threads
@@ -27,6 +28,7 @@ __all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "ParetoFront",
 Entry = TypeVar("Entry")
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SearchRound:
     """One grid of a coarse-to-fine search, Zeng (2011), appendix C.2, steps 2 to 5.
@@ -66,6 +68,7 @@ class SearchRound:
     worst_survivor: float
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LocalSearch:
     """One local constrained search, Zeng (2011), appendix C.2, step 8.
@@ -97,6 +100,7 @@ class LocalSearch:
     status: str
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Flatness:
     """How flat the objective is around the best gain set.
@@ -139,7 +143,7 @@ class Flatness:
     warnings: tuple[ResultWarning, ...] = ()
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class GainSearch(Table):
     """Best gains found, and how.
 
@@ -323,7 +327,7 @@ class GainSearch(Table):
         return _flatness(self, points, positive("tolerance", tolerance), threads)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ParetoFront(Table):
     """Gain sets that no other one beats in every objective.
 

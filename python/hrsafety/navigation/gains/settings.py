@@ -22,6 +22,7 @@ from hrsafety._arguments import (
     word,
 )
 from hrsafety._bounds import MOST_LOCAL_STARTS, MOST_POINTS, MOST_REFINEMENTS, MOST_SEEDS
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import check_scenarios
 from hrsafety.navigation.gains.metrics import METRICS, check_metric
@@ -100,6 +101,7 @@ class GainConstraint(Parameters):
 Constraint = GainConstraint | Judge
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SearchSettings:
     """Everything that a search for gains depends on: equal settings, equal bits.

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, numbers, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch
@@ -26,6 +27,7 @@ __all__ = ["GainGradient", "gain_gradient"]
 SHARES = (1.0, 0.5, 0.25)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class GainGradient:
     """Slopes over each gain at the gains of a law.

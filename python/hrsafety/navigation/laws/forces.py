@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, number, numbers, pair, points
+from hrsafety._display import displayed
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
@@ -18,6 +19,7 @@ from hrsafety.navigation.scenario import Scenario
 __all__ = ["ForceField", "ForceTerms", "Lyapunov", "check_law", "command", "force_field", "force_terms", "lyapunov"]
 
 
+@displayed
 class ForceTerms(NamedTuple):
     """Virtual forces at one state, before the acceleration limit.
 
@@ -51,6 +53,7 @@ class ForceTerms(NamedTuple):
     omega: float
 
 
+@displayed
 class ForceField(NamedTuple):
     """Virtual forces at many positions, summed over the obstacles.
 
@@ -73,6 +76,7 @@ class ForceField(NamedTuple):
     potential: Array
 
 
+@displayed
 class Lyapunov(NamedTuple):
     """Lyapunov function of the force field at one state.
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, instance, number
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import as_law
@@ -22,6 +23,7 @@ CRITICAL_DISTANCE = 0.02
 """Where force laws brake beside a shield that gives way, in m between the surfaces."""
 
 
+@displayed
 class SafetyTrace(NamedTuple):
     """What the parts around a law did in a control period.
 

@@ -10,11 +10,13 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, not_negative, number, numbers, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Shield", "ShieldDecision", "speed_bound"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ShieldDecision:
     """What a shield did with a wanted velocity.

@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 
 __all__ = ["PointMass", "Situation", "situation_of"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PointMass:
     """What a law drives: the robot, or the point mass that a two-wheel robot follows.

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, instance, number, pair, sequence
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.parts import checked_place, checked_points
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -17,6 +18,7 @@ from hrsafety.navigation.maps.static_map import StaticMap
 __all__ = ["Guide", "LocalGoal", "Plan"]
 
 
+@displayed
 class LocalGoal(NamedTuple):
     """Where a law should go for now.
 
@@ -35,6 +37,7 @@ class LocalGoal(NamedTuple):
     is_goal: bool
 
 
+@displayed
 @dataclass(frozen=True, slots=True)
 class Plan:
     """Cost-to-go of a robot in a static map, for one goal; it has no local minimum.

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, number, numbers, pair, points, sequence
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles import Rectangle
 
@@ -32,6 +33,7 @@ class Wall(NamedTuple):
     radius: float
 
 
+@displayed
 class Cells(NamedTuple):
     """An occupancy grid.
 

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 from hrsafety import _hrsafety
+from hrsafety._display import displayed
 
 __all__ = ["METRICS", "WORLD_METRICS", "Measured", "MeasuredWorld", "Metric", "with_metrics"]
 
@@ -16,6 +17,7 @@ F = TypeVar("F")
 C = TypeVar("C", bound=type)
 
 
+@displayed
 class Metric(NamedTuple):
     """What is known about a metric.
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, flag, instance, number, pair, positive, word
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 
@@ -185,6 +186,7 @@ Tracking = FullSpeedTracking | NonlinearTracking | ExponentialTracking
 """The tracking laws."""
 
 
+@displayed
 class Twist(NamedTuple):
     """What two wheels can give.
 

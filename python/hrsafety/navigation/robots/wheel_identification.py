@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from hrsafety._arguments import (
     checked_seed,
     columns,
     count,
+    followed,
     instance,
     number,
     positive,
@@ -22,6 +23,7 @@ from hrsafety._arguments import (
     whole_steps,
 )
 from hrsafety._bounds import MOST_REPEATS, MOST_RUNS, MOST_SAMPLES
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.robots.wheels import WheelDrive
 
@@ -30,6 +32,7 @@ __all__ = ["OpenLoopTest", "WheelFit", "identify_wheel", "open_loop_tests"]
 COMMANDS = (0.25, 0.3, 0.35, 0.4, 0.45, 0.5)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OpenLoopTest:
     """A wheel at rest that is given one command.
@@ -68,6 +71,7 @@ class OpenLoopTest:
             object.__setattr__(self, name, value)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class WheelFit:
     """Wheel model theta'' = K/J u - B/J theta' - tau/J sgn(theta') from open-loop tests.
@@ -166,6 +170,7 @@ def open_loop_tests(
     repeats: int = 2,
     duration: float = 1.0,
     seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
 ) -> list[OpenLoopTest]:
     """Return simulated open-loop tests of a wheel, as its encoder sees them.
 
@@ -183,6 +188,8 @@ def open_loop_tests(
         Length of a test in s; a sample is taken each wheel period.
     seed : int
         Of the angles at the start.
+    progress : callable or None
+        Called with (tests done, tests in all) at the start and after each.
 
     Returns
     -------
@@ -212,7 +219,7 @@ def open_loop_tests(
     draws = np.random.default_rng(checked_seed("seed", seed))
     time = wheel.period * np.arange(periods + 1, dtype=np.float64)
     tests = []
-    for command in np.repeat(wanted, times):
+    for command in followed(np.repeat(wanted, times).tolist(), progress):
         start = wheel.resolution * draws.uniform(-0.5, 0.5)
         angle = wheel._native.open_loop_angles(command=float(command), start_angle=start, periods=periods)
         tests.append(OpenLoopTest(command=float(command), time=time, angle=angle))

@@ -23,6 +23,7 @@ from hrsafety._arguments import (
     whole_steps,
 )
 from hrsafety._bounds import MOST_SAMPLES
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.tables import Columns, Table, with_units
 
@@ -156,6 +157,7 @@ DIFFERENTIAL_WHEELS: tuple[WheelDrive, ...] = tuple(WheelDrive(**each) for each 
 """Right and left wheel of the differential-drive robot: (E.2.6) and Table E.2 of Zeng (2011)."""
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class WheelReference:
     """Wanted motion of a wheel, one row for each wheel period.
@@ -274,7 +276,7 @@ class WheelReference:
         return cls(angle=angle, speed=wanted, acceleration=acceleration)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class WheelRun(Table):
     """A wheel after its reference; states at the start of each wheel period, currents over it.
 

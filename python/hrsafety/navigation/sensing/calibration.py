@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, instance, pair
+from hrsafety._display import displayed
 from hrsafety.errors import HrsafetyError, InvalidParameterError, MissingExtraError, ShapeError, SimulationError
 from hrsafety.navigation.sensing.camera import Camera, _as_matrix, _as_triple, _picture_size, _rows, nearest_rotation
 from hrsafety.navigation.sensing.linear_camera import linear_camera
@@ -44,6 +45,7 @@ _NOWHERE = 1e6
 _SINGULAR = 1e-12
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CameraCalibration:
     """A camera from points of the world and their pixels.

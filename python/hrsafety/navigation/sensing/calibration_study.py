@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, count, instance, not_negative
+from hrsafety._arguments import Array, count, followed, instance, not_negative
 from hrsafety._bounds import MOST_SEEDS
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.sensing.calibration import CameraCalibration, calibrate_camera
 from hrsafety.navigation.sensing.camera import Camera, _rows
@@ -86,6 +88,7 @@ def patch_places(camera: Camera, *, spacing: float = 0.2) -> Array:
     return places[shown[camera.contains(pixels[shown])]]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CalibrationStudy:
     """Calibrations of one camera from the same points with different noise of their pixels.
@@ -101,7 +104,7 @@ class CalibrationStudy:
     places : ndarray of shape (m, 3)
         Where patches are measured afterwards, in m.
     parameters : ndarray of shape (seeds, 11)
-        Calibrated numbers in the order of `CALIBRATED`; turns from the camera as it is, in rad.
+        Calibrated numbers in the order of `CALIBRATED`; turns are angles from the camera as it is.
     deviation : ndarray of shape (seeds, 11)
         Standard deviations that each calibration states for them.
     point_error : ndarray of shape (seeds, n)
@@ -131,6 +134,7 @@ def calibration_study(
     seeds: int = 200,
     points: npt.ArrayLike | None = None,
     places: npt.ArrayLike | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> CalibrationStudy:
     """Return position errors of a camera that is calibrated from noisy pixels, over many seeds.
 
@@ -149,6 +153,8 @@ def calibration_study(
         Calibration points in m; ``None``: those of `calibration_points`.
     places : array_like of shape (m, 3) or None
         Places of the patches in m; ``None``: those of `patch_places`.
+    progress : callable or None
+        Called with (calibrations done, calibrations in all) at the start and after each.
 
     Returns
     -------
@@ -179,7 +185,7 @@ def calibration_study(
     patches = patch_places(actual) if places is None else _rows("places", places, 3)
     exact_markers, exact_patches = actual.project(markers), actual.project(patches)
     fits, errors, biases = [], [], []
-    for seed in range(count("seeds", seeds, most=MOST_SEEDS)):
+    for seed in followed(range(count("seeds", seeds, most=MOST_SEEDS)), progress):
         source = np.random.default_rng(seed)
         shown = exact_markers + source.normal(0.0, 1.0, exact_markers.shape) * deviation
         noisy = exact_patches + source.normal(0.0, 1.0, exact_patches.shape) * deviation

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, points, vector
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["AlphaBeta", "Differences", "Estimator", "Kalman", "TrackedPositions", "track_positions"]
@@ -161,6 +162,7 @@ def checked_estimator(value: object) -> Estimator:
     return value
 
 
+@displayed
 class TrackedPositions(NamedTuple):
     """Estimates at the times of measured positions.
 

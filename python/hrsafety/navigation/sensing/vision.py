@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, count, flag, instance
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.sensing.camera import Camera
 from hrsafety.navigation.sensing.estimators import Differences, Estimator, checked_estimator, measured_path
@@ -165,6 +166,7 @@ class Vision(Parameters):
         self._set(_native=native)
 
 
+@displayed
 class Observation(NamedTuple):
     """What a camera measures of a body on a known path, and what is known of it when.
 

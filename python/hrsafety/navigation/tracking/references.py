@@ -9,12 +9,14 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, instance, pair, points, vector
+from hrsafety._display import displayed
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["CircleReference", "LineReference", "PathReference", "Reference", "ReferenceMotion"]
 
 
+@displayed
 class ReferenceMotion(NamedTuple):
     """Motion of a reference at n instants.
 
@@ -124,6 +126,7 @@ class CircleReference(_Motion):
         self._set(center=center, _native=_hrsafety.ReferencePath.circle(center=center, **values))
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PathReference(_Motion):
     """Reference through samples of position and velocity, cubic between them.

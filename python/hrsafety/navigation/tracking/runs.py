@@ -24,7 +24,7 @@ __all__ = ["TrackingSummary", "track", "track_batch"]
 LEVELS = (0.1, 0.01, 0.001)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class TrackingSummary(Table):
     """Summary of many runs, one row for each start; k levels.
 

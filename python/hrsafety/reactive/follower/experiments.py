@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, flag, instance, thread_count
 from hrsafety._bounds import MOST_COUNT, MOST_LAYOUTS, MOST_RESAMPLES
+from hrsafety._display import displayed
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.follower.impedance import VirtualImpedance
@@ -31,7 +32,7 @@ SIDE = 3.0 * np.pi / 4.0
 Direction = Literal["front", "left", "right", "rear"]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class FollowerExperiment(Table):
     """Ends of many runs, one a layout.
 
@@ -238,6 +239,7 @@ def _law_of(law: object, kind: str) -> VirtualImpedance:
     raise InvalidParameterError("law", rule, law)
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LawComparison:
     """Two experiments in the same layouts.

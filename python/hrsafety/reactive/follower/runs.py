@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, checked_seed, flag, instance, numbers
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.reactive.follower.impedance import VirtualImpedance
@@ -129,7 +130,7 @@ class Follower(Parameters):
         )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class FollowerRun(Table):
     """One run of the follower: a row for every control period, the last one at the end.
 
@@ -300,6 +301,7 @@ def follow(
     return FollowerRun(**found, scene=scene, follower=robot)
 
 
+@displayed
 class FixDeviations(NamedTuple):
     """Scatter of a fix.
 

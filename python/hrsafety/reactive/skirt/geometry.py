@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, number, positive
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt.ring import MOST_SENSORS
 
@@ -20,6 +21,7 @@ __all__ = [
 ]
 
 
+@displayed
 class SensorCount(NamedTuple):
     """Least number of sensors.
 
@@ -35,6 +37,7 @@ class SensorCount(NamedTuple):
     multiple_of_three: int
 
 
+@displayed
 class SkirtSpacing(NamedTuple):
     """Gap between sensors that are not beside a wheel, in four ways.
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, count, vector, word
 from hrsafety._bounds import MOST_RAYS
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["MOTION_DIRECTIONS", "SkirtState", "UltrasonicSkirt", "skirt_states"]
@@ -32,6 +33,7 @@ PUBLISHED_SAFE_DISTANCE = 0.666
 PUBLISHED_CHASSIS_RADIUS = 0.33
 
 
+@displayed
 class SkirtState(NamedTuple):
     """One row of the state table.
 

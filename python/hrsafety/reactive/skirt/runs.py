@@ -23,6 +23,7 @@ from hrsafety._arguments import (
     word,
 )
 from hrsafety._bounds import MOST_LAYOUTS, MOST_OBSTACLES, MOST_THREADS
+from hrsafety._display import displayed
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt.ring import MOTION_DIRECTIONS, UltrasonicSkirt
@@ -136,6 +137,7 @@ class SkirtMotion(Parameters):
         self._set(_native=_hrsafety.SkirtMotion(**values))
 
 
+@displayed
 class SkirtShares(NamedTuple):
     """Shares of the three marks of Table 4, each with its 95 % Wilson interval.
 
@@ -150,7 +152,7 @@ class SkirtShares(NamedTuple):
     collides: Share
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SkirtTest(Table):
     """Result of the avoidance test, one row for each test.
 
@@ -302,7 +304,7 @@ def skirt_test(
     return SkirtTest(layout=index // tests, repeat=index % repeats, **columns)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SkirtRun(Table):
     """One test, step by step; row k is the state after firing k.
 

@@ -27,7 +27,7 @@ _TRIGGER_DISTANCE = PUBLISHED_SAFE_DISTANCE - PUBLISHED_CHASSIS_RADIUS
 _COUNTS = {"even": tuple(range(3, 17)), "wheels": (6, 9, 12, 15, 18)}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SmallestSkirt(Table):
     """What `smallest_skirt` found.
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, checked_seed, count, flag, number, numbers, pair, sequence
 from hrsafety._bounds import MOST_RAYS
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Box", "Disc", "Sonar", "SonarMounts", "Wall", "cast_rays", "speed_of_sound"]
@@ -142,6 +143,7 @@ def native_shapes(name: str, shapes: object) -> list[_hrsafety.EchoShape]:
     return [shape._native for shape in given]
 
 
+@displayed
 class SonarMounts(NamedTuple):
     """Places of the sensors on the robot, x forward and y left, right to left.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, count, flag, instance, pair, word
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.sound.microphones import MicrophoneArray
 from hrsafety.reactive.sound.recording import SoundRecording
@@ -20,6 +21,7 @@ METHODS = ("cross_correlation", "mean_square", "phase")
 Options = tuple[str, list[float] | None, bool, int | None, int | None]
 
 
+@displayed
 class Delays(NamedTuple):
     """Delays of M2 and M3 against M1.
 
@@ -44,6 +46,7 @@ class Delays(NamedTuple):
     window_start: int
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Likeness:
     """How alike M1 and another microphone are at every lag.

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, callback, instance, not_negative, square, thread_count
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.sound.microphones import MicrophoneArray, same_shape
 from hrsafety.tables import Columns, Table, plane
@@ -23,6 +24,7 @@ STATUS_WORDS: tuple[str, ...] = tuple(_hrsafety.fix_status_words())
 QUARTER_SAMPLE = 2.5e-6
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Fix:
     """Range and bearing of one sound.
@@ -69,7 +71,7 @@ class Fix:
         return math.sqrt(self.covariance[1, 1])
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Fixes(Table):
     """Ranges and bearings of many sounds: the fields of `Fix` as arrays of the broadcast shape.
 
