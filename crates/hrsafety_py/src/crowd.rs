@@ -291,6 +291,11 @@ fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, Py
     fields.vector("desired_speed", column(&|index| all[index].desired_speed))?;
     fields.vector("awareness", column(&|index| all[index].awareness))?;
     fields.vector("arrival_time", column(&|index| all[index].arrival_time))?;
+    let ends: Vec<_> = all[..people]
+        .iter()
+        .map(|each| each.arrival_position)
+        .collect();
+    fields.matrix("arrival_position", flat(&ends), people, 2)?;
     let robots = ended.robots().iter();
     fields.vector(
         "robot_arrival_time",

@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::metrics::{
-    self, Kind, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole, Without,
+    self, Kind, KnownArrival, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole, Without,
 };
 use vff_core::crowd::neighbors::Period;
 use vff_core::crowd::walls::Wall;
@@ -23,6 +23,16 @@ type Rows<'py> = PyReadonlyArray2<'py, f64>;
 fn points(rows: &Rows<'_>) -> PyResult<Vec<Vector2<f64>>> {
     let (pairs, _) = rows.as_slice()?.as_chunks::<2>();
     Ok(pairs.iter().map(|pair| Vector2::from(*pair)).collect())
+}
+
+/// Arrivals of an array with rows of time and place.
+fn arrivals(rows: &Rows<'_>) -> PyResult<Vec<KnownArrival>> {
+    let (known, _) = rows.as_slice()?.as_chunks::<3>();
+    let arrival = |[time, x, y]: &[f64; 3]| KnownArrival {
+        time: *time,
+        place: Vector2::new(*x, *y),
+    };
+    Ok(known.iter().map(arrival).collect())
 }
 
 /// Name, kind, unit and meaning of each metric of a robot, and of a world.
@@ -79,6 +89,7 @@ pub struct CrowdEpisode {
     walls: Vec<Wall>,
     without: Option<Vec<Vector2<f64>>>,
     goals: Vec<Vector2<f64>>,
+    arrivals: Option<[Vec<KnownArrival>; 2]>,
     rules: Rules,
 }
 
@@ -90,6 +101,10 @@ impl CrowdEpisode {
         let given = given.unwrap_or_default();
         let rows = |name: &str| points(&given.take::<Rows<'_>>(name)?);
         let without: Option<Rows<'_>> = given.take("people_without")?;
+        let [with, alone]: [Option<Rows<'_>>; 2] = [
+            given.take("person_arrivals")?,
+            given.take("person_arrivals_without")?,
+        ];
         let radii: PyReadonlyArray1<'_, f64> = given.take("person_radius")?;
         let groups: PyReadonlyArray1<'_, i64> = given.take("groups")?;
         let episode = Self {
@@ -100,6 +115,10 @@ impl CrowdEpisode {
             walls: walls(&given)?,
             without: without.as_ref().map(points).transpose()?,
             goals: rows("person_goals")?,
+            arrivals: match (with, alone) {
+                (Some(with), Some(alone)) => Some([arrivals(&with)?, arrivals(&alone)?]),
+                _ => None,
+            },
             rules: rules(&given)?,
         };
         given.done()?;
@@ -126,6 +145,10 @@ impl CrowdEpisode {
             without: self.without.as_ref().map(|people| Without {
                 people: Paths::known(people, count),
                 goals: &self.goals,
+                arrivals: self
+                    .arrivals
+                    .as_ref()
+                    .map(|known| known.each_ref().map(Vec::as_slice)),
             }),
             rules: self.rules,
         }
@@ -196,6 +219,11 @@ pub fn crowd_world_metrics<'py>(
     let (people, robots, goals) = (rows("people")?, rows("robots")?, rows("person_goals")?);
     let radii: PyReadonlyArray1<'_, f64> = given.take("robot_radius")?;
     let radii = radii.as_slice()?.to_vec();
+    let times: Option<PyReadonlyArray1<'_, f64>> = given.take("person_arrival_time")?;
+    let times = match &times {
+        Some(times) => Some(times.as_slice()?),
+        None => None,
+    };
     let rules = Rules {
         step: given.take("step")?,
         person_tolerance: given.take("person_tolerance")?,
@@ -207,6 +235,7 @@ pub fn crowd_world_metrics<'py>(
     let world = Whole {
         people: Paths::new("people", &people, goals.len()).map_err(CoreError::from)?,
         goals: &goals,
+        arrival_times: times,
         robots: Paths::new("robots", &robots, radii.len()).map_err(CoreError::from)?,
         radii: &radii,
         time_limit,

@@ -5,8 +5,8 @@ use nalgebra::{Rotation2, Vector2};
 use numeric::error::Failure;
 use serde_json::Value;
 use vff_core::crowd::metrics::{
-    Episode, Kind, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without, evaluate,
-    evaluate_world,
+    Episode, Kind, KnownArrival, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without,
+    evaluate, evaluate_world,
 };
 use vff_core::crowd::neighbors::Period;
 use vff_core::crowd::walls::Wall;
@@ -29,6 +29,7 @@ struct Case {
     walls: Vec<[Point; 2]>,
     without: Vec<Point>,
     goals: Vec<Point>,
+    arrivals: Option<[Vec<KnownArrival>; 2]>,
     rules: Rules,
     expected: Value,
 }
@@ -90,6 +91,7 @@ impl Case {
                 .collect(),
             without: all_points(&options["without"]),
             goals: points(&options["person_goal"]),
+            arrivals: None,
             rules: Rules {
                 step: number(&options["dt"]),
                 goal: point(&options["goal"]),
@@ -121,6 +123,10 @@ impl Case {
             Some(Without {
                 people: Paths::new("people_without", &self.without, count)?,
                 goals: &self.goals,
+                arrivals: self
+                    .arrivals
+                    .as_ref()
+                    .map(|known| [&known[0][..], &known[1][..]]),
             })
         };
         evaluate(&Episode {
@@ -357,7 +363,55 @@ fn an_invalid_value_is_named_with_its_index() {
     assert_eq!(refused(|case| case.radii[1] = 0.0), "person_radius[1]");
     assert_eq!(refused(|case| case.groups = vec![1]), "groups");
     assert_eq!(refused(|case| case.goals.clear()), "person_goals");
+    let known = |time: f64, count: usize| {
+        let place = Point::zeros();
+        vec![KnownArrival { time, place }; count]
+    };
+    let arrivals = |first: (f64, usize), second: (f64, usize)| {
+        refused(move |case| {
+            case.arrivals = Some([known(first.0, first.1), known(second.0, second.1)]);
+        })
+    };
+    let count = cases()[6].radii.len();
+    assert_eq!(arrivals((1.0, count + 1), (1.0, count)), "person_arrivals");
+    assert_eq!(
+        arrivals((1.0, count), (-1.0, count)),
+        "person_arrivals_without[0]"
+    );
     assert_eq!(refused(|case| case.people.truncate(4)), "people");
+}
+
+#[test]
+fn who_leaves_arrives_where_it_was_last() {
+    let mut case = cases().swap_remove(0);
+    let absent = Point::repeat(f64::NAN);
+    case.rules.step = 0.5;
+    case.robot = vec![Point::new(50.0, 0.0); 7];
+    case.radii = vec![0.25];
+    // 0.5 m a step, gone at the fifth instant and at the third: both had walked into the circle of the goal.
+    let walk = |steps: u32| -> Vec<Point> {
+        let places =
+            (0..7).map(|step| (step < steps).then(|| Point::new(0.5 * f64::from(step), 0.0)));
+        places.map(|place| place.unwrap_or(absent)).collect()
+    };
+    (case.people, case.without) = (walk(5), walk(3));
+    case.goals = vec![Point::new(9.0, 0.0)];
+    let blind = case.metrics().unwrap();
+    assert!(blind.person_delay.is_nan() && blind.person_detour.is_nan());
+    let known = |time: f64, x: f64| {
+        vec![KnownArrival {
+            time,
+            place: Point::new(x, 0.0),
+        }]
+    };
+    case.arrivals = Some([known(2.5, 2.5), known(1.5, 1.5)]);
+    let found = case.metrics().unwrap();
+    assert_eq!((found.person_delay, found.person_detour), (1.0, 1.0));
+    assert_eq!(found.people_blocked, 0);
+    case.arrivals = Some([known(f64::NAN, f64::NAN), known(1.5, 1.5)]);
+    let found = case.metrics().unwrap();
+    assert!(found.person_delay.is_nan());
+    assert_eq!(found.people_blocked, 1);
 }
 
 #[test]
@@ -390,6 +444,7 @@ fn a_world_counts_who_left_stands_and_touches() {
         evaluate_world(&Whole {
             people: Paths::new("people", &people, 2)?,
             goals: &[Point::new(2.0, 0.0), Point::zeros()],
+            arrival_times: None,
             robots: Paths::new("robots", &robots, 3)?,
             radii,
             time_limit: 20.0,

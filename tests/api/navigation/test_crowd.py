@@ -110,6 +110,36 @@ def test_threads_change_no_bit() -> None:
             np.testing.assert_array_equal(found.robot_position, expected.robot_position)
 
 
+def test_a_robot_delays_people_who_leave_at_their_goal() -> None:
+    doorway = nav.crowd.CrowdRobot(start=(3.0, 0.05), goal=(9.0, 0.0))
+    walker = nav.crowd.Person(start=(0, 0), route=[(6, 0)], desired_speed=1.2, at_end="leave")
+    # The way of the other leads past its last point: it arrives at the end of the way, not there.
+    there_and_back = replace(walker, start=(0, 4), route=[(5, 4), (0, 4)])
+    world = nav.crowd.World(people=[walker, there_and_back], robots=[doorway], time_limit=20.0)
+    run = nav.crowd.simulate_crowd(world)
+    alone = nav.crowd.simulate_crowd(replace(world, robots=()))
+    assert np.isnan(run.position[-1, 0]).all()
+    np.testing.assert_array_less(np.hypot(*(run.arrival_position - [(6, 0), (0, 4)]).T), 0.3 + 1e-12)
+    (episode,) = nav.crowd.episodes_of(run, alone)
+    found = nav.metrics.evaluate(episode)
+    assert found.person_delay == pytest.approx(np.mean(run.arrival_time - alone.arrival_time), abs=1e-12)
+    assert found.person_delay > 0.1
+    assert found.person_detour > 0.05
+    assert found.people_blocked == 0
+    table = nav.crowd.crowd_batch([world], people_alone=True)
+    assert table.person_delay[0] == found.person_delay
+    total = nav.crowd.world_metrics(run).aggregated_time
+    assert total == pytest.approx(run.arrival_time.sum(), abs=1e-9)
+
+
+def test_people_from_sources_are_met_though_they_are_not_compared() -> None:
+    source = nav.crowd.Source(low=(2, -0.5), high=(3, 0.5), rate=1.0, route=[(-2, 0)], awareness=0.0)
+    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(9, 0))
+    world = nav.crowd.World(sources=[source], robots=[robot], time_limit=8.0)
+    least = [nav.crowd.crowd_batch([world], people_alone=alone).min_clearance[0] for alone in (False, True)]
+    assert least[0] == least[1] < 0.0
+
+
 def test_progress_is_told_of_all_worlds() -> None:
     told: list[tuple[int, int]] = []
     worlds = [nav.crowd.World(people=pair_of_people(), seed=seed) for seed in range(5)]

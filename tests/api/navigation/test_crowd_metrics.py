@@ -156,6 +156,14 @@ def test_bad_values_are_named() -> None:
     assert refused(people_without=PEOPLE[:, :1], person_goals=np.zeros((2, 2))) == "people_without"
     assert refused(walls=[[(0.0, 0.0)]]) == "walls[0]"
     assert refused(shortest_length=-1.0) == "shortest_length"
+    beside = {"people_without": PEOPLE, "person_goals": np.zeros((2, 2))}
+    arrivals = np.ones((2, 3))
+    assert refused(**beside, person_arrivals=arrivals) == "person_arrivals_without"
+    both = beside | {"person_arrivals": arrivals, "person_arrivals_without": arrivals}
+    assert refused(**both | {"person_arrivals": np.ones((2, 2))}) == "person_arrivals"
+    assert refused(**both | {"person_arrivals_without": np.ones((3, 3))}) == "person_arrivals_without"
+    assert refused(**both | {"person_arrivals": [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]}) == "person_arrivals[1]"
+    assert refused(**both | {"person_arrivals": [[1.0, 0.0, 0.0], [1.0, np.nan, 0.0]]}) == "person_arrivals[1]"
 
 
 def test_what_an_episode_has_is_not_given_again() -> None:
@@ -183,5 +191,18 @@ def test_a_world_counts_who_left() -> None:
     assert found.deadlocked_share == 0.5
     assert found.aggregated_time == pytest.approx(3.5 + 10.0)
     assert found.robot_contacts == 1
+    known = nav.metrics.evaluate_world(
+        walk,
+        person_goals=[(9.0, 9.0), (0.0, 0.0)],
+        person_arrival_time=[4.0, np.nan],
+        step=0.5,
+        time_limit=10.0,
+    )
+    assert known.aggregated_time == 4.0 + 10.0
+    assert known.deadlocked_share == 0.5
+    with pytest.raises(ShapeError, match=r"person_arrival_time .*\(2,\)"):
+        nav.metrics.evaluate_world(
+            walk, person_goals=np.zeros((2, 2)), person_arrival_time=[1.0], step=0.5, time_limit=10.0
+        )
     with pytest.raises(ShapeError, match=r"person_goals .*\(2, 2\)"):
         nav.metrics.evaluate_world(walk, person_goals=[(2.5, 1.0)], step=0.5, time_limit=10.0)

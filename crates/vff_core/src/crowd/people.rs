@@ -71,6 +71,8 @@ pub struct PersonState {
     pub next: u32,
     /// When the end of the route was reached, in s; NaN before.
     pub arrival_time: f64,
+    /// Where that was, in m; NaN before.
+    pub arrival_position: Vector,
 }
 
 impl PersonState {
@@ -98,6 +100,7 @@ impl PersonState {
             group: None,
             next: 0,
             arrival_time: f64::NAN,
+            arrival_position: Vector::repeat(f64::NAN),
         }
     }
 
@@ -225,6 +228,7 @@ impl PersonState {
                     Presence::Staying
                 };
                 self.arrival_time = time;
+                self.arrival_position = self.position;
                 return;
             }
         }

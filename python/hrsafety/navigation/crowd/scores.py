@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +25,30 @@ def _goals(run: CrowdTrajectories) -> Array:
     for index, person in enumerate(run.world.people):
         goals[index] = person.route[-1] if person.route else person.start
     return goals
+
+
+def _arrivals(run: CrowdTrajectories, people: int) -> Array:
+    """Return instants and places at which the people of the world arrived, and so many rows."""
+    rows = np.full((people, 3), np.nan)
+    count = len(run.world.people)
+    rows[:count] = np.column_stack([run.arrival_time, run.arrival_position])[:count]
+    return rows
+
+
+def _beside(run: CrowdTrajectories, without: CrowdTrajectories) -> dict[str, Any]:
+    """Return the people of the world without its robots.
+
+    Those from sources are not told apart: whom a robot kept out came later, with another number.
+    """
+    people, count = len(run.radius), len(run.world.people)
+    alone = np.full((len(without.time), people, 2), np.nan)
+    alone[:, :count] = without.position[:, :count]
+    return {
+        "people_without": alone,
+        "person_goals": _goals(run),
+        "person_arrivals": _arrivals(run, people),
+        "person_arrivals_without": _arrivals(without, people),
+    }
 
 
 def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None) -> list[Episode]:
@@ -53,22 +78,21 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
     groups = [-1 if person.group is None else person.group for person in world.people]
     groups += [-1] * (len(run.radius) - len(groups))
     grouped = any(group >= 0 for group in groups)
-    alone = None if without is None else without.position[:, : len(world.people)]
+    beside = {} if without is None else _beside(run, without)
     return [
         Episode(
             position=run.robot_position[:, index],
             step=world.step,
             goal=robot.goal,
             robot_radius=robot.robot.radius,
-            people=run.position if alone is None else run.position[:, : len(world.people)],
-            person_radius=run.radius if alone is None else run.radius[: len(world.people)],
+            people=run.position,
+            person_radius=run.radius,
             groups=groups if grouped else (),
             walls=world.walls,
-            people_without=alone,
-            person_goals=() if alone is None else _goals(run)[: len(world.people)],
             arrival_tolerance=robot.arrival_tolerance,
             max_speed=robot.robot.max_speed,
             period=world.period,
+            **beside,
         )
         for index, robot in enumerate(world.robots)
     ]
@@ -146,6 +170,7 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
     return evaluate_world(
         run.position,
         person_goals=_goals(run),
+        person_arrival_time=run.arrival_time,
         step=world.step,
         time_limit=world.time_limit,
         robots=run.robot_position if world.robots else (),

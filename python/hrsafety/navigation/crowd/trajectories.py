@@ -58,6 +58,8 @@ class CrowdTrajectories(Table):
         Of the people, in m, in m/s, and from 0 to 1, as drawn.
     arrival_time : ndarray of shape (m,)
         When a person reached the end of the route, in s; NaN for those who did not.
+    arrival_position : ndarray of shape (m, 2)
+        Where that was, in m. Who leaves at the end is absent from ``position`` from that instant on.
     robot_arrival_time : ndarray of shape (k,)
         When a robot arrived, in s; NaN for those that did not.
     diverged : Divergence or None
@@ -75,6 +77,7 @@ class CrowdTrajectories(Table):
     desired_speed: Array
     awareness: Array
     arrival_time: Array
+    arrival_position: Array
     robot_arrival_time: Array
     diverged: Divergence | None = None
 

@@ -23,7 +23,7 @@ from hrsafety._arguments import (
     positive,
     sequence,
 )
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
 from hrsafety.navigation.obstacles import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
@@ -75,6 +75,10 @@ class Episode(Parameters):
         The same people in the same world and with the same seed, without robots.
     person_goals : array_like, shape (n, 2)
         Goals of the people in m, NaN for who has none; needed with ``people_without`` only.
+    person_arrivals, person_arrivals_without : array_like, shape (n, 3)
+        Instants in s and places in m at which people arrived with robots and without them, NaN for who did
+        not; for people who leave at the goal and are recorded no more. Empty: the first instants within
+        ``person_tolerance`` of the goals.
     arrival_tolerance, person_tolerance : float
         Distance to the goal that counts as arrival, in m, of the robot and of people.
     max_speed : float
@@ -114,6 +118,8 @@ class Episode(Parameters):
     walls: Sequence[Wall] = ()
     people_without: npt.ArrayLike | None = None
     person_goals: npt.ArrayLike = ()
+    person_arrivals: npt.ArrayLike = ()
+    person_arrivals_without: npt.ArrayLike = ()
     arrival_tolerance: float = 0.3
     person_tolerance: float = 0.3
     max_speed: float = 1.0
@@ -143,8 +149,15 @@ class Episode(Parameters):
             if not empty("person_goals", self.person_goals)
             else _NOWHERE,
         }
+        arrays |= {name: _arrivals(name, getattr(self, name)) for name in _ARRIVALS}
+        missing = [name for name in _ARRIVALS if arrays[name].size == 0]
+        if len(missing) == 1:
+            raise InvalidParameterError(missing[0], "be given where the other arrivals are", Shown("none"))
         walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
-        flat = {name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None}
+        flat: dict[str, Array | None] = {
+            name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None
+        }
+        flat |= dict.fromkeys(missing)
         native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
         self._set(**rules, **kept, walls=tuple(walls), _native=native)
@@ -226,6 +239,17 @@ class Episode(Parameters):
 
 
 _NOWHERE = np.empty((0, 2))
+_ARRIVALS = ("person_arrivals", "person_arrivals_without")
+
+
+def _arrivals(name: str, value: npt.ArrayLike) -> Array:
+    """Return instants and places (n, 3)."""
+    array = numbers(name, value)
+    if array.size == 0:
+        return np.empty((0, 3))
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(name, "(n, 3)", array.shape)
+    return np.ascontiguousarray(array)
 
 
 def _frozen(array: Array) -> Array:

@@ -282,6 +282,7 @@ def evaluate_world(
     people: npt.ArrayLike,
     *,
     person_goals: npt.ArrayLike,
+    person_arrival_time: npt.ArrayLike = (),
     step: float,
     time_limit: float,
     robots: npt.ArrayLike = (),
@@ -297,6 +298,9 @@ def evaluate_world(
         Positions of the people in m; NaN while one is absent.
     person_goals : array_like, shape (n, 2)
         Goals of the people in m.
+    person_arrival_time : array_like, shape (n,)
+        When people arrived, in s, NaN for who did not; for people who leave and are recorded no more. Empty:
+        the first instants within ``person_tolerance`` of the goals.
     step : float
         Time between two instants in s.
     time_limit : float
@@ -335,6 +339,9 @@ def evaluate_world(
     goals = points("person_goals", person_goals) if not empty("person_goals", person_goals) else np.empty((0, 2))
     if len(goals) != places.shape[1]:
         raise ShapeError("person_goals", f"({places.shape[1]}, 2)", goals.shape)
+    times = numbers("person_arrival_time", person_arrival_time)
+    if times.size > 0 and times.shape != (places.shape[1],):
+        raise ShapeError("person_arrival_time", f"({places.shape[1]},)", times.shape)
     radii = numbers("robot_radius", robot_radius)
     if radii.ndim == 1 and radii.shape != (machines.shape[1],):
         raise ShapeError("robot_radius", f"({machines.shape[1]},)", radii.shape)
@@ -342,6 +349,7 @@ def evaluate_world(
         people=places.reshape(-1, 2),
         robots=machines.reshape(-1, 2),
         person_goals=goals,
+        person_arrival_time=times if times.size > 0 else None,
         robot_radius=np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
         step=number("step", step),
         time_limit=number("time_limit", time_limit),

@@ -2,7 +2,10 @@
 
 use crate::lanes::Vector2;
 
-use super::episode::{Episode, Paths, Without};
+use super::episode::{Episode, KnownArrival, Paths, Without};
+
+/// Share of a step by which an arrival may miss an instant.
+const ROUNDING: f64 = 1e-6;
 
 /// Differences of the people, over all instants.
 pub(super) struct Effect {
@@ -24,8 +27,16 @@ impl Effect {
         };
         let (mut delay, mut detour, mut both, mut blocked) = (0.0, 0.0, 0, 0);
         for (person, goal) in without.goals.iter().enumerate() {
-            let arrival = |people| Arrival::of(people, episode, person, *goal);
-            match (arrival(&episode.people), arrival(&without.people)) {
+            let [with, alone] = match without.arrivals {
+                None => [&episode.people, &without.people]
+                    .map(|people| Arrival::near(people, episode, person, *goal)),
+                Some([with, alone]) => {
+                    [(&episode.people, with), (&without.people, alone)].map(|(people, known)| {
+                        Arrival::known(people, person, &known[person], episode.rules.step)
+                    })
+                }
+            };
+            match (with, alone) {
                 (Some(with), Some(alone)) => {
                     delay += with.time - alone.time;
                     detour += with.length - alone.length;
@@ -54,7 +65,7 @@ pub(super) struct Arrival {
 
 impl Arrival {
     /// The first instant within the tolerance of the goal.
-    pub fn of(
+    pub fn near(
         people: &Paths<'_>,
         episode: &Episode<'_>,
         person: usize,
@@ -64,6 +75,31 @@ impl Arrival {
         let (instant, length) = arrival(people, person, (goal, rules.person_tolerance))?;
         Some(Self {
             time: instant as f64 * rules.step,
+            length,
+        })
+    }
+
+    /// An arrival that is known, with the length of the path up to it.
+    pub fn known(
+        people: &Paths<'_>,
+        person: usize,
+        arrival: &KnownArrival,
+        step: f64,
+    ) -> Option<Self> {
+        if arrival.time.is_nan() {
+            return None;
+        }
+        let before = |instant: &usize| *instant as f64 <= arrival.time / step + ROUNDING;
+        let recorded = (0..people.instants()).take_while(before);
+        let places = recorded.filter_map(|instant| people.place(instant, person));
+        let mut length = 0.0;
+        let mut last: Option<Vector2<f64>> = None;
+        for place in places.chain([arrival.place]) {
+            length += last.map_or(0.0, |last| (place - last).norm());
+            last = Some(place);
+        }
+        Some(Self {
+            time: arrival.time,
             length,
         })
     }

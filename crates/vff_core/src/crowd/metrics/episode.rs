@@ -148,6 +148,28 @@ pub struct Without<'a> {
     pub people: Paths<'a>,
     /// Goals of the people, in m; NaN for people without one.
     pub goals: &'a [Point],
+    /// Arrivals of the people with robots and without them, where they are known; `None`: the first instants
+    /// near the goals.
+    pub arrivals: Option<[&'a [KnownArrival]; 2]>,
+}
+
+/// When and where a person reached the goal. Who leaves there is recorded no more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownArrival {
+    /// When, in s; NaN for who did not.
+    pub time: f64,
+    /// Where, in m.
+    pub place: Point,
+}
+
+impl KnownArrival {
+    fn check(&self, name: &str) -> Result<()> {
+        if self.time.is_nan() {
+            return Ok(());
+        }
+        not_negative(name, self.time)?;
+        finite_pair(name, self.place.into()).map(|_| ())
+    }
 }
 
 /// One robot among people.
@@ -208,6 +230,16 @@ impl Episode<'_> {
             for (index, goal) in without.goals.iter().enumerate() {
                 if !sound(goal) {
                     finite_pair(&format!("person_goals[{index}]"), (*goal).into())?;
+                }
+            }
+            let names = ["person_arrivals", "person_arrivals_without"];
+            for (name, known) in names
+                .into_iter()
+                .zip(without.arrivals.into_iter().flatten())
+            {
+                same(name, "people", known.len(), count)?;
+                for (index, each) in known.iter().enumerate() {
+                    each.check(&format!("{name}[{index}]"))?;
                 }
             }
         }

@@ -13,7 +13,7 @@ mod travel;
 mod whole;
 
 pub use declared::{Kind, Metric, ROBOT_METRICS, RobotMetrics, WORLD_METRICS, WorldMetrics};
-pub use episode::{Episode, Paths, Rules, Without};
+pub use episode::{Episode, KnownArrival, Paths, Rules, Without};
 pub use whole::{Whole, evaluate_world};
 
 use contacts::Contacts;

@@ -20,6 +20,8 @@ pub struct Whole<'a> {
     pub people: Paths<'a>,
     /// Goals of the people, in m; NaN for people without one.
     pub goals: &'a [Vector2<f64>],
+    /// When they arrived, in s, NaN for who did not; `None`: at the first instants near the goals.
+    pub arrival_times: Option<&'a [f64]>,
     /// Positions of the robots.
     pub robots: Paths<'a>,
     /// Radii of the robots, in m.
@@ -55,6 +57,19 @@ impl Whole<'_> {
             self.radii.len(),
             self.robots.bodies(),
         )?;
+        for (index, time) in self.arrival_times.into_iter().flatten().enumerate() {
+            if !time.is_nan() {
+                not_negative(&format!("person_arrival_time[{index}]"), *time)?;
+            }
+        }
+        if let Some(times) = self.arrival_times {
+            same(
+                "person_arrival_time",
+                "people",
+                times.len(),
+                self.goals.len(),
+            )?;
+        }
         for (index, radius) in self.radii.iter().enumerate() {
             positive(&format!("robot_radius[{index}]"), *radius)?;
         }
@@ -73,8 +88,11 @@ fn totals(world: &Whole<'_>) -> WorldMetrics {
     let (mut speed, mut steps) = (0.0, 0_u64);
     for person in 0..count {
         let aim = (world.goals[person], world.rules.person_tolerance);
-        let arrived = arrival(people, person, aim);
-        time += arrived.map_or(world.time_limit, |(instant, _)| instant as f64 * step);
+        let near = || Some(arrival(people, person, aim)?.0 as f64 * step);
+        let arrived = world.arrival_times.map_or_else(near, |times| {
+            Some(times[person]).filter(|time| !time.is_nan())
+        });
+        time += arrived.unwrap_or(world.time_limit);
         left += u32::from(has_left(people, person));
         deadlocked += u32::from(arrived.is_none() && stands(people, person, step));
         for instant in 1..instants {
