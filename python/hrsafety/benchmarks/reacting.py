@@ -14,10 +14,10 @@ from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
+from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.shield_warnings import Motion
-from hrsafety.navigation.trajectory import CONTACT_SPEED
 
-__all__ = ["REACTING", "SCENES", "touched_at_fault"]
+__all__ = ["REACTING", "SCENES"]
 
 LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
 STEP_ERROR = Motion(nav.HolonomicRobot(), 0.05, 0.05).execution_error
@@ -82,7 +82,7 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
         table = nav.metrics.evaluate_many(episodes, threads=case.threads)
         contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
-            at_fault = touched_at_fault(episodes[row], float(table.arrival_time[row]))
+            at_fault = contacts_of(episodes[row], float(table.arrival_time[row])).at_fault
             yield Row(
                 case=index,
                 outcome="collided" if contacts[row] else each.outcomes[0],
@@ -95,25 +95,6 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
             )
 
     return run
-
-
-def touched_at_fault(episode: nav.metrics.Episode, arrival_time: float) -> int:
-    """Return the number of people toward whom the robot moved at some instant of a contact, up to its arrival."""
-    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
-    if people.size == 0 or len(own) < 2:
-        return 0
-    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
-    offset = people - own[:, None]
-    distance = np.linalg.norm(offset, axis=2)
-    touching = distance < episode.robot_radius + np.asarray(episode.person_radius)
-    velocity = np.diff(own, axis=0)[:, None] / episode.step
-    with np.errstate(divide="ignore", invalid="ignore"):
-        before = (velocity * offset[:-1]).sum(axis=2) / distance[:-1]
-        after = (velocity * offset[1:]).sum(axis=2) / distance[1:]
-    # A step that begins or ends in the contact counts, by the place of the person before and after it.
-    toward = np.fmax(before, after) > CONTACT_SPEED
-    touched = (touching[:-1] | touching[1:]) & toward
-    return int(touched[:last].any(axis=0).sum())
 
 
 SCENES: dict[str, Callable[[Case, int], World]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Literal, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -13,16 +13,20 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, instance, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._display import displayed
-from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
+from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.batch import simulate_batch
+from hrsafety.navigation.crowd.comparison import CrowdComparison
+from hrsafety.navigation.crowd.table import CrowdTable
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.python_law import AnyLaw
-from hrsafety.navigation.many import Progress, Seeds, simulate_many
+from hrsafety.navigation.many import simulate_many
+from hrsafety.navigation.paired_runs import PairedRuns
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_arguments import Progress, Seeds
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
-from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table
+from hrsafety.tables import Columns
 
 __all__ = ["Comparison", "Metric", "Standing", "compare", "step_cost"]
 
@@ -62,7 +66,7 @@ class Standing:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class Comparison(Table):
+class Comparison(PairedRuns[RunTable]):
     """Runs of several laws in the same episodes, a scenario and a seed each: rows are laws, columns episodes.
 
     Attributes
@@ -88,33 +92,6 @@ class Comparison(Table):
     """
 
     runs: RunTable
-
-    @property
-    def laws(self) -> tuple[str, ...]:
-        """Names of the laws."""
-        return self.runs.law_names
-
-    @property
-    def scenario_names(self) -> Sequence[str]:
-        """Names of the scenarios."""
-        return self.runs.scenario_names
-
-    @property
-    def scenario(self) -> npt.NDArray[np.int64]:
-        """Index of each episode's scenario."""
-        first: npt.NDArray[np.int64] = self._by_law(self.runs.scenario_index)[0]
-        return first
-
-    @property
-    def seed(self) -> npt.NDArray[np.uint64]:
-        """Seed of each episode."""
-        first: npt.NDArray[np.uint64] = self._by_law(self.runs.seed)[0]
-        return first
-
-    @property
-    def outcome(self) -> npt.NDArray[np.str_]:
-        """How each run ended."""
-        return self._by_law(self.runs.outcome)
 
     @property
     def arrival_time(self) -> Array:
@@ -150,14 +127,6 @@ class Comparison(Table):
     def performance_total(self) -> Array:
         """Criterion H."""
         return self._by_law(self.runs.performance_total)
-
-    def _by_law(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        return values.reshape(len(self.laws), -1, *values.shape[1:])
-
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Why episodes may not mean what they seem to: the first warning of each kind, and how many follow."""
-        return self.runs.warnings
 
     def columns(self) -> Columns:
         """Return the columns of the runs by name, a row for each law and episode.
@@ -239,41 +208,41 @@ class Comparison(Table):
             If there is no such law or metric.
         """
         word("metric", metric, METRICS)
-        rows = [self._row("first", first), self._row("second", second)]
-        one, other = getattr(self, metric)[rows]
-        used = np.isfinite(one) & np.isfinite(other)
-        if metric in ("arrival_time", "energy", "path_length"):
-            used &= (self.outcome[rows] == "arrived").all(axis=0)
-        return mean_interval(one[used] - other[used])
+        successful = metric in ("arrival_time", "energy", "path_length")
+        return self._difference(first, second, getattr(self, metric), successful=successful)
 
-    def contacts_compared(self, first: str, second: str) -> Paired:
-        """Compare the contacts of two laws in the same episodes by the exact McNemar test.
 
-        Parameters
-        ----------
-        first, second : str
-            Names of the laws.
+@overload
+def compare(
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    *,
+    seeds: Seeds | None = ...,
+    built: AsBuilt | None = ...,
+    weights: Sequence[float] = ...,
+    integrator: Integrator = ...,
+    step: float = ...,
+    hold: bool = ...,
+    stop_on_contact: bool = ...,
+    threads: int | None = ...,
+    progress: Progress | None = ...,
+) -> Comparison: ...
 
-        Returns
-        -------
-        Paired
-            Episodes in which just one of them touched something, and the p value.
 
-        Raises
-        ------
-        InvalidParameterError
-            If there is no such law.
-        """
-        touched = self.outcome == "collided"
-        return compare_paired(touched[self._row("first", first)], touched[self._row("second", second)])
-
-    def _row(self, argument: str, law: str) -> int:
-        word(argument, law, self.laws)
-        return self.laws.index(law)
+@overload
+def compare(
+    scenarios: World | Sequence[World] | Mapping[str, World],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    *,
+    seeds: Seeds | None = ...,
+    people_alone: bool = ...,
+    threads: int | None = ...,
+    progress: Progress | None = ...,
+) -> CrowdComparison: ...
 
 
 def compare(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
     laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
     *,
     seeds: Seeds | None = None,
@@ -283,22 +252,23 @@ def compare(
     step: float = 0.01,
     hold: bool = True,
     stop_on_contact: bool = False,
+    people_alone: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> Comparison:
+) -> Comparison | CrowdComparison:
     """Run every law in the same scenarios with the same seeds, and compare them episode by episode.
 
     Parameters
     ----------
-    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
-        Where; without names they are numbered.
+    scenarios : Scenario or World, sequence of them, or mapping of str to them
+        Where, scenarios or worlds of people that react; without names they are numbered.
     laws : law, sequence of laws, or mapping of str to law
         The laws, by the names under which they appear, those of the package and laws of your own
         (`PythonLaw`); without names they are called by their class.
     seeds : int, iterable of int, or None
         Seeds for noise and for planners that draw, or their number; each scenario is run with each of
         them, with its own when ``None``.
-    built, weights, integrator, step, hold, stop_on_contact
+    built, weights, integrator, step, hold, stop_on_contact, people_alone
         As for `simulate_many`.
     threads : int or None
         Number of threads; all cores when ``None``. Never changes a bit of the result.
@@ -307,8 +277,9 @@ def compare(
 
     Returns
     -------
-    Comparison
-        Every run; shares with intervals, and differences of the same episodes.
+    Comparison or CrowdComparison
+        Every run; shares with intervals, and differences of the same episodes. Of worlds with the social
+        metrics.
 
     Raises
     ------
@@ -329,7 +300,7 @@ def compare(
     >>> result.outcome[:, 0].tolist()
     ['arrived', 'arrived']
     """
-    runs = simulate_many(
+    runs: RunTable | CrowdTable = simulate_many(  # type: ignore[call-overload, misc]  # either kind
         scenarios,
         laws,
         seeds=seeds,
@@ -339,10 +310,11 @@ def compare(
         step=step,
         hold=hold,
         stop_on_contact=stop_on_contact,
+        people_alone=people_alone,
         threads=threads,
         progress=progress,
     )
-    return Comparison(runs=runs)
+    return CrowdComparison(runs=runs) if isinstance(runs, CrowdTable) else Comparison(runs=runs)
 
 
 def step_cost(law: AnyLaw, scenario: Scenario, *, repeats: int = 5) -> float:

@@ -4,36 +4,77 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, cast, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, checked_seed, count, flag, instance, number, sequence, thread_count
-from hrsafety._bounds import MOST_PATH_NUMBERS, MOST_SEEDS, MOST_TABLE_ROWS
+from hrsafety._arguments import Array, callback, flag, number, thread_count
+from hrsafety._bounds import MOST_PATH_NUMBERS, MOST_TABLE_ROWS
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
-from hrsafety.navigation.batch import gain_sets
+from hrsafety.navigation.crowd.study import CrowdStudy
+from hrsafety.navigation.crowd.table import CrowdTable
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
+from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_arguments import (
+    Numbered,
+    Progress,
+    Seeds,
+    checked_seeds,
+    named_laws,
+    named_scenarios,
+    sets_of,
+)
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
 from hrsafety.navigation.simulation import as_built
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns
 
-__all__ = ["Progress", "Seeds", "checked_seeds", "named_laws", "named_scenarios", "simulate_many"]
+__all__ = ["simulate_many"]
 
-Seeds = int | Iterable[int]
-Progress = Callable[[int, int], object]
+
+@overload
+def simulate_many(
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    *,
+    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = ...,
+    seeds: Seeds | None = ...,
+    built: AsBuilt | None = ...,
+    paths: bool = ...,
+    weights: Sequence[float] = ...,
+    integrator: Integrator = ...,
+    step: float = ...,
+    hold: bool = ...,
+    stop_on_contact: bool = ...,
+    descent: bool = ...,
+    threads: int | None = ...,
+    progress: Progress | None = ...,
+) -> RunTable: ...
+
+
+@overload
+def simulate_many(
+    scenarios: World | Sequence[World] | Mapping[str, World],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    *,
+    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = ...,
+    seeds: Seeds | None = ...,
+    people_alone: bool = ...,
+    threads: int | None = ...,
+    progress: Progress | None = ...,
+) -> CrowdTable: ...
 
 
 def simulate_many(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
+    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
     laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
     *,
     gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
@@ -46,9 +87,10 @@ def simulate_many(
     hold: bool = True,
     stop_on_contact: bool = False,
     descent: bool = False,
+    people_alone: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> RunTable:
+) -> RunTable | CrowdTable:
     """Run every law in every scenario with every seed and every gain set, on all cores.
 
     Each run has the bits of `simulate` and `evaluate`, on any number of threads. Point masses run side
@@ -57,11 +99,12 @@ def simulate_many(
 
     Parameters
     ----------
-    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
-        Where; without names they are numbered.
+    scenarios : Scenario or World, sequence of them, or mapping of str to them
+        Where, scenarios or worlds of people that react; without names they are numbered.
     laws : law, sequence of laws, or mapping of str to law
-        What drives the robot, laws of the package and laws of your own (`PythonLaw`), which run on one
-        thread; without names they are called by their class, those of one class numbered.
+        What drives the robot, in a world every robot: laws of the package and laws of your own
+        (`PythonLaw`), which run on one thread; without names they are called by their class, those of
+        one class numbered.
     gains : array_like of shape (n, g), mapping, or None
         Gain sets in the order of ``GAIN_NAMES`` of the laws, or arrays by these names that broadcast,
         the missing ones taken from each law. ``None``: the gains of each law.
@@ -80,6 +123,9 @@ def simulate_many(
         As for `simulate`.
     descent : bool
         Whether ``descent_share`` is computed; costs time. For point masses only.
+    people_alone : bool
+        Of worlds: whether their people are simulated without the robots, too; delays and detours of people
+        need it.
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``.
     progress : callable or None
@@ -87,8 +133,9 @@ def simulate_many(
 
     Returns
     -------
-    RunTable
-        One row for each (law, scenario, seed, gains) in this order, the gains fastest.
+    RunTable or CrowdTable
+        One row for each (law, scenario, seed, gains) in this order, the gains fastest; of worlds a
+        `CrowdTable` with the social metrics, a row for each robot.
 
     Raises
     ------
@@ -112,11 +159,27 @@ def simulate_many(
     >>> runs = nav.simulate_many({"c1": noisy}, laws, seeds=20)
     >>> len(runs), runs.select(law="field").success.runs
     (40, 20)
+
+    Among people that react:
+
+    >>> worlds = [scenarios.circle_crossing(case) for case in range(3)]
+    >>> crowds = nav.simulate_many(worlds, nav.OptimalReciprocalCollisionAvoidance(), people_alone=True)
+    >>> crowds.outcome.tolist(), bool((crowds.person_delay < 1.0).all())
+    (['arrived', 'arrived', 'arrived'], True)
     """
-    places, drivers = named_scenarios(scenarios), named_laws(laws)
-    sets = _sets(drivers, gains)
+    named, drivers = named_scenarios(scenarios), named_laws(laws)
+    sets = sets_of(drivers, gains)
     drawn = None if seeds is None else checked_seeds(seeds)
-    robots = list(places.rows[:1] if isinstance(places, _Numbered) else places.values())
+    if not isinstance(named, Numbered) and isinstance(next(iter(named.values())), World):
+        own = {"built": built, "paths": paths, "weights": weights, "integrator": integrator, "step": step}
+        _refuse_in_worlds(own | {"hold": hold, "stop_on_contact": stop_on_contact, "descent": descent})
+        worlds = cast("Mapping[str, World]", named)
+        crowds = CrowdStudy(worlds, drivers, sets, drawn, flag("people_alone", people_alone))
+        return crowds.run(thread_count(threads), callback("progress", progress))
+    if flag("people_alone", people_alone):
+        raise InvalidParameterError("people_alone", "be False for scenarios, whose people do not react", people_alone)
+    places = cast("Mapping[str, Scenario]", named)
+    robots = list(places.rows[:1] if isinstance(places, Numbered) else places.values())
     robot = as_built(robots, built, integrator, hold=hold)
     study = _Study(places, drivers, sets, drawn, robot, number("step", step))
     if flag("paths", paths):
@@ -133,6 +196,27 @@ def simulate_many(
     else:
         options |= {"built": robot._native, "histories": paths}
     return study.run(check_weights(weights), options, callback("progress", progress))
+
+
+_OF_SCENARIOS: Mapping[str, Any] = {
+    "built": None,
+    "paths": False,
+    "weights": (1 / 3, 1 / 3, 1 / 3),
+    "integrator": "semi_implicit_euler",
+    "step": 0.01,
+    "hold": True,
+    "stop_on_contact": False,
+    "descent": False,
+}
+"""Options that worlds do not have, and their defaults."""
+
+
+def _refuse_in_worlds(given: Mapping[str, object]) -> None:
+    """Refuse options that worlds do not have."""
+    for name, value in given.items():
+        if value is not _OF_SCENARIOS[name] and value != _OF_SCENARIOS[name]:
+            remedy = "worlds have a step of their own, and run to their end"
+            raise InvalidParameterError(name, "be left out for worlds", value, remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +273,7 @@ class _Study:
 
     def _episodes(self) -> tuple[Sequence[_hrsafety.Scenario] | _hrsafety.Scenarios, npt.NDArray[np.uint64]]:
         """Return every scenario with each of its seeds, and the seeds."""
-        if isinstance(self.scenarios, _Numbered):
+        if isinstance(self.scenarios, Numbered):
             rows = self.scenarios.rows
             if self.seeds is None:
                 return rows._native, rows.seeds
@@ -243,9 +327,9 @@ class _Study:
         }
         return RunTable(
             law_names=tuple(self.laws),
-            scenario_names=self.scenarios.names if isinstance(self.scenarios, _Numbered) else tuple(self.scenarios),
+            scenario_names=self.scenarios.names if isinstance(self.scenarios, Numbered) else tuple(self.scenarios),
             laws=tuple(self.laws.values()),
-            scenarios=self.scenarios.rows if isinstance(self.scenarios, _Numbered) else tuple(self.scenarios.values()),
+            scenarios=self.scenarios.rows if isinstance(self.scenarios, Numbered) else tuple(self.scenarios.values()),
             gain_names=tuple(names),
             law_index=np.repeat(np.arange(len(rows)), rows),
             scenario_index=episode // (len(seeds) // len(self.scenarios)),
@@ -295,141 +379,3 @@ def _padded(values: Array, longest: int) -> Array:
 def _shifted(progress: Progress, before: int, total: int) -> Progress:
     """Return a progress callback that counts the runs of the laws before."""
     return lambda done, _: progress(before + done, total)
-
-
-# ---- what is given ----------------------------------------------------------------------------------
-
-
-class _Numbered(Mapping[str, Scenario]):
-    """Scenarios from arrays by their numbers."""
-
-    __slots__ = ("names", "rows")
-
-    def __init__(self, rows: Scenarios) -> None:
-        self.rows = rows
-        self.names = Numbers(len(rows))
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.names)
-
-    def __getitem__(self, name: str) -> Scenario:
-        return self.rows[self.names.index(name)]
-
-
-def named_scenarios(scenarios: object) -> Mapping[str, Scenario]:
-    """Return the scenarios by name, at least one.
-
-    Parameters
-    ----------
-    scenarios : Scenario, sequence or mapping
-        As for `simulate_many`.
-
-    Returns
-    -------
-    mapping of str to Scenario
-        Without names they are numbered.
-
-    Raises
-    ------
-    InvalidParameterError
-        If there is none, or one is of another kind.
-    """
-    if isinstance(scenarios, Scenarios):
-        return _Numbered(scenarios)
-    rule = "be a Scenario, a sequence of them or a mapping of names to them"
-    given = _listed("scenarios", rule, [scenarios] if isinstance(scenarios, Scenario) else scenarios)
-    return {key: instance(f"scenarios[{shown}]", each, Scenario) for key, shown, each in given}
-
-
-def named_laws(laws: object) -> dict[str, Law]:
-    """Return the laws by name, at least one.
-
-    Parameters
-    ----------
-    laws : Law, sequence or mapping
-        As for `simulate_many`.
-
-    Returns
-    -------
-    dict of str to Law
-        Without names they are called by their class, laws in Python by their own name, from the second
-        of a name on with the next number that is free.
-
-    Raises
-    ------
-    InvalidParameterError
-        If there is none, or one is of another kind.
-    """
-    single = isinstance(laws, Law) or callable(laws) or hasattr(laws, "command") or hasattr(laws, "velocity")
-    given = _listed("laws", "be a law, a sequence of laws or a mapping of names to laws", [laws] if single else laws)
-    found = [(key, as_law(each, "laws" if single else f"laws[{shown}]")) for key, shown, each in given]
-    if isinstance(laws, Mapping):
-        return dict(found)
-    named: dict[str, Law] = {}
-    kinds: dict[str, int] = {}
-    for _, law in found:
-        kind = law.name if isinstance(law, PythonLaw) and law.name else type(law).__name__
-        kinds[kind] = kinds.get(kind, 0) + 1
-        name = kind if kinds[kind] == 1 else f"{kind} {kinds[kind]}"
-        while name in named:  # a law of the caller may be called "Masoud 2"
-            kinds[kind] += 1
-            name = f"{kind} {kinds[kind]}"
-        named[name] = law
-    return named
-
-
-def _listed(argument: str, rule: str, given: object) -> list[tuple[str, str, object]]:
-    """Return name, what an error calls it, and value of everything in a sequence or a mapping."""
-    if isinstance(given, Mapping):
-        words = {instance(f"names of {argument}", name, str): each for name, each in given.items()}
-        found = [(name, repr(name), each) for name, each in words.items()]
-    else:
-        found = [(str(index), str(index), each) for index, each in enumerate(sequence(argument, rule, given))]
-    if not found:
-        raise InvalidParameterError(argument, "hold at least one", Shown("none"))
-    return found
-
-
-def checked_seeds(seeds: Seeds) -> list[int]:
-    """Return the seeds as a list of integers, at least one.
-
-    Parameters
-    ----------
-    seeds : int or iterable of int
-        The seeds, or their number.
-
-    Returns
-    -------
-    list of int
-        The seeds.
-
-    Raises
-    ------
-    InvalidParameterError
-        If there is none, there are too many, or one is not an integer from 0 to 2**64 - 1.
-    """
-    if isinstance(seeds, (int, np.integer)):
-        return list(range(count("seeds", seeds, most=MOST_SEEDS)))
-    rule = "be a positive integer or hold integers from 0 to 2**64 - 1"
-    # A range may be longer than memory.
-    given = sequence("seeds", rule, itertools.islice(seeds, MOST_SEEDS + 1) if isinstance(seeds, range) else seeds)
-    if len(given) > MOST_SEEDS:
-        raise InvalidParameterError("seeds", f"hold at most {MOST_SEEDS} seeds", Shown("more"))
-    checked = [checked_seed(f"seeds[{index}]", seed) for index, seed in enumerate(given)]
-    if not checked:
-        raise InvalidParameterError("seeds", "hold at least one seed", Shown("an empty list"))
-    return checked
-
-
-def _sets(laws: Mapping[str, Law], gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None) -> list[Array]:
-    """Return the gain sets of each law."""
-    kinds = {law.GAIN_NAMES: name for name, law in laws.items()}
-    if gains is not None and len(kinds) > 1:
-        (one, first), (other, second) = list(kinds.items())[:2]
-        found = f'{", ".join(one)} of "{first}" and {", ".join(other)} of "{second}"'
-        remedy = "run the laws one by one, or give laws with other gains"
-        raise InvalidParameterError("gains", "be None for laws with gains of different names", Shown(found), remedy)
-    return [gain_sets(law, gains) for law in laws.values()]

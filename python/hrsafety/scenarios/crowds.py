@@ -9,7 +9,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count
 from hrsafety._bounds import MOST_OBSTACLES
-from hrsafety.navigation.many import Seeds
+from hrsafety.navigation.run_arguments import Seeds
 from hrsafety.navigation.scenario_arrays import Scenarios, checked_robot
 from hrsafety.scenarios.drawn import seeds_of
 

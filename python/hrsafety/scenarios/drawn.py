@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hrsafety._bounds import MOST_BODIES
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.many import Seeds, checked_seeds
+from hrsafety.navigation.run_arguments import Seeds, checked_seeds
 
 __all__ = ["seeds_of"]
 

@@ -72,6 +72,7 @@ COUNTS: dict[str, tuple[Callable[[int], Any], tuple[int, ...]]] = {
     "evaluations": (lambda count: searched(method="cma_es", evaluations=count), HUGE),
     "front refinements": (lambda count: nav.gains.pareto_front([SCENE], grid=(2, 1, 1, 1), refinements=count), HUGE),
     "seeds": (lambda count: nav.simulate_many(SCENE, FIELD, seeds=count), HUGE),
+    "seeds of worlds": (lambda count: nav.simulate_many(scenarios.circle_crossing(0), FIELD, seeds=count), HUGE),
     "range of seeds": (lambda count: nav.simulate_many(SCENE, FIELD, seeds=range(count)), (2**31, 2**53)),
     "scenes of a batch": (lambda count: scenarios.random_traffic_batch(count), HUGE),
     "people of a batch": (lambda count: scenarios.random_crowd_batch(4, people=count), HUGE),

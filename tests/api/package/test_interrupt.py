@@ -34,6 +34,8 @@ WHEELS = """
 from hrsafety import scenarios
 scene, built = scenarios.configuration("c4"), nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
 """
+WORLDS = "from hrsafety import scenarios\nworlds = [scenarios.circle_crossing(case) for case in range(20)]"
+DRIVEN_AMONG_PEOPLE = "nav.simulate_many(worlds, nav.VirtualForceField(), seeds=1000, people_alone=True, threads=2)"
 REPEATED = "nav.simulate_many(scene, nav.VirtualForceField(), seeds=100_000, built=built, threads=2)"
 
 PARTS = "parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())"
@@ -76,6 +78,7 @@ JOBS = {
     "short runs, reported": (SHORT, SIMULATE.format(options="threads=1, lanes=1, progress=lambda done, total: None")),
     "planned runs": (CROWDS, PLANNED),
     "repeated runs": (WHEELS, REPEATED),
+    "worlds of people": (WORLDS, DRIVEN_AMONG_PEOPLE),
     "impacts": (SPEEDS, BATCH.format(more="")),
     "impacts, reported": (SPEEDS, BATCH.format(more=", progress=lambda done, total: None")),
     "one impact, exact": (PARTS, RECORD.format(method="exact")),

@@ -1,0 +1,195 @@
+"""Many runs of laws in worlds of people, one robot a row."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, word
+from hrsafety._statistics import Share, wilson
+from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld
+from hrsafety.plausibility import ResultWarning
+from hrsafety.tables import SHOWN_ROWS, Columns, Table, unit_suffix
+
+__all__ = ["CrowdTable"]
+
+_OF_ROWS = ("law_index", "scenario_index", "gain_index", "robot", "seed", "gains", "outcome", "end_time")
+_CONTACTS = ("contacts_moving", "contacts_standing", "contacts_at_fault")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class CrowdTable(
+    Table, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]], MeasuredWorld[Array, npt.NDArray[np.int64]]
+):
+    """Runs of laws in worlds of people that react, a row for each robot; made by `simulate_many` and `compare`.
+
+    The rows are ordered by law, scenario, seed, gains and robot, the robots fastest. Columns that a
+    `RunTable` has, too, mean the same. Every metric of ``nav.metrics.METRICS`` (of the robot) and of
+    ``WORLD_METRICS`` (of its world) is an attribute and a column.
+
+    Attributes
+    ----------
+    law_names, scenario_names : tuple of str
+        Names of the laws and of the worlds.
+    laws, scenarios : sequence
+        The laws and the worlds by these names.
+    gain_names : tuple of str
+        Names of the gains; of several kinds of laws, those of all of them.
+    law_index, scenario_index, gain_index : ndarray of int, shape (n,)
+        Which law, which world and which gain set.
+    robot : ndarray of int, shape (n,)
+        Which robot of the world.
+    seed : ndarray of int, shape (n,)
+        Seed of each run.
+    gains : ndarray, shape (n, g)
+        Gains of each run; NaN where its law has no such gain.
+    outcome : ndarray of str, shape (n,)
+        ``"arrived"`` without a contact with people or walls, ``"collided"``, ``"timed_out"``, or
+        ``"diverged"`` where the state of the world was no longer finite.
+    end_time : ndarray, shape (n,)
+        When the world ended, in s.
+    contacts_moving, contacts_standing : ndarray of int, shape (n,)
+        Number of people touched, up to the arrival, while the robot was moving (faster than 0.05 m/s at
+        first contact), and while it stood.
+    contacts_at_fault : ndarray of int, shape (n,)
+        Number of people toward whom the robot moved, faster than 0.05 m/s, at some instant of a contact
+        with them; every contact with a wall counts.
+    values : mapping of str to ndarray, shape (n,)
+        The metrics by name.
+    warnings : tuple of ResultWarning
+        Bounds of shields that people, other robots or measurements exceed: the first of each kind.
+    """
+
+    law_names: tuple[str, ...]
+    scenario_names: tuple[str, ...]
+    laws: tuple[Law, ...]
+    scenarios: Sequence[World]
+    gain_names: tuple[str, ...]
+    law_index: npt.NDArray[np.int64]
+    scenario_index: npt.NDArray[np.int64]
+    gain_index: npt.NDArray[np.int64]
+    robot: npt.NDArray[np.int64]
+    seed: npt.NDArray[np.uint64]
+    gains: Array
+    outcome: npt.NDArray[np.str_]
+    end_time: Array
+    contacts_moving: npt.NDArray[np.int64]
+    contacts_standing: npt.NDArray[np.int64]
+    contacts_at_fault: npt.NDArray[np.int64]
+    values: Mapping[str, npt.NDArray[Any]]
+    warnings: tuple[ResultWarning, ...] = field(default=())
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the column of a metric."""
+        # Pickling asks before there are values.
+        if name in METRICS or name in WORLD_METRICS:
+            return object.__getattribute__(self, "values")[name]
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.outcome)
+
+    @property
+    def law(self) -> npt.NDArray[np.str_]:
+        """Name of the law of each run."""
+        return np.array(self.law_names)[self.law_index]
+
+    @property
+    def scenario(self) -> npt.NDArray[np.str_]:
+        """Name of the world of each run."""
+        return np.array(self.scenario_names)[self.scenario_index]
+
+    @property
+    def success_share(self) -> Share:
+        """Share of the rows that arrived without a contact, with its 95 % Wilson interval."""
+        return wilson(int((self.outcome == "arrived").sum()), len(self))
+
+    @property
+    def contact_share(self) -> Share:
+        """Share of the rows with a contact, with its 95 % Wilson interval."""
+        return wilson(int((self.outcome == "collided").sum()), len(self))
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, ready for a data frame.
+
+        Returns
+        -------
+        dict of str to ndarray
+            What each row is, how it ended, its contacts, and the metrics with their units.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> world = scenarios.circle_crossing(0, law=nav.VirtualForceField())
+        >>> table = nav.simulate_many({"circle": world}, nav.OptimalReciprocalCollisionAvoidance()).columns()
+        >>> list(table)[:3], table["outcome"].tolist(), "person_delay_s" in table
+        (['law', 'scenario', 'seed'], ['arrived'], True)
+        """
+        return self._columns(slice(None))
+
+    def _head(self) -> tuple[Columns, int]:
+        return self._columns(slice(SHOWN_ROWS)), len(self)
+
+    def _columns(self, rows: slice) -> Columns:
+        """Return the columns of some rows."""
+        found: Columns = {
+            "law": np.array(self.law_names)[self.law_index[rows]],
+            "scenario": np.array(self.scenario_names)[self.scenario_index[rows]],
+            "seed": self.seed[rows],
+            "robot": self.robot[rows],
+        }
+        units = {name: unit for law in reversed(self.laws) for name, unit in law.GAIN_UNITS.items()}
+        for index, name in enumerate(self.gain_names):
+            found[name + unit_suffix(units.get(name, ""))] = self.gains[rows, index]
+        found |= {"outcome": self.outcome[rows], "end_time_s": self.end_time[rows]}
+        found |= {name: getattr(self, name)[rows] for name in _CONTACTS}
+        for metric in (*METRICS.values(), *WORLD_METRICS.values()):
+            found[metric.name + unit_suffix(metric.unit)] = self.values[metric.name][rows]
+        return found
+
+    def select(self, *, law: str | None = None, scenario: str | None = None) -> CrowdTable:
+        """Return the runs of one law, of one world, or of both.
+
+        Parameters
+        ----------
+        law, scenario : str or None
+            Name; all when ``None``.
+
+        Returns
+        -------
+        CrowdTable
+            These runs in the same order.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such law or world.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> worlds = [scenarios.circle_crossing(case, law=nav.VirtualForceField()) for case in range(3)]
+        >>> runs = nav.simulate_many(worlds, [nav.VirtualForceField(), nav.VelocityObstacle()])
+        >>> len(runs.select(law="VelocityObstacle")), len(runs.select(scenario="2"))
+        (3, 2)
+        """
+        kept = np.ones(len(self), dtype=bool)
+        if law is not None:
+            kept &= self.law_index == self.law_names.index(word("law", law, self.law_names))
+        if scenario is not None:
+            kept &= self.scenario_index == self.scenario_names.index(word("scenario", scenario, self.scenario_names))
+        rows: dict[str, Any] = {name: getattr(self, name)[kept] for name in (*_OF_ROWS, *_CONTACTS)}
+        found = replace(self, **rows, values={name: column[kept] for name, column in self.values.items()})
+        return found if law is None else found._of_law(self.law_names.index(law))
+
+    def _of_law(self, index: int) -> CrowdTable:
+        """Return rows that are all of one law under its name alone."""
+        first = np.zeros(len(self), dtype=np.int64)
+        return replace(self, law_names=(self.law_names[index],), laws=(self.laws[index],), law_index=first)
