@@ -2,9 +2,11 @@
 
 from hrsafety.navigation import metrics as _metrics  # noqa: F401  # before worlds: comparisons, which it names, know them
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.crowd.calibration import PeopleFit, fit_people
 from hrsafety.navigation.crowd.circle import circle_starts
 from hrsafety.navigation.crowd.comparison import CrowdComparison, CrowdStanding
 from hrsafety.navigation.crowd.decisions import decide
+from hrsafety.navigation.crowd.diagram import FundamentalDiagram, fundamental_diagram, weidmann_speed
 from hrsafety.navigation.crowd.pedestrians import (
     CollisionFreeSpeed,
     Moussaid,
@@ -13,6 +15,7 @@ from hrsafety.navigation.crowd.pedestrians import (
     SocialForce1995,
     SocialForce2000,
 )
+from hrsafety.navigation.crowd.predictions import PredictionErrors, prediction_errors
 from hrsafety.navigation.crowd.scores import crowd_batch, episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import simulate_crowd, simulate_crowds
 from hrsafety.navigation.crowd.table import CrowdTable
@@ -27,9 +30,12 @@ __all__ = [
     "CrowdTable",
     "CrowdTrajectories",
     "Divergence",
+    "FundamentalDiagram",
     "Moussaid",
     "Pedestrian",
+    "PeopleFit",
     "Person",
+    "PredictionErrors",
     "ReciprocalAvoidance",
     "SocialForce1995",
     "SocialForce2000",
@@ -39,7 +45,11 @@ __all__ = [
     "crowd_batch",
     "decide",
     "episodes_of",
+    "fit_people",
+    "fundamental_diagram",
+    "prediction_errors",
     "simulate_crowd",
     "simulate_crowds",
+    "weidmann_speed",
     "world_metrics",
 ]

@@ -1,0 +1,164 @@
+"""The fundamental diagram: how fast people walk, the denser they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, instance, numbers, positive, sequence
+from hrsafety.errors import InvalidParameterError, Shown, SimulationError
+from hrsafety.navigation.crowd.simulation import simulate_crowds
+from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.world import World
+from hrsafety.tables import Columns, Table
+
+__all__ = ["FundamentalDiagram", "fundamental_diagram", "weidmann_speed"]
+
+FREE_SPEED, STEEPNESS, JAM = 1.34, 1.913, 5.4
+"""Of Weidmann (1993): speed of a person alone in m/s, 1/m^2, and the density at which nobody walks, in 1/m^2."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class FundamentalDiagram(Table):
+    """Speed over density of people in corridors; made by `fundamental_diagram`.
+
+    Attributes
+    ----------
+    density : ndarray of shape (n,)
+        People for each square meter.
+    speed : ndarray of shape (n,)
+        Mean velocity along the corridor in m/s.
+    reference : ndarray of shape (n,)
+        Speed of Weidmann (1993) at the density, in m/s.
+    """
+
+    density: Array
+    speed: Array
+    reference: Array
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean squared difference from the reference, in m/s."""
+        return float(np.sqrt(np.mean((self.speed - self.reference) ** 2)))
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each corridor.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Units are in the names.
+        """
+        return {
+            "density_1_per_m2": self.density,
+            "speed_m_per_s": self.speed,
+            "reference_m_per_s": self.reference,
+        }
+
+
+def weidmann_speed(density: npt.ArrayLike) -> Array:
+    """Return the speed of people at a density, ``1.34 (1 - exp(-1.913 (1/density - 1/5.4)))``, Weidmann (1993).
+
+    Parameters
+    ----------
+    density : array_like
+        People for each square meter, above 0 and at most 5.4.
+
+    Returns
+    -------
+    ndarray
+        Speeds in m/s.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a density is out of range.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> nav.crowd.weidmann_speed([0.5, 2.0]).round(2).tolist()
+    [1.3, 0.61]
+    """
+    given = numbers("density", density)
+    wrong = given[~((given > 0.0) & (given <= JAM))]
+    if wrong.size > 0:
+        raise InvalidParameterError("density", f"be above 0 and at most {JAM}", float(wrong.flat[0]))
+    found: Array = FREE_SPEED * (1.0 - np.exp(-STEEPNESS * (1.0 / given - 1.0 / JAM)))
+    return found
+
+
+def fundamental_diagram(
+    worlds: Iterable[World],
+    *,
+    width: float = 3.0,
+    threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> FundamentalDiagram:
+    """Return how fast people walk in corridors that repeat themselves along x, the denser they are.
+
+    Parameters
+    ----------
+    worlds : iterable of World
+        Corridors with a period along x, all of whose people walk to +x, as of ``scenarios.corridor`` with
+        ``two_way=False``.
+    width : float
+        Their width in m.
+    threads : int or None
+        Number of threads; all cores when ``None``. Never changes a bit of the result.
+    progress : callable or None
+        Progress callback ``(done, total)``.
+
+    Returns
+    -------
+    FundamentalDiagram
+        A row for each world: the mean velocity along x over the second half of its time.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a world does not repeat itself along x, has nobody or has sources, or is denser than 5.4 people
+        for each square meter.
+    SimulationError
+        If the state of a world became non-finite.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, scenarios
+    >>> worlds = [
+    ...     scenarios.corridor(n, length=20, two_way=False, radius=0.2, time_limit=20) for n in (15, 120)
+    ... ]
+    >>> diagram = nav.crowd.fundamental_diagram(worlds)
+    >>> diagram.density.tolist(), bool(diagram.speed[0] > 1.0 > diagram.speed[1])
+    ([0.25, 2.0], True)
+    """
+    given = sequence("worlds", "be a sequence of World", worlds)
+    wide = positive("width", width)
+    density = np.array([_density(f"worlds[{index}]", world, wide) for index, world in enumerate(given)])
+    reference = weidmann_speed(density)
+    runs = simulate_crowds(given, threads=threads, progress=progress)
+    speed = np.array([_speed(index, run) for index, run in enumerate(runs)])
+    return FundamentalDiagram(density=density, speed=speed, reference=reference)
+
+
+def _density(name: str, world: object, width: float) -> float:
+    """Return people for each square meter."""
+    place = instance(name, world, World)
+    if place.period[0] <= 0.0:
+        raise InvalidParameterError(f"{name}.period", "repeat the world along x", place.period)
+    if not place.people or place.sources:
+        found = "nobody" if not place.people else "sources"
+        raise InvalidParameterError(f"{name}.people", "be there from the start, at least one", Shown(found))
+    return len(place.people) / (place.period[0] * width)
+
+
+def _speed(index: int, run: CrowdTrajectories) -> float:
+    """Return the mean velocity along x over the second half of the time."""
+    if run.diverged is not None:
+        raise SimulationError(f"worlds[{index}] diverged at {run.diverged.time:g} s", index)
+    first = len(run.time) // 2
+    way = run.position[-1, :, 0] - run.position[first, :, 0]
+    return float(way.mean() / (run.time[-1] - run.time[first]))
