@@ -136,3 +136,83 @@ def test_one_step_of_collision_free_speed_is_that_of_jupedsim() -> None:
             walls=[[*area, area[0]]],
         )
         np.testing.assert_allclose(found * step, moved, rtol=0.0, atol=1e-10 * float(np.abs(place).max()))
+
+
+@pytest.mark.usefixtures("quiet")
+@pytest.mark.skipif(missing("pysocialforce"), reason="PySocialForce is not installed")
+def test_forces_of_1995_are_gradients_of_the_potential_of_pysocialforce() -> None:
+    from pysocialforce import potentials  # type: ignore[import-untyped]  # no type information
+
+    # Its own gradient takes forward differences, and its force class raises: only the potential is used.
+    model = nav.crowd.SocialForce1995(behind=1.0, cutoff=None)
+    potential = potentials.PedPedPotential(model.step_time, model.strength, model.range)
+    shift = 1e-5
+    compared = 0
+    for _ in range(300):
+        position, velocity = GENERATOR.uniform(-2.0, 2.0, (2, 2)), GENERATOR.uniform(-1.0, 1.0, (2, 2))
+        goal = GENERATOR.uniform(-9.0, 9.0, (2, 2))
+        way = goal - position
+        desired = way / np.linalg.norm(way, axis=1)[:, None]
+        speeds = np.linalg.norm(velocity, axis=1)
+        apart = position[:, None] - position[None]
+        # Away from the way of the other, where the potential has an edge.
+        if potential.b(apart.copy(), speeds, desired)[~np.eye(2, dtype=bool)].min() < 0.1:
+            continue
+        compared += 1
+        gradient = np.empty((2, 2))
+        for axis in (0, 1):
+            moved = shift * np.eye(2)[axis]
+            ahead, back = (potential.value_r_ab(apart + sign * moved, speeds, desired) for sign in (1, -1))
+            gradient[:, axis] = ((ahead - back) / (2.0 * shift)).sum(axis=1)
+        found = nav.crowd.decide(model, position=position, velocity=velocity, goal=goal, desired_speed=1.0)
+        push = found - (desired - velocity) / model.relaxation_time
+        np.testing.assert_allclose(push, -gradient, rtol=0.0, atol=1e-5)
+    assert compared > 100
+
+
+@pytest.mark.skipif(missing("jupedsim"), reason="JuPedSim is not installed")
+def test_one_step_of_social_force_2000_is_that_of_jupedsim() -> None:
+    import jupedsim
+
+    step, radius, speed, people = 0.01, 0.2, 1.2, 12
+    area = [(-20.0, -20.0), (20.0, -20.0), (20.0, 20.0), (-20.0, 20.0)]
+    goal = (15.0, 3.0)
+    for _ in range(5):
+        # Some overlap: they press and rub.
+        place = np.array([(0.45 * (index % 4), 0.45 * (index // 4)) for index in range(people)])
+        place += GENERATOR.uniform(-0.1, 0.1, place.shape)
+        velocity = GENERATOR.uniform(-0.6, 0.6, place.shape)
+        simulation = jupedsim.Simulation(model=jupedsim.SocialForceModel(), geometry=area, dt=step)
+        stage = simulation.add_waypoint_stage(goal, 0.1)
+        journey = simulation.add_journey(jupedsim.JourneyDescription([stage]))
+        ids = [
+            simulation.add_agent(
+                jupedsim.SocialForceModelAgentParameters(
+                    position=tuple(at),
+                    velocity=tuple(moving),
+                    journey_id=journey,
+                    stage_id=stage,
+                    mass=80.0,
+                    desired_speed=speed,
+                    reaction_time=0.5,
+                    agent_scale=2000.0,
+                    obstacle_scale=2000.0,
+                    force_distance=0.08,
+                    radius=radius,
+                )
+            )
+            for at, moving in zip(place.tolist(), velocity.tolist(), strict=True)
+        ]
+        simulation.iterate()
+        reached = np.array([simulation.agent(each).position for each in ids])
+        found = nav.crowd.decide(
+            nav.crowd.SocialForce2000(),
+            position=place,
+            velocity=velocity,
+            goal=np.tile(goal, (people, 1)),
+            radius=radius,
+            desired_speed=speed,
+            walls=[[*area, area[0]]],
+        )
+        moved = (velocity + step * found) * step
+        np.testing.assert_allclose(reached - place, moved, rtol=0.0, atol=1e-10 * float(np.abs(place).max()))
