@@ -251,6 +251,18 @@ def test_mistakes_are_named_with_their_place() -> None:
         lambda: nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, np.nan)], velocity=[(0, 0)], goal=[(0, 0)])
     ).startswith("position[0] must be finite")
 
+    def decided(**changes: object) -> str:
+        given = {"position": np.zeros((2, 2)), "velocity": np.zeros((2, 2)), "goal": np.ones((2, 2))}
+        return words(lambda: nav.crowd.decide(nav.crowd.Moussaid(), **(given | changes)))  # type: ignore[arg-type]
+
+    assert decided(radius=[0.2, -0.2]).startswith("radius[1] must be positive")
+    assert decided(desired_speed=-1.0).startswith("desired_speed[0] must not be negative")
+    assert decided(awareness=[0.0, 1.1]).startswith("awareness[1] must be from 0 to 1")
+    assert decided(radius=np.nan).startswith("radius")
+    assert decided(step=0.0).startswith("step must")
+    assert decided(period=(float("inf"), 0.0)).startswith("period[0] must")
+    assert words(lambda: world(period=(0.0, float("inf")))).startswith("period[1] must")
+
 
 def test_the_interpreter_is_released() -> None:
     worlds = [scenarios.corridor(300, model=nav.crowd.Moussaid(), seed=seed, time_limit=3.0) for seed in range(2)]

@@ -37,6 +37,13 @@ def _all_finite(name: str, found: Array) -> None:
         raise InvalidParameterError(f"{name}[{index}]", "be finite", found[index].tolist())
 
 
+def _in_range(name: str, found: Array, valid: npt.NDArray[np.bool_], rule: str) -> None:
+    """Refuse what is out of range, by its index."""
+    if not valid.all():
+        index = int(np.argmin(valid))
+        raise InvalidParameterError(f"{name}[{index}]", rule, float(found[index]))
+
+
 def _rows(name: str, given: npt.ArrayLike, count: int | None = None) -> Array:
     """Return finite vectors, one for each agent."""
     found = points(name, given)
@@ -118,10 +125,17 @@ def decide(
         _column("desired_speed", desired_speed, count, 1.34),
         _column("awareness", awareness, count, 1.0),
     ]
+    _in_range("radius", columns[0], columns[0] > 0.0, "be positive")
+    _in_range("desired_speed", columns[1], columns[1] >= 0.0, "not be negative")
+    _in_range("awareness", columns[2], (columns[2] >= 0.0) & (columns[2] <= 1.0), "be from 0 to 1")
     groups = [None] * count if group is None else list(sequence("group", "be a sequence of numbers", group))
     if len(groups) != count:
         raise ShapeError("group", f"({count},)", (len(groups),))
     fronts = np.tile([1.0, 0.0], (count, 1)) if heading is None else _rows("heading", heading, count)
+    lengths = pair("period", period)
+    _in_range(
+        "period", np.array(lengths), np.isfinite(lengths) & np.greater_equal(lengths, 0.0), "be finite and not negative"
+    )
     robots = np.zeros(count, bool) if robot is None else np.asarray(robot, bool)
     if robots.shape != (count,):
         raise ShapeError("robot", f"({count},)", robots.shape)
@@ -136,7 +150,7 @@ def decide(
         heading=fronts,
         group=groups,
         step=positive("step", step),
-        period=pair("period", period),
+        period=lengths,
     )
     decision: Array = found["decision"]
     return decision
