@@ -111,8 +111,8 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "start at the goal": "nav.Scenario(start=(0.0, 0.0), goal=(0.1, 0.0))",
         "start inside an obstacle": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=["
         "nav.Disc(center=(2.0, 2.0), radius=0.1), nav.Disc(center=(4.0, 0.2), radius=0.1)])",
-        "goal in an active region": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=["
-        "nav.Disc(center=(0.3, 0.0), radius=0.1)])",
+        "goal in an active region": "nav.simulate(nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=["
+        "nav.Disc(center=(0.3, 0.0), radius=0.1)]), nav.VirtualForceField())",
         "obstacle that is none": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=[(2.0, 0.0, 0.1)])",
         "one obstacle, no list": "nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), "
         "obstacles=nav.Disc(center=(2.0, 0.0), radius=0.1))",

@@ -47,6 +47,10 @@ impl LawFamily for PythonLaw {
         &[0]
     }
 
+    fn takes_any_goal(&self) -> bool {
+        true
+    }
+
     fn check_gains(&self, _gains: &[f64]) -> Result<()> {
         Ok(())
     }

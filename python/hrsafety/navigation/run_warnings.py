@@ -9,7 +9,7 @@ from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_warnings import BELOW_SAFE, IN_CRITICAL_REGION
+from hrsafety.navigation.scenario_warnings import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.shield_warnings import of_shield
 from hrsafety.plausibility import ResultWarning, gathered
 
@@ -40,7 +40,8 @@ def of_run(
     """
     brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
     about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
-    of_scene = (each for each in scenario.warnings if each.code not in about_regions)
+    # A law that cannot reach a goal in a region is refused, so whatever runs can.
+    of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
     of_sensors = () if built is None else warnings_of(scenario, built)
     shield = law.shield if isinstance(law, SafeNavigation) else None
     return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built, motion_step)))

@@ -55,9 +55,9 @@ class Scenario(Parameters):
     ------
     InvalidParameterError
         If a value is not finite or out of range, the robot would start in contact with an
-        obstacle, the goal lies in the active region of a stationary obstacle, start and goal are
-        within the arrival tolerance, or a critical radius is below the distance at which robot and
-        obstacle touch.
+        obstacle, start and goal are within the arrival tolerance, or a critical radius is below the
+        distance at which robot and obstacle touch. A goal in the active region of a stationary obstacle is
+        refused when a run under a force law begins, which is pushed away from it.
 
     Examples
     --------

@@ -15,13 +15,14 @@ from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicR
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["BELOW_SAFE", "IN_CRITICAL_REGION", "found", "own_speed"]
+__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "found", "own_speed"]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
 
 BELOW_SAFE = "region_below_safe"
 IN_CRITICAL_REGION = "start_in_critical_region"
+GOAL_IN_REGION = "goal_in_active_region"
 
 
 class Described(Protocol):
@@ -58,12 +59,11 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     Returns
     -------
     tuple of ResultWarning
-        Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"implausible"``,
-        ``"goal_out_of_reach"`` and ``"closed_in"``.
+        Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"goal_in_active_region"``,
+        ``"implausible"``, ``"goal_out_of_reach"`` and ``"closed_in"``.
     """
-    return tuple(
-        [*_regions(scenario), *_starts(scenario), *_plausibility(scenario), *_reach(scenario), *_closed(scenario)]
-    )
+    about_ends = (*_starts(scenario), *_goals(scenario))
+    return (*_regions(scenario), *about_ends, *_plausibility(scenario), *_reach(scenario), *_closed(scenario))
 
 
 def _regions(scenario: Described) -> Iterator[ResultWarning]:
@@ -149,6 +149,23 @@ def _starts(scenario: Described) -> Iterator[ResultWarning]:
                 f"start is {distance:.4g} m from obstacles[{index}] ({type(obstacle).__name__}), inside its critical "
                 f"region of {radius:.4g} m, where the robot brakes and never leaves; move it by "
                 f"{_up(radius - distance):g} m",
+            )
+
+
+def _goals(scenario: Described) -> Iterator[ResultWarning]:
+    """Yield goals that laws which keep to regions cannot reach: runs under one of them are refused."""
+    for index, obstacle in enumerate(scenario.obstacles):
+        radius = obstacle.active_radius
+        if radius is None or not free_space.stands(obstacle):
+            continue
+        distance = free_space.distance(obstacle, scenario.goal)
+        if distance < radius:
+            yield ResultWarning(
+                GOAL_IN_REGION,
+                "goal",
+                f"goal is {distance:.4g} m from obstacles[{index}] ({type(obstacle).__name__}), inside its active "
+                f"region of {radius:.4g} m: force laws are refused, planners and safe navigation with a takeover may "
+                f"reach it; move it by {_up(radius - distance):g} m for the others",
             )
 
 

@@ -177,6 +177,10 @@ pub trait LawFamily: Sync {
     fn chooses_velocities(&self) -> bool {
         false
     }
+    /// Whether it can reach a goal in the active region of an obstacle that stands.
+    fn takes_any_goal(&self) -> bool {
+        self.chooses_velocities()
+    }
     /// Whether it steers a robot with two wheels by velocities, not by a point mass to follow.
     fn steers_by_velocity(&self) -> bool {
         false

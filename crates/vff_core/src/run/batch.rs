@@ -90,6 +90,7 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
     for (index, scenario) in scenarios.iter().enumerate() {
         scenario
             .of_point_mass()
+            .and_then(|()| law.suits(scenario))
             .and_then(|()| run.clock(scenario))
             .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
     }

@@ -49,6 +49,17 @@ impl AnyLaw {
         &*self.0
     }
 
+    /// Returns nothing if the law can reach the goal of a scenario.
+    ///
+    /// # Errors
+    /// It keeps to regions, and the goal lies in the active region of an obstacle that stands.
+    pub(crate) fn suits(&self, scenario: &Scenario) -> Result<()> {
+        if self.0.takes_any_goal() {
+            return Ok(());
+        }
+        scenario.with_free_goal()
+    }
+
     /// What it knows to stand, beside the obstacles of a scenario.
     pub(crate) fn map(&self) -> Option<&StaticMap> {
         self.0.map()
@@ -122,6 +133,8 @@ pub(crate) trait Driven: Send + Sync {
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
     /// Whether it chooses a velocity, and so knows no regions.
     fn chooses_velocities(&self) -> bool;
+    /// Whether it can reach a goal in the active region of an obstacle that stands.
+    fn takes_any_goal(&self) -> bool;
     /// Whether it steers a robot with two wheels by velocities.
     fn steers_by_velocity(&self) -> bool;
     /// What it knows to stand, beside the obstacles of a scenario.
@@ -274,6 +287,10 @@ impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
 
     fn chooses_velocities(&self) -> bool {
         self.0.chooses_velocities()
+    }
+
+    fn takes_any_goal(&self) -> bool {
+        self.0.takes_any_goal()
     }
 
     fn steers_by_velocity(&self) -> bool {

@@ -63,6 +63,7 @@ pub fn simulate(
 ) -> Result<(RunSummary, Trajectory)> {
     let law: AnyLaw = law.into();
     scenario.of_point_mass()?;
+    law.suits(scenario)?;
     law.driven().record(scenario, options, interrupted)
 }
 

@@ -131,6 +131,7 @@ impl<L: Listener> Episode<Navigation<L>> {
         built: &Built,
         listener: impl FnOnce(&Scenario, usize) -> L,
     ) -> Result<Self> {
+        law.map_or(Ok(()), |law| law.suits(&scenario))?;
         let robot = robot_under(&scenario, built, law)?;
         let clock = clock_of(&scenario, built)?;
         let scene = Scene::new(Arc::clone(&scenario), 1, false);

@@ -68,6 +68,7 @@ impl GainProblem {
             scenario.rules.time_limit = scenario.rules.time_limit.min(limit);
             let clock = scenario
                 .of_point_mass()
+                .and_then(|()| law.suits(&scenario))
                 .and_then(|()| options.run.clock(&scenario))
                 .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
             longest = longest.max(clock.steps);

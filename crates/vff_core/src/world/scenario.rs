@@ -76,6 +76,8 @@ pub struct Scenario {
     pub(crate) seed: u64,
     /// What planners of whole paths know of walls.
     pub(crate) map: Option<StaticMap>,
+    /// Why laws that keep to regions cannot reach the goal, if they cannot.
+    pub(crate) blocked: Option<Failure>,
 }
 
 impl Scenario {
@@ -83,8 +85,8 @@ impl Scenario {
     ///
     /// # Errors
     /// A value is out of range, start and goal are within the arrival tolerance, the robot would
-    /// start in contact with an obstacle, the goal lies in the active region of a stationary one, or
-    /// a critical radius is below the distance at which robot and obstacle touch.
+    /// start in contact with an obstacle, or a critical radius is below
+    /// the distance at which robot and obstacle touch.
     pub fn new(
         robot: HolonomicRobot,
         start: [f64; 2],
@@ -175,7 +177,7 @@ impl Scenario {
             let rule = "be farther from the start than the arrival tolerance";
             return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
         }
-        let obstacles = place_all(limits, [start, goal], obstacles, rules, sensing)?;
+        let (obstacles, blocked) = place_all(limits, [start, goal], obstacles, rules, sensing)?;
         Ok(Self {
             robot,
             differential: None,
@@ -186,6 +188,7 @@ impl Scenario {
             measurement: sensing.measurement,
             seed: 0,
             map: None,
+            blocked,
         })
     }
 
@@ -236,7 +239,7 @@ impl Scenario {
     /// given are sized for them.
     ///
     /// # Errors
-    /// The goal lies in the active region of a stationary obstacle as it is sized then.
+    /// A critical radius is below the distance at which robot and obstacle touch.
     pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Result<Self> {
         if measurement != self.measurement {
             let (robot, rules) = (self.limits(), self.rules);
@@ -246,7 +249,7 @@ impl Scenario {
             };
             let obstacles = self.obstacles.into_iter().map(|placed| placed.obstacle);
             let ends = [self.start, self.goal];
-            self.obstacles = place_all(&robot, ends, obstacles, &rules, &sensing)?;
+            (self.obstacles, self.blocked) = place_all(&robot, ends, obstacles, &rules, &sensing)?;
         }
         self.measurement = measurement;
         self.seed = seed;
@@ -270,7 +273,8 @@ impl Scenario {
         };
         let obstacles = self.obstacles.iter().map(|placed| placed.obstacle.clone());
         let ends = [self.start, self.goal];
-        slowed.obstacles = place_all(&limits, ends, obstacles, &self.rules, &sensing)?;
+        (slowed.obstacles, slowed.blocked) =
+            place_all(&limits, ends, obstacles, &self.rules, &sensing)?;
         Ok(slowed)
     }
 
@@ -294,6 +298,7 @@ impl Scenario {
             obstacles: Vec::new(),
             measurement: None,
             seed: 0,
+            blocked: None,
             ..self.clone()
         }
     }
@@ -305,6 +310,14 @@ impl Scenario {
             && self.robot == other.robot
             && self.differential == other.differential
             && self.rules == other.rules
+    }
+
+    /// Returns nothing if a law that keeps to regions can reach the goal.
+    ///
+    /// # Errors
+    /// The goal lies in the active region of a stationary obstacle.
+    pub fn with_free_goal(&self) -> Result<()> {
+        self.blocked.clone().map_or(Ok(()), Err)
     }
 
     /// Number of obstacles.
@@ -395,7 +408,7 @@ fn place_all(
     obstacles: impl IntoIterator<Item = Obstacle>,
     rules: &Rules,
     sensing: &Sensing,
-) -> Result<Vec<PlacedObstacle>> {
+) -> Result<(Vec<PlacedObstacle>, Option<Failure>)> {
     let obstacles = obstacles.into_iter().enumerate();
     let obstacles = obstacles
         .map(|(index, obstacle)| {
@@ -405,10 +418,12 @@ fn place_all(
             Ok(placed)
         })
         .collect::<Result<Vec<_>>>()?;
+    let mut blocked = None;
     for (index, placed) in obstacles.iter().enumerate() {
-        check_ends(placed, index, start, goal)?;
+        check_start(placed, index, start)?;
+        blocked = blocked.or_else(|| goal_in_region(placed, index, goal));
     }
-    Ok(obstacles)
+    Ok((obstacles, blocked))
 }
 
 fn place(
@@ -497,40 +512,50 @@ fn metres(length: f64) -> f64 {
     (length * 1e4 - 1e-4).ceil() / 1e4
 }
 
-fn check_ends(
-    placed: &PlacedObstacle,
-    index: usize,
-    start: [f64; 2],
-    goal: [f64; 2],
-) -> Result<()> {
-    let state = placed.obstacle.motion.at(0.0, &mut 0);
+/// An end of the way that is nearer to an obstacle than it may be.
+fn too_near(
+    (name, place): (&str, [f64; 2]),
+    rule: &str,
+    (placed, index): (&PlacedObstacle, usize),
+    (distance, least): (f64, f64),
+) -> Failure {
     let side = match placed.obstacle.shape {
         Shape::Disc { .. } => "center",
         Shape::Rectangle { .. } => "contour",
     };
-    let refuse = |name: &str, rule: &str, given, distance: f64, least: f64| {
-        let rule = format!(
-            "{rule}: at least {} m from the {side} of obstacles[{index}]",
-            metres(least)
-        );
-        let away = metres(least - distance).max(1e-4);
-        let near = (distance * 1e4).round() / 1e4;
-        Failure::invalid(name, rule, Given::Pair(given))
-            .mended_by(format!("it is {near} m away, move it by {away} m or more"))
-    };
+    let rule = format!(
+        "{rule}: at least {} m from the {side} of obstacles[{index}]",
+        metres(least)
+    );
+    let away = metres(least - distance).max(1e-4);
+    let near = (distance * 1e4).round() / 1e4;
+    Failure::invalid(name, rule, Given::Pair(place))
+        .mended_by(format!("it is {near} m away, move it by {away} m or more"))
+}
+
+/// Refuses a start in contact with an obstacle.
+fn check_start(placed: &PlacedObstacle, index: usize, start: [f64; 2]) -> Result<()> {
+    let state = placed.obstacle.motion.at(0.0, &mut 0);
     let distance = placed.obstacle.distance(state.position, start);
-    if state.present && distance <= placed.contact_distance {
-        let (rule, least) = (
-            "not be in contact with an obstacle",
-            placed.contact_distance,
-        );
-        return Err(refuse("start", rule, start, distance, least));
+    let least = placed.contact_distance;
+    if !state.present || distance > least {
+        return Ok(());
     }
+    let rule = "not be in contact with an obstacle";
+    Err(too_near(
+        ("start", start),
+        rule,
+        (placed, index),
+        (distance, least),
+    ))
+}
+
+/// Why a law that keeps to regions cannot reach the goal because of an obstacle, if it cannot.
+fn goal_in_region(placed: &PlacedObstacle, index: usize, goal: [f64; 2]) -> Option<Failure> {
+    let state = placed.obstacle.motion.at(0.0, &mut 0);
     let distance = placed.obstacle.distance(state.position, goal);
     let least = placed.regions.active_radius;
-    if placed.stationary && distance < least {
-        let rule = "lie outside the active region of every stationary obstacle";
-        return Err(refuse("goal", rule, goal, distance, least));
-    }
-    Ok(())
+    let rule = "lie outside the active region of every stationary obstacle";
+    (placed.stationary && distance < least)
+        .then(|| too_near(("goal", goal), rule, (placed, index), (distance, least)))
 }

@@ -174,6 +174,7 @@ impl State {
             rules,
         )
         .ok()
+        .filter(|scenario| scenario.with_free_goal().is_ok())
     }
 
     /// Whether a disc lies between robot and goal to 1e-6 rad, where rounding decides the side.

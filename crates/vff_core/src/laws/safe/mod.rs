@@ -86,6 +86,11 @@ impl LawFamily for SafeNavigation {
         self.map.as_ref().or_else(|| self.law.driven().map())
     }
 
+    fn takes_any_goal(&self) -> bool {
+        // Whoever is pushed away makes no progress, and heads for the goal by himself.
+        self.takeover || self.law.driven().takes_any_goal()
+    }
+
     fn steers_by_velocity(&self) -> bool {
         self.shield.is_some()
     }

@@ -132,6 +132,7 @@ fn check(scenarios: &[Scenario], laws: &[AnyLaw], built: &Built) -> Result<()> {
         built
             .suiting(scenario)
             .and_then(|built| clock_of(scenario, built))
+            .and_then(|_| laws.iter().try_for_each(|law| law.suits(scenario)))
             .map_err(|error| error.within(&format!("scenarios[{index}]")))?;
     }
     Ok(())

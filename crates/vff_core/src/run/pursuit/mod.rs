@@ -181,6 +181,7 @@ pub fn pursue(
         let given = Given::Found("none".into());
         return Err(Failure::invalid("obstacles", rule, given));
     }
+    law.suits(scenario)?;
     let robot = robot_under(scenario, built, Some(law))?;
     let clock = clock_of(scenario, built)?;
     let reading = Reading::at(&built.start_in(scenario));
