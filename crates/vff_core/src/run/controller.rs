@@ -127,6 +127,7 @@ impl Controller {
             let given = Given::Found("a law without".into());
             return Err(Failure::invalid("law", rule, given));
         }
+        law.suits(&scenario)?;
         let scans = lidar.map(|lidar| Scans::new(&scenario, lidar, 0));
         let scans = scans.transpose()?;
         let mut known = scenario.clone();

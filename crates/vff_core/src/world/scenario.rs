@@ -232,6 +232,7 @@ impl Scenario {
             measurement,
             seed: 0,
             map: None,
+            blocked: None,
         })
     }
 
