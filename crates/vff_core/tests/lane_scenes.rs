@@ -88,7 +88,9 @@ fn scene(draws: &mut Draws, rules: Rules) -> Option<Scenario> {
         ..HolonomicRobot::default()
     };
     let ends = [draws.pair(-0.5, 0.5), [7.0, draws.between(-1.0, 1.0)]];
-    let scene = Scenario::new(robot, ends[0], ends[1], obstacles, rules).ok()?;
+    let scene = Scenario::new(robot, ends[0], ends[1], obstacles, rules)
+        .ok()
+        .filter(|scene| scene.with_free_goal().is_ok())?;
     let measured = draws.next() < 0.1;
     let noise = Measurement::new(0.01, Distribution::Uniform, Noisy::Both).unwrap();
     scene.measured(measured.then_some(noise), 5).ok()

@@ -391,6 +391,10 @@ proptest! {
         let Ok(scenario) = Scenario::new(robot, [ends[0], ends[1]], [ends[2], ends[3]], bodies, rules) else {
             return Ok(());
         };
+        if let Err(refusal) = scenario.with_free_goal() {
+            prop_assert_eq!(simulate(&scenario, law, &options(rk4, hold), &|| false).err(), Some(refusal));
+            return Ok(());
+        }
         match simulate(&scenario, law, &options(rk4, hold), &|| false) {
             Ok((run, path)) => {
                 prop_assert!(is_finite(&path));

@@ -94,7 +94,7 @@ def test_ends_near_an_obstacle_name_it_with_distance_and_remedy() -> None:
         with pytest.raises(InvalidParameterError, match=r"scenarios\[0\]\.goal must lie outside"):
             many([near], LAW)
     guarded = nav.SafeNavigation(LAW, shield=nav.Shield(), yielding=nav.Yielding())
-    for law in (nav.OptimalReciprocalCollisionAvoidance(), guarded):
+    for law in (nav.OptimalReciprocalCollisionAvoidance(margin=0.05), guarded):
         run = nav.simulate(near, law)
         assert run.outcome == "arrived"
         assert run.min_clearance[1] > 0.0

@@ -214,7 +214,6 @@ BAD_FILES = {
     "time limit": (ROOM + "time_limit = 0\n", "time_limit must"),
     "start on goal": ("start = [0, 0]\ngoal = [0, 0]\n", "must"),
     "start in obstacle": (DISC_ROOM.replace("[2.0, 0.5]", "[4.0, 0.1]"), "start must"),
-    "goal in obstacle": (DISC_ROOM.replace("[2.0, 0.5]", "[0.0, 0.1]"), "goal must"),
     "no velocity": (
         HUMAN + "start = [1, 1]\n",
         OBSTACLE + r"\.velocity must be given",
