@@ -183,6 +183,11 @@ fn is_boundary_point(body: &Body) -> bool {
     point && body.state.velocity == [0.0; 2]
 }
 
+/// Whether a body is a rectangle that stands: one that moves is avoided as people are.
+fn is_wall(body: &Body) -> bool {
+    matches!(body.shape, Shape::Rectangle { .. }) && body.state.velocity == [0.0; 2]
+}
+
 /// The planner at work in one scenario.
 #[derive(Clone, Debug)]
 pub struct ReciprocalPlanner {
@@ -261,8 +266,8 @@ impl ReciprocalPlanner {
 }
 
 impl Planner for ReciprocalPlanner {
-    /// The permitted velocity nearest to the one towards the goal. Rectangles are never traded
-    /// for people: where nothing is permitted, only the half-planes of people are violated.
+    /// The permitted velocity nearest to the one towards the goal. Rectangles that stand are never
+    /// traded for people: where nothing is permitted, only the half-planes of people are violated.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
         let Situation {
             bodies,
@@ -277,8 +282,8 @@ impl Planner for ReciprocalPlanner {
             }
             let gap = self.gap(body, robot.position);
             if gap < self.settings.reach {
-                // Rectangles come first: they cannot be violated.
-                let soft = matches!(body.shape, Shape::Disc { .. }) && !is_boundary_point(body);
+                // What stands with edges comes first: it cannot be violated.
+                let soft = !is_wall(body) && !is_boundary_point(body);
                 let order = if soft { gap.max(0.0) } else { -1.0 };
                 self.neighbors.push((order, index));
             }
@@ -292,9 +297,10 @@ impl Planner for ReciprocalPlanner {
                 continue;
             }
             let outline = self.outline(&bodies[index], robot.position);
-            let share = match bodies[index].shape {
-                Shape::Disc { .. } => self.settings.share,
-                Shape::Rectangle { .. } => 1.0,
+            let share = if is_wall(&bodies[index]) {
+                1.0
+            } else {
+                self.settings.share
             };
             let plane = avoiding(
                 &outline,

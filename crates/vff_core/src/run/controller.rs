@@ -248,8 +248,13 @@ impl Controller {
         scans.read(ranges, frame, &mut self.bodies[people..])?;
         let bodies = self.bodies[..people].iter_mut();
         for (body, age) in bodies.zip(&self.ages) {
-            let Shape::Disc { radius } = body.shape else {
-                continue;
+            let radius = match body.shape {
+                Shape::Disc { radius } => radius,
+                Shape::Rectangle {
+                    half_length,
+                    half_width,
+                    ..
+                } => half_length.hypot(half_width),
             };
             let lost = body.state.present && *age > FORGOTTEN;
             if lost && scans.saw_empty(frame, body.state.position.into(), radius) {

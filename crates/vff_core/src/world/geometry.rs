@@ -167,7 +167,8 @@ pub(crate) fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
     x.le(zero) & x.ge(zero) & y.le(zero) & y.ge(zero)
 }
 
-/// Velocity of the point that distances are measured from, and where it slides along a face.
+/// Velocity of the point that distances are measured from, and where it slides along a face: that of
+/// the obstacle, and along a face that of the robot relative to it. Rectangles keep their heading.
 #[inline(always)]
 fn point_velocity<R: Real, B: Wide<R>>(
     body: &Body<B>,
@@ -180,15 +181,23 @@ fn point_velocity<R: Real, B: Wide<R>>(
             half_width,
             axis,
         } => {
+            let own: Vector2<R> = widened(body.state.velocity);
+            let moving = B::wide_mask(!at_rest(body.state.velocity)).any();
             let local = into_axes(robot.position - widened(body.state.position), axis);
-            let velocity = into_axes(robot.velocity, axis);
+            let velocity = if moving {
+                robot.velocity - own
+            } else {
+                robot.velocity
+            };
+            let velocity = into_axes(velocity, axis);
             let beside = local.x.abs().le(half_length.wide());
             let abreast = local.y.abs().le(half_width.wide());
             let slide = Vector2::new(
                 R::select(beside, velocity.x, R::zero()),
                 R::select(abreast, velocity.y, R::zero()),
             );
-            (out_of_axes(slide, axis), beside | abreast)
+            let slide = out_of_axes(slide, axis);
+            (if moving { own + slide } else { slide }, beside | abreast)
         }
     }
 }

@@ -128,6 +128,26 @@ impl Obstacle {
         })
     }
 
+    /// A rectangle on a way of its own, which keeps its heading in rad.
+    ///
+    /// # Errors
+    /// Names the value that is not allowed.
+    pub fn moving_rectangle(
+        sides: [f64; 2],
+        heading: f64,
+        motion: Motion,
+        limits: Limits,
+    ) -> Result<Self> {
+        positive("length", sides[0])?;
+        positive("width", sides[1])?;
+        finite("heading", heading)?;
+        Ok(Self {
+            shape: Shape::turned(sides, heading),
+            motion,
+            limits: limits.checked()?,
+        })
+    }
+
     /// Speed that the regions are sized for, in m/s.
     #[must_use]
     pub fn max_speed(&self) -> f64 {

@@ -61,7 +61,8 @@ impl Sensing {
 ///
 /// `delta_r = V T_s + a dt1^2/2`, `delta_o = V_o (dt1 + T_s)`, `dt1 = t_a = V/a`;
 /// disc: `r3 = delta_r + delta_o + rho_o + rho_r + delta`, `r2 = (V + V_o)(dt2 + T_s) + delta`;
-/// rectangle: `r3 = delta_r + rho_r + delta`, `r2 = V (dt2 + T_s) + delta`;
+/// rectangle: `r3 = delta_r + delta_o + rho_r + delta`, `r2 = (V + V_o) (dt2 + T_s) + delta`, in the
+/// source for one that stands, `V_o = 0`;
 /// `dt2 = (r3 + B - a t_a^2/2)/V + t_a + t_turn`, `B` half the faced side of a rectangle,
 /// 0 for a disc; `delta` the largest difference between the known and the true distance, 0 with
 /// exact sensing, the case of the source.
@@ -81,19 +82,15 @@ pub fn radii(
     let stopping_time = speed / acceleration;
     let ramp = 0.5 * acceleration * stopping_time * stopping_time;
     let robot_way = speed * period + ramp;
-    let (critical_radius, half_side, closing) = match obstacle.shape {
+    let obstacle_speed = obstacle.max_speed();
+    let obstacle_way = obstacle_speed * (stopping_time + period);
+    let (critical_radius, half_side) = match obstacle.shape {
         Shape::Disc { radius } => {
             if let Some(side) = faced_side {
                 let rule = "be given for a rectangle only";
                 return Err(Failure::invalid("faced_side", rule, Given::Number(side)));
             }
-            let obstacle_speed = obstacle.max_speed();
-            let obstacle_way = obstacle_speed * (stopping_time + period);
-            (
-                robot_way + obstacle_way + radius + robot.radius,
-                0.0,
-                speed + obstacle_speed,
-            )
+            (robot_way + obstacle_way + radius + robot.radius, 0.0)
         }
         Shape::Rectangle {
             half_length,
@@ -104,9 +101,10 @@ pub fn radii(
                 Some(side) => 0.5 * positive("faced_side", side)?,
                 None => half_length.max(half_width),
             };
-            (robot_way + robot.radius, half_side, speed)
+            (robot_way + obstacle_way + robot.radius, half_side)
         }
     };
+    let closing = speed + obstacle_speed;
     let slack = sensing.slack(robot, obstacle)?;
     let critical_radius = critical_radius + slack;
     let avoiding_time =

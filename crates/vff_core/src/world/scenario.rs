@@ -434,11 +434,6 @@ fn place(
     sensing: &Sensing,
 ) -> Result<PlacedObstacle> {
     let limits = obstacle.limits;
-    if matches!(obstacle.shape, Shape::Rectangle { .. }) && !obstacle.motion.is_stationary() {
-        let rule = "stand still if it is a rectangle: laws measure from its contour";
-        let given = Given::Found("a moving rectangle".into());
-        return Err(Failure::invalid("motion", rule, given));
-    }
     let given = limits.critical_radius.zip(limits.active_radius);
     let regions = if let Some((critical_radius, active_radius)) = given {
         Regions {

@@ -32,9 +32,8 @@ pub struct Detour<R: Real> {
 
 /// Side from the rules that need no other obstacle; 0 where only the tie-break can tell.
 ///
-/// In order: a rectangle between robot and goal is passed on the robot's side of its centroid
-/// (Fig. 5.9), a moving obstacle that robot and goal straddle is passed behind (Fig. 5.8a),
-/// exactly collinear is left open, anything else turns the shortest way.
+/// In order: a moving obstacle that robot and goal straddle is passed behind (Fig. 5.8a), a rectangle
+/// between robot and goal is passed on the robot's side of its centroid (Fig. 5.9), exactly collinear is left open, anything else turns the shortest way.
 #[inline(always)]
 pub fn decide<R: Real, B: Wide<R>>(
     rules: &SideRules,
@@ -43,22 +42,9 @@ pub fn decide<R: Real, B: Wide<R>>(
     robot: &RobotState<R>,
     goal: Vector2<R>,
 ) -> R {
-    let mut side = R::select(approach.collinear, R::zero(), approach.shortest_side);
+    let side = R::select(approach.collinear, R::zero(), approach.shortest_side);
     match body.shape {
-        Shape::Disc { .. } => {
-            let [x, y] = body.state.velocity;
-            let speed = (x * x + y * y).sqrt();
-            let moving = B::wide_mask(speed.gt(B::splat(MOVING_SPEED)));
-            if rules.pass_behind && moving.any() {
-                let course: Vector2<R> = widened([x / speed, y / speed]);
-                let robot_side = course.perp(&approach.offset);
-                let goal_side = course.perp(&approach.to_goal);
-                let line = R::splat(VELOCITY_LINE);
-                let straddled = (robot_side.gt(line) & goal_side.lt(-line))
-                    | (robot_side.lt(-line) & goal_side.gt(line));
-                side = R::select(straddled & moving, robot_side.sign(), side);
-            }
-        }
+        Shape::Disc { .. } => behind(rules, body, (approach.offset, approach.to_goal), side),
         Shape::Rectangle {
             half_length,
             half_width,
@@ -68,10 +54,35 @@ pub fn decide<R: Real, B: Wide<R>>(
             let (between, cross, dot) = separation(body, half, axis, robot.position, goal);
             let open = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
             let own = R::select(open, R::zero(), cross.sign());
-            side = R::select(between, own, side);
+            let side = R::select(between, own, side);
+            let center = widened(body.state.position);
+            behind(rules, body, (robot.position - center, goal - center), side)
         }
     }
-    side
+}
+
+/// The side that leads behind a moving obstacle which robot and goal straddle, given as seen from its
+/// center; the side as it is otherwise.
+#[inline(always)]
+fn behind<R: Real, B: Wide<R>>(
+    rules: &SideRules,
+    body: &Body<B>,
+    (to_robot, to_goal): (Vector2<R>, Vector2<R>),
+    side: R,
+) -> R {
+    let [x, y] = body.state.velocity;
+    let speed = (x * x + y * y).sqrt();
+    let moving = B::wide_mask(speed.gt(B::splat(MOVING_SPEED)));
+    if !rules.pass_behind || !moving.any() {
+        return side;
+    }
+    let course: Vector2<R> = widened([x / speed, y / speed]);
+    let robot_side = course.perp(&to_robot);
+    let goal_side = course.perp(&to_goal);
+    let line = R::splat(VELOCITY_LINE);
+    let straddled =
+        (robot_side.gt(line) & goal_side.lt(-line)) | (robot_side.lt(-line) & goal_side.gt(line));
+    R::select(straddled & moving, robot_side.sign(), side)
 }
 
 /// Turn of a decided side, and the side that hysteresis keeps.

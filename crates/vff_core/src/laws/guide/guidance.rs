@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Result};
 use crate::laws::Stop;
 use crate::laws::guide::{Guide, LocalGoal, Plan, Standing, View};
+use crate::world::shape::PlacedShape;
 
 /// Plans of one run.
 #[derive(Clone, Debug)]
@@ -37,7 +38,7 @@ impl Guidance {
         self.around.as_ref().unwrap_or(&self.alone)
     }
 
-    /// Looks at people, given by places and radii in m, `None` for who is away, and plans again
+    /// Looks at people, given by their outlines, `None` for who is away, and plans again
     /// when others stand than before; without a plan around them that without them is used. Returns
     /// whether there is another plan.
     ///
@@ -48,34 +49,36 @@ impl Guidance {
         &mut self,
         time: f64,
         position: Vector2<f64>,
-        people: impl Iterator<Item = Option<(Vector2<f64>, f64)>> + Clone,
+        people: impl Iterator<Item = Option<PlacedShape>> + Clone,
         stop: Stop<'_>,
     ) -> Result<bool> {
-        let places = people.clone().map(|person| person.map(|(place, _)| place));
+        let places = people
+            .clone()
+            .map(|person| person.map(|placed| placed.center));
         if !self.standing.observe(time, places) {
             return Ok(false);
         }
-        let mut discs = Vec::new();
-        for (index, place) in self.standing.places() {
-            if let Some(Some((_, radius))) = people.clone().nth(index) {
-                discs.push((place.into(), radius));
+        let mut shapes = Vec::new();
+        for (index, center) in self.standing.places() {
+            if let Some(Some(placed)) = people.clone().nth(index) {
+                shapes.push(PlacedShape { center, ..placed });
             }
         }
         let had = self.around.is_some();
-        self.around = self.plan_around(&discs, position, stop)?;
+        self.around = self.plan_around(&shapes, position, stop)?;
         Ok(had || self.around.is_some())
     }
 
     fn plan_around(
         &self,
-        discs: &[([f64; 2], f64)],
+        shapes: &[PlacedShape],
         position: Vector2<f64>,
         stop: Stop<'_>,
     ) -> Result<Option<Plan>> {
-        if discs.is_empty() {
+        if shapes.is_empty() {
             return Ok(None);
         }
-        let map = self.alone.map().with_discs(discs);
+        let map = self.alone.map().with_shapes(shapes);
         match self.alone.again(self.guide, &map, self.robot_radius, stop) {
             Ok(plan) => Ok(plan.view(position).is_some().then_some(plan)),
             Err(Failure::Interrupted) => Err(Failure::Interrupted),

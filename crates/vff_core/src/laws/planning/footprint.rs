@@ -4,12 +4,12 @@ use crate::world::geometry::Body;
 use crate::world::map::StaticMap;
 use crate::world::obstacle::Shape;
 
-/// A point, a segment or a rectangle, grown by a radius: a disc, the way that a disc takes, or a
-/// rectangle with round corners.
+/// A point, a segment, a rectangle or the way that it takes, grown by a radius: a disc, the way that a
+/// disc takes, or a rectangle with round corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// Vertices of the core, counter-clockwise, in m.
-    vertices: [[f64; 2]; 4],
+    vertices: [[f64; 2]; 6],
     /// Number of vertices that count.
     count: usize,
     /// Radius that the core is grown by, in m.
@@ -21,15 +21,15 @@ impl Footprint {
     #[must_use]
     pub fn swept_disc(from: [f64; 2], to: [f64; 2], radius: f64) -> Self {
         Self {
-            vertices: [from, to, to, to],
+            vertices: [from, to, to, to, to, to],
             count: if from == to { 1 } else { 2 },
             radius,
         }
     }
 
     /// An obstacle grown by the robot's radius and margin, on its way for a time at its present
-    /// velocity; positions relative to `origin`. Rectangles do not move. `None` for an obstacle
-    /// that is absent, or whose state is not finite.
+    /// velocity; positions relative to `origin`. `None` for an obstacle that is absent, or whose state
+    /// is not finite.
     #[must_use]
     pub fn of(body: &Body, origin: [f64; 2], growth: f64, time: f64) -> Option<Self> {
         let state = &body.state;
@@ -38,11 +38,10 @@ impl Footprint {
             return None;
         }
         let [x, y] = [state.position[0] - origin[0], state.position[1] - origin[1]];
-        let footprint = match body.shape {
+        let way = state.velocity.map(|speed| speed * time);
+        Some(match body.shape {
             Shape::Disc { radius } => {
-                let [u, v] = state.velocity;
-                let end = [x + u * time, y + v * time];
-                Self::swept_disc([x, y], end, radius + growth)
+                Self::swept_disc([x, y], [x + way[0], y + way[1]], radius + growth)
             }
             Shape::Rectangle {
                 half_length,
@@ -53,19 +52,44 @@ impl Footprint {
                     let (a, b) = (along * half_length, across * half_width);
                     [x + a * axis[0] - b * axis[1], y + a * axis[1] + b * axis[0]]
                 };
-                Self {
-                    vertices: [
-                        corner(-1.0, -1.0),
-                        corner(1.0, -1.0),
-                        corner(1.0, 1.0),
-                        corner(-1.0, 1.0),
-                    ],
-                    count: 4,
-                    radius: growth,
-                }
+                let corners = [
+                    corner(-1.0, -1.0),
+                    corner(1.0, -1.0),
+                    corner(1.0, 1.0),
+                    corner(-1.0, 1.0),
+                ];
+                Self::swept_rectangle(corners, axis.into(), way, growth)
             }
+        })
+    }
+
+    /// A rectangle by its corners, counter-clockwise, that moves straight along a way, grown by a
+    /// radius.
+    fn swept_rectangle(corners: [[f64; 2]; 4], axis: [f64; 2], way: [f64; 2], radius: f64) -> Self {
+        let [one, two, three, four] = corners;
+        if way == [0.0; 2] {
+            return Self {
+                vertices: [one, two, three, four, four, four],
+                count: 4,
+                radius,
+            };
+        }
+        // The corner that trails, and its neighbor on either side, begin and end the rim that stays.
+        let along = axis[0] * way[0] + axis[1] * way[1];
+        let across = axis[0] * way[1] - axis[1] * way[0];
+        let trailing = match (along >= 0.0, across >= 0.0) {
+            (true, true) => 0,
+            (false, true) => 1,
+            (false, false) => 2,
+            (true, false) => 3,
         };
-        Some(footprint)
+        let at = |next: usize| corners[(trailing + next) % 4];
+        let moved = |next: usize| [at(next)[0] + way[0], at(next)[1] + way[1]];
+        Self {
+            vertices: [at(0), at(1), moved(1), moved(2), moved(3), at(3)],
+            count: 6,
+            radius,
+        }
     }
 
     /// The walls of a map grown by the robot's radius and margin, as far as they reach into a box

@@ -1,6 +1,6 @@
 //! What the law, the shield and yielding look at, each in its own words.
 
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::Vector2;
 use crate::laws::Situation;
 use crate::laws::safe::boundary::boundary_obstacle;
 use crate::laws::safe::settings::SafeNavigation;
@@ -91,17 +91,17 @@ impl Surroundings {
         }
     }
 
-    /// Discs that may stand, by center and radius; `None` for what the map shows already.
+    /// Those who may stand, by their outlines; `None` for what the map shows already.
     pub fn standing<'a>(
         &'a self,
         bodies: &'a [Body],
-    ) -> impl Iterator<Item = Option<(Vector2<f64>, f64)>> + Clone + 'a {
+    ) -> impl Iterator<Item = Option<PlacedShape>> + Clone + 'a {
         bodies.iter().zip(&self.known).map(|(body, known)| {
-            let Shape::Disc { radius } = body.shape else {
-                return None;
-            };
             let counts = body.state.present && known.kind == Kind::Person;
-            counts.then(|| (Vector2::splat(body.state.position), radius))
+            counts.then(|| PlacedShape {
+                center: body.state.position.into(),
+                shape: body.shape,
+            })
         })
     }
 

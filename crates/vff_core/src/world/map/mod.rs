@@ -18,6 +18,7 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result, at_most, finite_pair, not_negative, positive};
 use crate::world::map::grid::Cells;
 use crate::world::map::index::Index;
+use crate::world::shape::{PlacedShape, Shape};
 pub(crate) use boundary::Beyond;
 pub use boundary::{MOST_POINTS, checked_kappa};
 pub use capsule::Capsule;
@@ -165,17 +166,35 @@ impl StaticMap {
         Some([bounds.lower, bounds.upper])
     }
 
-    /// The map with discs, given by centers and radii in m, added to it.
+    /// The map with discs and rectangles added to it.
     #[must_use]
-    pub fn with_discs(&self, discs: &[([f64; 2], f64)]) -> Self {
+    pub fn with_shapes(&self, added: &[PlacedShape]) -> Self {
         let mut shapes = MapShapes {
             capsules: self.parts.index.capsules.clone(),
             grids: self.parts.grids.clone(),
         };
-        let capsules = discs
-            .iter()
-            .map(|(center, radius)| Capsule::disc((*center).into(), *radius));
-        shapes.capsules.extend(capsules);
+        for placed in added {
+            match placed.shape {
+                Shape::Disc { radius } => {
+                    shapes.capsules.push(Capsule::disc(placed.center, radius));
+                }
+                Shape::Rectangle {
+                    half_length,
+                    half_width,
+                    ..
+                } => {
+                    let [one, two, three, four] = placed.corners().map(<[f64; 2]>::from);
+                    match outline::outline(&[one, two, four, three]) {
+                        Ok(sides) => shapes.capsules.extend(sides),
+                        // Sides that rounding makes one line: the disc around it.
+                        Err(_) => {
+                            let around = half_length.hypot(half_width);
+                            shapes.capsules.push(Capsule::disc(placed.center, around));
+                        }
+                    }
+                }
+            }
+        }
         shapes.map()
     }
 
