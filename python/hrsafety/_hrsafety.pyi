@@ -355,12 +355,16 @@ class Obstacle:
         """Return the obstacle with the radii that a scenario has found."""
 
     @staticmethod
+    def moving_rectangle(**given: object) -> Obstacle:
+        """Return a rectangle with constant acceleration or a sudden stop."""
+
+    @staticmethod
     def piecewise(**given: object) -> Obstacle:
-        """Return a disc with piecewise constant acceleration."""
+        """Return a disc or a rectangle with piecewise constant acceleration."""
 
     @staticmethod
     def recorded(**given: object) -> Obstacle:
-        """Return a disc that follows a recording."""
+        """Return a disc or a rectangle that follows a recording."""
 
 @final
 class Measurement:

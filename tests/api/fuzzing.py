@@ -50,6 +50,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Disc": (nav.Disc, {"center": (1.0, 2.0), "radius": 0.3, "active_radius": None, "critical_radius": None}),
     "MovingDisc": (nav.MovingDisc, {"center": (1.0, 2.0), "velocity": (0.1, 0.0), "radius": 0.3}),
     "Rectangle": (nav.Rectangle, {"center": (1.0, 2.0), "length": 1.0, "width": 0.5}),
+    "MovingRectangle": (
+        nav.MovingRectangle,
+        {"center": (1.0, 2.0), "length": 1.0, "width": 0.5, "velocity": (0.1, 0.0), "heading": 0.2},
+    ),
     "Human": (nav.Human, {"start": (1.0, 2.0), "velocity": (0.4, 0.0), "stop": None, "radius": 0.3}),
     "Human.from_path": (nav.Human.from_path, {"time": [0.0, 1.0], "position": [[0.0, 0.0], [1.0, 0.0]]}),
     "Measurement": (nav.Measurement, {"scale": 0.01, "distribution": "uniform", "of": "both"}),

@@ -22,6 +22,13 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Keywords<'py> {
 }
 
 impl<'py> Keywords<'py> {
+    /// Whether an argument is there that nobody took.
+    pub fn holds(&self, name: &str) -> PyResult<bool> {
+        self.0
+            .as_ref()
+            .map_or(Ok(false), |items| items.contains(name))
+    }
+
     /// Takes an argument.
     pub fn take<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
         let missing = || PyTypeError::new_err(format!("missing argument '{name}'"));

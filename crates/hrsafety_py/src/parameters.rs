@@ -101,15 +101,24 @@ fn limits_of(given: &Keywords<'_>) -> PyResult<Limits> {
 }
 
 impl Obstacle {
-    /// Disc that moves.
+    /// Disc that moves, or a rectangle where no radius is given.
     fn moved(
         given: &Keywords<'_>,
         motion: impl FnOnce() -> Result<Motion, Failure>,
     ) -> PyResult<Self> {
-        let (radius, limits) = (given.take("radius")?, limits_of(given)?);
+        let limits = limits_of(given)?;
+        if given.holds("radius")? {
+            let radius = given.take("radius")?;
+            given.done()?;
+            let disc = motion().and_then(|motion| obstacle::Obstacle::disc(radius, motion, limits));
+            return Ok(Self(disc.map_err(CoreError::from)?));
+        }
+        let sides = [given.take("length")?, given.take("width")?];
+        let heading = given.take("heading")?;
         given.done()?;
-        let disc = motion().and_then(|motion| obstacle::Obstacle::disc(radius, motion, limits));
-        Ok(Self(disc.map_err(CoreError::from)?))
+        let moving = |motion| obstacle::Obstacle::moving_rectangle(sides, heading, motion, limits);
+        let rectangle = motion().and_then(moving);
+        Ok(Self(rectangle.map_err(CoreError::from)?))
     }
 }
 
@@ -169,7 +178,19 @@ impl Obstacle {
         Self(sized)
     }
 
-    /// Disc with piecewise constant acceleration.
+    /// Rectangle with constant acceleration or a sudden stop.
+    #[staticmethod]
+    #[pyo3(signature = (**given))]
+    fn moving_rectangle(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (start, velocity) = (given.take("start")?, given.take("velocity")?);
+        let (acceleration, stop) = (given.take("acceleration")?, given.take("stop")?);
+        Self::moved(&given, || {
+            Motion::moving(start, velocity, acceleration, stop)
+        })
+    }
+
+    /// Disc or rectangle with piecewise constant acceleration.
     #[staticmethod]
     #[pyo3(signature = (**given))]
     fn piecewise(given: Option<Keywords<'_>>) -> PyResult<Self> {
@@ -187,7 +208,7 @@ impl Obstacle {
         Self::moved(&given, || Motion::piecewise(start, &segments))
     }
 
-    /// Disc that follows a recording.
+    /// Disc or rectangle that follows a recording.
     #[staticmethod]
     #[pyo3(signature = (**given))]
     fn recorded(given: Option<Keywords<'_>>) -> PyResult<Self> {

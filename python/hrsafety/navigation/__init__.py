@@ -32,6 +32,7 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.many import simulate_many
+from hrsafety.navigation.moving_rectangle import MovingRectangle
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
@@ -58,6 +59,7 @@ __all__ = [
     "Masoud",
     "Measurement",
     "MovingDisc",
+    "MovingRectangle",
     "Obstacle",
     "OptimalReciprocalCollisionAvoidance",
     "Performance",

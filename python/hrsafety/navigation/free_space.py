@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, Pair
+from hrsafety.navigation.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
 
 __all__ = ["certainly_closed", "distance", "stands"]
@@ -34,7 +35,7 @@ def stands(obstacle: Obstacle) -> bool:
     bool
         Whether it is a disc, a rectangle, or a body whose velocity is zero for ever.
     """
-    if isinstance(obstacle, (Human, MovingDisc)):
+    if isinstance(obstacle, Mobile):
         still = obstacle.path is None and obstacle.segments is None and not any(obstacle.velocity)
         return still and not any(getattr(obstacle, "acceleration", ()))
     return isinstance(obstacle, (Disc, Rectangle))
@@ -60,7 +61,7 @@ def distance(obstacle: Obstacle, point: Pair) -> float:
 
 def _distances(obstacle: Obstacle, x: Array, y: Array) -> Array:
     """Return distances at the crossings of columns x and rows y."""
-    if isinstance(obstacle, Rectangle):
+    if isinstance(obstacle, Box):
         cos, sin = math.cos(obstacle.heading), math.sin(obstacle.heading)
         right, up = x[None, :] - obstacle.center[0], y[:, None] - obstacle.center[1]
         along = np.abs(right * cos + up * sin) - 0.5 * obstacle.length
@@ -137,7 +138,7 @@ def _box(obstacle: Obstacle, margin: float) -> Array:
     """Return the corners of an upright box around an obstacle."""
     center = np.array(_center(obstacle))
     half = margin + obstacle.contact_distance(0.0)
-    if isinstance(obstacle, Rectangle):
+    if isinstance(obstacle, Box):
         half += 0.5 * math.hypot(obstacle.length, obstacle.width)
     return np.array([center - half, center + half])
 
@@ -146,7 +147,7 @@ def _center(obstacle: Obstacle) -> Pair:
     """Return where the center of an obstacle that stands is, in m."""
     if isinstance(obstacle, Human):
         return obstacle.start
-    if isinstance(obstacle, (Disc, MovingDisc, Rectangle)):
+    if isinstance(obstacle, Disc | MovingDisc | Box):
         return obstacle.center
     raise TypeError(type(obstacle).__name__)
 

@@ -306,7 +306,7 @@ class Rectangle(Obstacle):
         self._set(_native=native)
 
 
-def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
+def frozen_path(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
     """Check the shapes of a recording and freeze it."""
     instants = numbers("time", time, "be an array of numbers")
     places = points("position", position)
@@ -319,7 +319,7 @@ def _recorded(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
     return tuple(instants.tolist()), tuple((x, y) for x, y in places.tolist())
 
 
-def _segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]) -> tuple[Segment, ...]:
+def frozen_segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]) -> tuple[Segment, ...]:
     """Freeze a list of (duration, velocity, acceleration)."""
     frozen = []
     rule = "be (duration, velocity, acceleration)"
@@ -427,7 +427,7 @@ class MovingDisc(Obstacle):
     @classmethod
     def from_path(cls, time: npt.ArrayLike, position: npt.ArrayLike, *, radius: float, **fields: Any) -> Self:
         """Return a disc that follows a recording; see `Human.from_path`."""
-        path = _recorded(time, position)
+        path = frozen_path(time, position)
         return cls(center=path[1][0], velocity=(0.0, 0.0), radius=radius, path=path, **fields)
 
     @classmethod
@@ -440,7 +440,7 @@ class MovingDisc(Obstacle):
         **fields: Any,
     ) -> Self:
         """Return a disc with piecewise constant acceleration; see `Human.from_segments`."""
-        frozen = _segments(segments)
+        frozen = frozen_segments(segments)
         velocity = frozen[0][1] if frozen else (0.0, 0.0)
         return cls(center=start, velocity=velocity, radius=radius, segments=frozen, **fields)
 
@@ -537,7 +537,7 @@ class Human(Obstacle):
         >>> person.start
         (0.0, 0.0)
         """
-        path = _recorded(time, position)
+        path = frozen_path(time, position)
         return cls(start=path[1][0], velocity=(0.0, 0.0), path=path, **fields)
 
     @classmethod
@@ -576,6 +576,6 @@ class Human(Obstacle):
         >>> len(stops.segments)
         2
         """
-        frozen = _segments(segments)
+        frozen = frozen_segments(segments)
         velocity = frozen[0][1] if frozen else (0.0, 0.0)
         return cls(start=start, velocity=velocity, segments=frozen, **fields)

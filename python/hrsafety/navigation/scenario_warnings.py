@@ -9,7 +9,8 @@ from typing import Protocol
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
-from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.moving_rectangle import Box, Mobile
+from hrsafety.navigation.obstacles import Human, Obstacle, Rectangle
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
@@ -118,7 +119,7 @@ def own_speed(obstacle: Obstacle) -> float:
     float
         Speed in m/s; 0 for what stands.
     """
-    if not isinstance(obstacle, (Human, MovingDisc)):
+    if not isinstance(obstacle, Mobile):
         return 0.0
     if obstacle.path is not None:
         instants, places = obstacle.path
@@ -200,9 +201,11 @@ def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     found: dict[str, tuple[object, str]] = {}
     for place in ("start", "center"):
         found[place] = (getattr(obstacle, place, None), "floor_position")
-    if isinstance(obstacle, Rectangle):
+    if isinstance(obstacle, Box):
         found |= {name: (getattr(obstacle, name), "obstacle_size") for name in ("length", "width")}
-        return found | {"heading": (obstacle.heading, "heading")}
+        found["heading"] = (obstacle.heading, "heading")
+    if isinstance(obstacle, Rectangle):
+        return found
     person = isinstance(obstacle, Human)
     kind = "person_speed" if person else "obstacle_speed"
     found["radius"] = (getattr(obstacle, "radius", None), "person_radius" if person else "obstacle_size")

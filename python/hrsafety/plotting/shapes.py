@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety.navigation.moving_rectangle import Box, Mobile, MovingRectangle
 from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plotting import style
@@ -37,12 +38,14 @@ def kind(obstacle: Obstacle) -> str:
         return "person"
     if isinstance(obstacle, MovingDisc):
         return "moving disc"
+    if isinstance(obstacle, MovingRectangle):
+        return "moving rectangle"
     return "rectangle" if isinstance(obstacle, Rectangle) else "disc"
 
 
 def is_mobile(obstacle: Obstacle) -> bool:
     """Return whether an obstacle belongs to a class that can move."""
-    return isinstance(obstacle, (Human, MovingDisc))
+    return isinstance(obstacle, Mobile)
 
 
 def looks(obstacles: Sequence[Obstacle]) -> list[Look]:
@@ -50,11 +53,15 @@ def looks(obstacles: Sequence[Obstacle]) -> list[Look]:
     kinds = [kind(obstacle) for obstacle in obstacles]
     many = len(obstacles) > MOST_COLORS
     total, seen = Counter(kinds), Counter[str]()
-    stationary = 0
+    stationary = moving = 0
+    palette: Sequence[str]
     result = []
     for word in kinds:
-        if word in {"person", "moving disc"}:
-            palette, index = (style.PERSON_COLORS if word == "person" else style.MOVING_COLORS), seen[word]
+        if word == "person":
+            palette, index = style.PERSON_COLORS, seen[word]
+        elif word.startswith("moving"):
+            palette, index = style.MOVING_COLORS, moving
+            moving += 1
         else:
             palette, index = style.STATIONARY_COLORS, stationary
             stationary += 1
@@ -66,7 +73,7 @@ def looks(obstacles: Sequence[Obstacle]) -> list[Look]:
 
 def first_position(obstacle: Obstacle) -> tuple[float, float] | None:
     """Return where an obstacle is at time 0, in m, or ``None`` if its recording does not hold that time."""
-    if isinstance(obstacle, (Human, MovingDisc)) and obstacle.path is not None:
+    if isinstance(obstacle, Mobile) and obstacle.path is not None:
         time, places = obstacle.path
         if not time[0] <= 0.0 <= time[-1]:
             return None
@@ -81,7 +88,7 @@ def center(obstacle: Obstacle) -> tuple[float, float]:
     return place
 
 
-def rectangle_outline(rectangle: Rectangle, center: npt.ArrayLike, offset: float = 0.0) -> Array:
+def rectangle_outline(rectangle: Box, center: npt.ArrayLike, offset: float = 0.0) -> Array:
     """Return the points at a distance ``offset`` from the contour of a rectangle, shape (n, 2)."""
     arcs = []
     for quarter, (sign_x, sign_y) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
@@ -97,17 +104,37 @@ def body(obstacle: Obstacle, position: npt.ArrayLike, **look: Any) -> Patch:
     """Return the patch of an obstacle's body at a position in m."""
     from matplotlib.patches import Circle, Polygon
 
-    if isinstance(obstacle, Rectangle):
+    if isinstance(obstacle, Box):
         return Polygon(rectangle_outline(obstacle, position), closed=True, **look)
     x, y = np.asarray(position, dtype=np.float64)
     return Circle((x, y), obstacle.radius, **look)  # type: ignore[attr-defined]  # round obstacles have one
+
+
+def least_half_width(obstacle: Obstacle) -> float:
+    """Return the radius of the largest disc about its center that fits into an obstacle, in m."""
+    if isinstance(obstacle, Box):
+        return 0.5 * min(obstacle.length, obstacle.width)
+    radius: float = obstacle.radius  # type: ignore[attr-defined]  # round obstacles have one
+    return radius
+
+
+def move(patch: Patch, position: npt.ArrayLike) -> None:
+    """Put a patch on axes that was made at the origin at a position in m."""
+    from matplotlib.patches import Circle
+    from matplotlib.transforms import Affine2D
+
+    x, y = np.asarray(position, dtype=np.float64)
+    if isinstance(patch, Circle):
+        patch.set_center((x, y))
+    elif patch.axes is not None:
+        patch.set_transform(Affine2D().translate(x, y) + patch.axes.transData)
 
 
 def region(obstacle: Obstacle, position: npt.ArrayLike, radius: float, **look: Any) -> Patch:
     """Return the patch of a region: a disc around the center, or the rounded contour of a rectangle."""
     from matplotlib.patches import Circle, Polygon
 
-    if isinstance(obstacle, Rectangle):
+    if isinstance(obstacle, Box):
         return Polygon(rectangle_outline(obstacle, position, radius), closed=True, **look)
     x, y = np.asarray(position, dtype=np.float64)
     return Circle((x, y), radius, **look)

@@ -15,6 +15,7 @@ from hrsafety._arguments import readable
 from hrsafety._display import displayed
 from hrsafety.datasets import load_track
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.moving_rectangle import Mobile
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 from hrsafety.scenarios.laws import law_of, safe_of
@@ -91,18 +92,15 @@ _REGIONS: dict[str, kind.Kind] = {
     "max_speed": kind.number,
 }
 _ROUND: dict[str, kind.Kind] = {"type": kind.word, "radius": kind.number, **_REGIONS}
-_RECORDED: dict[str, kind.Kind] = {**_ROUND, "time": kind.numbers, "position": kind.pairs}
 _DISC: Keys = MappingProxyType({**_ROUND, "center": kind.pair})
-_RECTANGLE: Keys = MappingProxyType(
-    {
-        "type": kind.word,
-        "center": kind.pair,
-        "length": kind.number,
-        "width": kind.number,
-        "heading": kind.number,
-        **_REGIONS,
-    }
-)
+_BOX: dict[str, kind.Kind] = {
+    "type": kind.word,
+    "length": kind.number,
+    "width": kind.number,
+    "heading": kind.number,
+    **_REGIONS,
+}
+_RECTANGLE: Keys = MappingProxyType({**_BOX, "center": kind.pair})
 
 
 @kind.top_level(_TOP)
@@ -116,8 +114,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     - ``[robot]`` with ``type``, ``"holonomic"`` when left out or ``"differential_drive"``, and the
       fields of `HolonomicRobot` or `DifferentialDriveRobot`;
     - ``[[obstacles]]``, each with ``type`` and the fields of its class: ``"disc"``,
-      ``"rectangle"``, ``"moving_disc"``, ``"human"``. The motion of the last two is either
-      ``velocity`` with ``stop`` (a moving disc: or ``acceleration``), or ``segments``, an array
+      ``"rectangle"``, ``"moving_disc"``, ``"moving_rectangle"``, ``"human"``. The motion of the last
+      three is either ``velocity`` with ``stop`` (not a person: or ``acceleration``), or ``segments``, an array
       of ``{duration, velocity, acceleration}``, or a recording: ``time`` and ``position``
       arrays, or ``path``, a CSV file with the columns t_s, x_m, y_m, relative to the scenario
       file;
@@ -254,34 +252,40 @@ def _rectangle(path: str, table: dict[str, Any], _folder: Path) -> nav.Obstacle:
 
 
 def _human(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
-    return _moving(path, table, folder, nav.Human, place="start", required=())
+    return _moving(path, table, folder, nav.Human, place="start", outline=_ROUND)
 
 
 def _moving_disc(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
-    return _moving(path, table, folder, nav.MovingDisc, place="center", required=("radius",))
+    return _moving(path, table, folder, nav.MovingDisc, place="center", outline=_ROUND, required=("radius",))
+
+
+def _moving_rectangle(path: str, table: dict[str, Any], folder: Path) -> nav.Obstacle:
+    body, required = nav.MovingRectangle, ("length", "width")
+    return _moving(path, table, folder, body, place="center", outline=_BOX, required=required)
 
 
 def _moving(
     path: str,
     table: dict[str, Any],
     folder: Path,
-    body: type[nav.Human] | type[nav.MovingDisc],
+    body: type[Mobile],
     *,
     place: str,
-    required: tuple[str, ...],
+    outline: Mapping[str, kind.Kind],
+    required: tuple[str, ...] = (),
 ) -> nav.Obstacle:
     """Return a body that walks straight, in segments, or as recorded."""
     known: dict[str, kind.Kind]
     needed: tuple[str, ...]
     if "path" in table:
-        known, needed = {**_ROUND, "path": kind.word}, ("path",)
+        known, needed = {**outline, "path": kind.word}, ("path",)
     elif "time" in table or "position" in table:
-        known, needed = _RECORDED, ("time", "position")
+        known, needed = {**outline, "time": kind.numbers, "position": kind.pairs}, ("time", "position")
     elif "segments" in table:
-        known, needed = {**_ROUND, place: kind.pair, "segments": kind.segments}, (place, "segments")
+        known, needed = {**outline, place: kind.pair, "segments": kind.segments}, (place, "segments")
     else:
-        known = {**_ROUND, place: kind.pair, "velocity": kind.pair, "stop": kind.pair}
-        if body is nav.MovingDisc:
+        known = {**outline, place: kind.pair, "velocity": kind.pair, "stop": kind.pair}
+        if body is not nav.Human:
             known["acceleration"] = kind.pair
         needed = (place, "velocity")
     if "velocity" in needed and "velocity" not in table and place in table:
@@ -309,5 +313,11 @@ def _track(path: str, file: Path) -> tuple[object, object]:
 
 _EVERYDAY = {"person": "human", "pedestrian": "human", "circle": "disc", "box": "rectangle", "wall": "rectangle"}
 _OBSTACLES: MappingProxyType[str, Callable[[str, dict[str, Any], Path], nav.Obstacle]] = MappingProxyType(
-    {"disc": _disc, "rectangle": _rectangle, "moving_disc": _moving_disc, "human": _human}
+    {
+        "disc": _disc,
+        "rectangle": _rectangle,
+        "moving_disc": _moving_disc,
+        "moving_rectangle": _moving_rectangle,
+        "human": _human,
+    }
 )

@@ -16,6 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import run_warnings
+from hrsafety.navigation.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.run_table import RunTable
@@ -339,7 +340,7 @@ def _whole(name: str, value: float) -> int:
 
 def _at_speed(obstacle: nav.Obstacle, speed: float) -> nav.Obstacle:
     """Return an obstacle that walks straight at another speed; others as they are."""
-    if not isinstance(obstacle, (nav.Human, nav.MovingDisc)):
+    if not isinstance(obstacle, Mobile):
         return obstacle
     if obstacle.segments is not None or obstacle.path is not None:
         raise InvalidParameterError("obstacle_speed", "be an axis only where all obstacles walk straight", obstacle)

@@ -153,6 +153,7 @@ def test_somebody_faster_than_the_regions_are_sized_for() -> None:
         (lambda **regions: nav.Human.from_path([0, 1], [[2, 0], [2, 1]], **regions), 0.65),
         (lambda **regions: nav.Human.from_segments((2, 0), [(1, (0, 1), (0, 0))], **regions), 0.65),
         (lambda **regions: nav.Rectangle(center=(2, 0), length=0.2, width=0.2, **regions), 0.25),
+        (lambda **given: nav.MovingRectangle(center=(2, 0), length=0.2, width=0.2, velocity=(0, 1), **given), 0.25),
     ],
 )
 def test_clearances_are_measured_between_the_surfaces_of_every_shape(shape: Any, contact: float) -> None:

@@ -37,6 +37,10 @@ RIGHT: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Disc": (nav.Disc, {"center": (2.0, 0.6), "radius": 0.1}),
     "Rectangle": (nav.Rectangle, {"center": (2.0, 0.0), "length": 1.4, "width": 0.6}),
     "MovingDisc": (nav.MovingDisc, {"center": (3.0, 4.0), "radius": 0.2, "velocity": (0.0, -0.5)}),
+    "MovingRectangle": (
+        nav.MovingRectangle,
+        {"center": (3.0, 4.0), "length": 1.4, "width": 0.6, "velocity": (0.0, -0.5)},
+    ),
     "Human": (nav.Human, {"start": (0.6, 0.6), "velocity": (1.0, 0.0)}),
     "Scenario": (nav.Scenario, {"start": (3.9, 0.6), "goal": (0.0, 0.6)}),
 }
@@ -87,6 +91,20 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
     "MovingDisc": {
         "center": POINT,
         "radius": POSITIVE,
+        "velocity": POINT,
+        "acceleration": POINT,
+        "stop": (*OPTIONAL_POINT, (3.0, 5.0), (4.0, 3.0)),
+        "active_radius": OPTIONAL_POSITIVE,
+        "critical_radius": OPTIONAL_NOT_NEGATIVE,
+        "active_clearance": OPTIONAL_POSITIVE,
+        "critical_clearance": OPTIONAL_NOT_NEGATIVE,
+        "max_speed": OPTIONAL_NOT_NEGATIVE,
+    },
+    "MovingRectangle": {
+        "center": POINT,
+        "length": POSITIVE,
+        "width": POSITIVE,
+        "heading": NUMBER,
         "velocity": POINT,
         "acceleration": POINT,
         "stop": (*OPTIONAL_POINT, (3.0, 5.0), (4.0, 3.0)),
@@ -164,7 +182,7 @@ def test_cap_belongs_to_the_capped_mode(mode: Any, cap: str) -> None:
     assert names(caught.value) == "stabilizing"
 
 
-@pytest.mark.parametrize("kind", ["Disc", "Rectangle", "MovingDisc", "Human"])
+@pytest.mark.parametrize("kind", ["Disc", "Rectangle", "MovingDisc", "MovingRectangle", "Human"])
 @pytest.mark.parametrize(("active", "critical"), [(0.4, 0.4), (0.4, 0.8), (0.4, math.nextafter(0.4, 1.0))])
 def test_active_region_must_be_larger_than_critical_region(kind: str, active: float, critical: float) -> None:
     build, right = RIGHT[kind]
@@ -181,6 +199,7 @@ OBSTACLES = [
     nav.Human(start=(3.5, 0.6), velocity=(1.0, 0.0)),
     nav.Human(start=(3.9, 0.6), velocity=(0.0, 0.0)),
     nav.MovingDisc(center=(4.1, 0.6), radius=0.2, velocity=(1.0, 0.0)),
+    nav.MovingRectangle(center=(4.1, 0.6), length=0.4, width=0.1, velocity=(1.0, 0.0)),
 ]
 
 
@@ -202,9 +221,10 @@ def test_robot_may_not_start_in_contact(obstacle: nav.Obstacle) -> None:
     ],
     ids=repr,
 )
-def test_goal_may_not_lie_in_the_active_region_of_a_stationary_obstacle(obstacle: nav.Obstacle) -> None:
+def test_force_laws_refuse_a_goal_in_the_active_region_of_a_stationary_obstacle(obstacle: nav.Obstacle) -> None:
+    scene = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[obstacle])
     with pytest.raises(InvalidParameterError) as caught:
-        nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[obstacle])
+        nav.simulate(scene, nav.VirtualForceField())
     assert names(caught.value) == "goal"
 
 

@@ -24,6 +24,8 @@ VALUES: list[tuple[Any, dict[str, Any]]] = [
     (nav.Rectangle(center=(2.3, 0.0), length=1.4, width=0.6, heading=0.3), {"heading": 0.4}),
     (nav.MovingDisc(center=(3.0, 4.0), radius=0.2, velocity=(0.0, -0.5), stop=(3.0, 0.0)), {"stop": None}),
     (nav.MovingDisc.from_path([0.0, 0.4], [[0.0, 0.0], [0.1, 0.0]], radius=0.2), {"radius": 0.3}),
+    (nav.MovingRectangle(center=(3.0, 4.0), length=1.2, width=0.8, velocity=(0.0, -0.5)), {"heading": 0.4}),
+    (nav.MovingRectangle.from_path([0.0, 0.4], [[0, 0], [0.1, 0]], length=1.2, width=0.8), {"width": 0.3}),
     (nav.Human(start=(0.6, 0.6), velocity=(1.0, 0.0), stop=(4.0, 0.6)), {"max_speed": 1.5}),
     (nav.Human.from_path([0.0, 0.4], [[0.0, 0.0], [0.5, 0.1]]), {"radius": 0.3}),
     (

@@ -92,7 +92,7 @@ class OptimalReciprocalCollisionAvoidance(Law):
 
     Each obstacle forbids a half-plane of velocities, which keeps the robot clear of it for the
     time of the horizon; the permitted velocity nearest to the one straight to the goal is taken.
-    Rectangles are never traded for people: where no velocity is permitted, the half-planes of
+    Rectangles that stand are never traded for people: where no velocity is permitted, the half-planes of
     people are violated as little as possible. The command is the force ``m (v* - V)/T_s``.
 
     Parameters

@@ -137,7 +137,8 @@ class _Stage:
     def _add_moving(self, axes: Axes, index: int, color: str, name: str) -> tuple[int, Any, Any, list[Any]]:
         """Add body, id and regions of a moving obstacle, all hidden."""
         obstacle: Any = self.run.scenario.obstacles[index]
-        body = _add_circle(axes, obstacle.radius, facecolor=color, edgecolor="white", zorder=3.2)
+        edges: style.Properties = {"edgecolor": "white", "linewidth": 1.0, "zorder": 3.2, "animated": True}
+        body = axes.add_patch(shapes.body(obstacle, (0.0, 0.0), facecolor=color, **edges))
         letters: style.Properties = {
             "ha": "center",
             "va": "center_baseline",
@@ -145,7 +146,7 @@ class _Stage:
             "fontsize": 9.0,
             "clip_on": True,
         }
-        shown_name = name if obstacle.radius >= SMALLEST_BODY_WITH_ID else ""
+        shown_name = name if shapes.least_half_width(obstacle) >= SMALLEST_BODY_WITH_ID else ""
         text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=4.5, animated=True, **letters)
         rings = []
         if self.regions:
@@ -185,7 +186,7 @@ class _Stage:
             if present:
                 text.set_position(place)
                 for patch in (body, *rings):
-                    patch.set_center(place)
+                    shapes.move(patch, place)
         self.trail.set_data(run.position[: row + 1, 0], run.position[: row + 1, 1])
         self.robot.set_center(run.position[row])
         touched = run.contact_time[run.contact_time <= run.time[row]]

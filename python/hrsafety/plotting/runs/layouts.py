@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.navigation.obstacles import Human, MovingDisc
+from hrsafety.navigation.moving_rectangle import Mobile
+from hrsafety.navigation.obstacles import Human
 from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
         if place is not None:
             shown = regions and _shows_regions(scenario, obstacle)
             shapes.add_obstacle(axes, obstacle, place, look.color, regions=shown)
-        if isinstance(obstacle, (Human, MovingDisc)):
+        if isinstance(obstacle, Mobile):
             _draw_motion(axes, obstacle, look.color)
     shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
     shapes.add_start_and_goal(axes, scenario)
@@ -83,7 +84,7 @@ def _shows_regions(scenario: Scenario, obstacle: Obstacle) -> bool:
     return len(scenario.obstacles) <= shapes.MOST_COLORS or not shapes.is_mobile(obstacle)
 
 
-def _way(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
+def _way(obstacle: Mobile) -> list[tuple[float, float]]:
     """Return where a moving obstacle is known to pass: its recording, or start and stop."""
     if obstacle.path is not None:
         return list(obstacle.path[1])
@@ -91,7 +92,7 @@ def _way(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
     return [start] if obstacle.stop is None else [start, obstacle.stop]
 
 
-def _arrow(obstacle: Human | MovingDisc) -> list[tuple[float, float]]:
+def _arrow(obstacle: Mobile) -> list[tuple[float, float]]:
     """Return both ends of the way of the first second, or nothing for an obstacle that is absent or at rest."""
     start, velocity = shapes.first_position(obstacle), obstacle.velocity
     if start is None:
@@ -116,14 +117,14 @@ def _limits_of_layout(scenario: Scenario, *, regions: bool) -> style.Limits:
             points.append(shapes.body(obstacle, place).get_extents().get_points())
             if regions and _shows_regions(scenario, obstacle):
                 points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
-        if isinstance(obstacle, (Human, MovingDisc)):
+        if isinstance(obstacle, Mobile):
             points.append(_arrow(obstacle))
             if len(scenario.obstacles) <= shapes.MOST_COLORS:
                 points.append(_way(obstacle))
     return inputs.view_limits(points, margin=MARGIN)
 
 
-def _draw_motion(axes: Axes, obstacle: Human | MovingDisc, color: str) -> None:
+def _draw_motion(axes: Axes, obstacle: Mobile, color: str) -> None:
     """Draw the way of one second as an arrow, and the known way as a dotted line."""
     from matplotlib.patches import FancyArrowPatch
 
