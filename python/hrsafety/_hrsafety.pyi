@@ -480,6 +480,15 @@ class Shield:
     ) -> tuple[list[float], str, list[float]]:
         """Return the velocity that is commanded, the status, and the gap of wanted and commanded one."""
 
+    def examine(
+        self,
+        limits: tuple[float, float, float, float],
+        state: tuple[_Pair, _Pair],
+        command: _Pair,
+        others: list[tuple[_Pair, tuple[float, float, float], _Pair, _Pair]],
+    ) -> tuple[float, list[Any]]:
+        """Return the gap of the plan behind a command, its instants, and where the robot is at them."""
+
 def guarded_law(law: Law, **given: object) -> Law:
     """Return the law with parts around it."""
 

@@ -4,9 +4,12 @@ use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverRule;
 use vff_core::laws::safe::SafeNavigation;
-use vff_core::laws::shield::{self, Friendly, Guard, KnownVelocity, Limits, Person, View, Walls};
+use vff_core::laws::shield::{
+    self, Friendly, Guard, KnownVelocity, Limits, Person, Plan, View, Walls,
+};
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
+use vff_core::world::shape::PlacedShape;
 
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, parameter_class};
@@ -26,6 +29,10 @@ pub struct Shield(pub shield::Shield);
 
 /// Radius, largest speed, largest acceleration and control period of a robot.
 type RobotLimits = (f64, f64, f64, f64);
+
+/// Center, outline (radius, or length, width and heading), velocity, largest speed and largest error of
+/// the position of somebody; a radius has NaN beside it.
+type OutlineState = ([f64; 2], [f64; 3], [f64; 2], [f64; 2]);
 
 /// Center, radius and velocity of a person; the velocity is NaN where it is not known.
 type PersonState = ([f64; 2], f64, [f64; 2]);
@@ -92,9 +99,71 @@ impl Shield {
         let velocity: [f64; 2] = decision.velocity.into();
         Ok((velocity, decision.status.word(), gaps))
     }
+
+    /// Of the plan behind a command: the gap, its instants, and where the robot is at them.
+    fn examine<'py>(
+        &self,
+        py: Python<'py>,
+        limits: RobotLimits,
+        state: ([f64; 2], [f64; 2]),
+        command: [f64; 2],
+        others: Vec<OutlineState>,
+    ) -> PyResult<(f64, [Bound<'py, PyAny>; 2])> {
+        let (radius, max_speed, max_acceleration, period) = limits;
+        let limits = Limits {
+            radius,
+            max_speed,
+            max_acceleration,
+            period,
+        };
+        let guard = Guard::new(self.0, limits).map_err(CoreError::from)?;
+        let others: Vec<Person> = others.into_iter().map(|each| self.other(each)).collect();
+        let view = View {
+            robot: RobotState {
+                position: state.0.into(),
+                velocity: state.1.into(),
+            },
+            people: &others,
+            walls: Walls::NONE,
+        };
+        let plan = Plan::new(&view.robot, command.into(), &guard.limits);
+        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
+        let instants: Vec<f64> = (0..=PARTS_OF_PLAN)
+            .map(|part| plan.end() * share(part))
+            .collect();
+        let places: Vec<[f64; 2]> = instants
+            .iter()
+            .map(|time| plan.position(*time).into())
+            .collect();
+        let found = [
+            instants.into_pyobject(py)?.into_any(),
+            places.into_pyobject(py)?.into_any(),
+        ];
+        Ok((guard.gap(&view, command.into()), found))
+    }
 }
 
+/// Parts of a plan between the instants that are told.
+const PARTS_OF_PLAN: u32 = 24;
+
 impl Shield {
+    /// Somebody or something with bounds of its own.
+    fn other(&self, (center, outline, velocity, [speed, error]): OutlineState) -> Person {
+        let [size, width, heading] = outline;
+        let person = self.person((center, size, velocity));
+        let placed = if width.is_nan() {
+            person.placed
+        } else {
+            PlacedShape::turned(center, [size, width], heading)
+        };
+        Person {
+            placed,
+            position_error: error,
+            max_speed: speed,
+            ..person
+        }
+    }
+
     fn person(&self, (center, radius, velocity): PersonState) -> Person {
         let known = |[error, acceleration]: [f64; 2]| KnownVelocity {
             velocity: Vector2::from(velocity),

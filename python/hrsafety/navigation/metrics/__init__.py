@@ -15,6 +15,7 @@ from hrsafety.navigation.metrics.scores import (
 )
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.pursuits import Falsification, Pursuit, falsify
+from hrsafety.navigation.safety_record import SafetyDecision, SafetyRecord, record_safety
 
 __all__ = [
     "METRICS",
@@ -30,6 +31,8 @@ __all__ = [
     "Paired",
     "Performance",
     "Pursuit",
+    "SafetyDecision",
+    "SafetyRecord",
     "Share",
     "Standing",
     "WorldMetrics",
@@ -39,6 +42,7 @@ __all__ = [
     "evaluate_world",
     "falsify",
     "mean_interval",
+    "record_safety",
     "step_cost",
     "wilson",
 ]

@@ -1,6 +1,7 @@
 """Pictures of runs: paths, distances, energies, forces, animations."""
 
 from hrsafety.plotting.runs.animation import animate
+from hrsafety.plotting.runs.decisions import animate_safety, safety_decision
 from hrsafety.plotting.runs.energies import energy
 from hrsafety.plotting.runs.fields import force_field, potential_valley
 from hrsafety.plotting.runs.histories import distances, lyapunov
@@ -11,6 +12,7 @@ from hrsafety.plotting.runs.sequences import time_sequence
 
 __all__ = [
     "animate",
+    "animate_safety",
     "distances",
     "energy",
     "force_field",
@@ -19,5 +21,6 @@ __all__ = [
     "lyapunov",
     "paths",
     "potential_valley",
+    "safety_decision",
     "time_sequence",
 ]
