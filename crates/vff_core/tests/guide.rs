@@ -1,5 +1,6 @@
 //! The guide: check values, completeness of the plan, arrival by local goals, what is refused.
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector2;
@@ -8,6 +9,7 @@ use vff_core::error::Failure;
 use vff_core::laws::Stop;
 use vff_core::laws::guide::{Guidance, Guide, Plan, Takeover, TakeoverRule};
 use vff_core::world::map::{MapShapes, StaticMap};
+use vff_core::world::shape::PlacedShape;
 
 type Point = Vector2<f64>;
 
@@ -202,7 +204,7 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
     let mut guidance = Guidance::new(guide, 0.3, plan);
     let at = Point::from(start);
     let direct = guidance.plan().cost(at).unwrap();
-    let person = Some((Point::new(2.0, 0.5), 0.3));
+    let person = Some(PlacedShape::disc([2.0, 0.5], 0.3));
     let mut look = |time: f64, person| {
         let people = std::iter::once(person);
         guidance.observe(time, at, people, Stop::never()).unwrap();
@@ -211,16 +213,23 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
     assert_eq!(look(0.0, person), direct);
     assert!(look(2.0, person) > direct + 1.0);
     assert_eq!(look(2.1, None), direct);
+    // A gate across the door is in the way by its outline, one that is drawn back is not.
+    let gate = |x: f64, y: f64| Some(PlacedShape::turned([x, y], [0.9, 0.1], 0.5 * PI));
+    look(2.2, gate(2.0, 0.5));
+    assert!(look(4.3, gate(2.0, 0.5)) > direct + 1.0);
+    look(4.4, gate(3.0, 3.0));
+    assert_eq!(look(6.5, gate(3.0, 3.0)), direct);
+    look(6.6, None);
     // In the way of both doors nobody waits for another plan.
     let mut both = |time: f64| {
-        let people = [0.5, -2.0].map(|y| Some((Point::new(2.0, y), 0.45)));
+        let people = [0.5, -2.0].map(|y| Some(PlacedShape::disc([2.0, y], 0.45)));
         guidance
             .observe(time, at, people.into_iter(), Stop::never())
             .unwrap();
         guidance.plan().cost(at).unwrap()
     };
-    both(3.0);
-    assert_eq!(both(5.0), direct);
+    both(7.0);
+    assert_eq!(both(9.0), direct);
 }
 
 #[test]
