@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety import HrsafetyError, datasets, impact, navigation, plotting, reactive, reproduce, scenarios, sweep
+from hrsafety import HrsafetyError, datasets, gym, impact, navigation, plotting, reactive, reproduce, scenarios, sweep
 from hrsafety.cli import main
 
 FILES = {
@@ -66,8 +66,11 @@ STUDY = sweep.ImpactStudy(manipulator=ARM, foam=FOAM, head=HEAD, fixed={"closing
 PEOPLE = datasets.Recording(
     time_s=[0.0, 0.0, 0.4, 0.4], person=[1, 2, 1, 2], position=[[0.0, 0.0], [5.0, 1.0], [0.5, 0.0], [5.5, 1.0]]
 )
+MET = navigation.crowd.simulate_crowd(scenarios.circle_crossing(0))
 NAMES = {
     "np": np,
+    "gym": gym,
+    "met": MET,
     "nav": navigation,
     "impact": impact,
     "reactive": reactive,
@@ -310,6 +313,19 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "sequence of too many instants": "plotting.time_sequence(nav.simulate(scene, law), instants=2**31)",
         "overview of too many points": "plotting.sweep_scatter(sweep.run(sweep.Grid([axis]), study), "
         "'peak_head_acceleration', most=10**9)",
+    },
+    "Learners and crowds": {
+        "environment without a robot": "gym.CrowdEnv(nav.crowd.World())",
+        "no environments": "gym.CrowdVectorEnv(gym.circle_crossing(), num_envs=0)",
+        "action misspelt": 'gym.CrowdEnv(gym.circle_crossing(), action="velocty")',
+        "action of three numbers": "gym.CrowdEnv(gym.circle_crossing()).step([0.0, 0.0, 0.0])",
+        "action that is not finite": "gym.CrowdEnv(gym.circle_crossing()).step([np.nan, 0.0])",
+        "many robots, all with a law": "gym.parallel_env(scenarios.antipodal(4, robots=2, law=law))",
+        "nobody told what to do": "gym.parallel_env(scenarios.antipodal(4, robots=2)).step({'robot_0': [0.0, 0.0]})",
+        "instant after the end": "plotting.crowds.crowd_paths(met, at=1000.0)",
+        "colors by an unknown word": "plotting.crowds.crowd_paths(met, color_by='grop')",
+        "direction without a length": "plotting.crowds.space_time(met, along=(0.0, 0.0))",
+        "world for the animation of a run": "plotting.animate(met, 'run.gif')",
     },
     "Command line": {
         "no command": "hrsafety",

@@ -275,6 +275,9 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         """Return an action for each robot under way, in their order."""
         if not isinstance(actions, Mapping) or set(actions) != set(self.agents):
             named = list(actions) if isinstance(actions, Mapping) else actions
+            if not self.agents:
+                remedy = "start an episode by reset first"
+                raise InvalidParameterError("actions", "be for robots whose episode is under way", named, remedy)
             raise InvalidParameterError("actions", f"name each of {self.agents}", named)
         found = {name: numbers(f"actions[{name!r}]", actions[name]) for name in self.agents}
         for name, action in found.items():
