@@ -147,7 +147,7 @@ def test_bad_input_is_named() -> None:
         with pytest.raises(InvalidParameterError, match=f"{next(iter(options))} must"):
             gym.parallel_env(world(robot(0)), **options)
     env = gym.parallel_env(world(robot(0), robot(1)))
-    with pytest.raises(InvalidParameterError, match="under way.*reset first"):
+    with pytest.raises(InvalidParameterError, match=r"under way.*reset first"):
         env.step({"robot_0": [0.0, 0.0]})
     env.reset(seed=0)
     with pytest.raises(InvalidParameterError, match="actions must name each of"):
