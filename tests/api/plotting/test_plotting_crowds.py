@@ -16,7 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plotting import style
-from hrsafety.plotting.crowds import scenes
+from hrsafety.plotting.crowds import world_scenes
 from pictures import assert_readable
 
 LAW = nav.OptimalReciprocalCollisionAvoidance()
@@ -46,7 +46,7 @@ def groups() -> nav.crowd.CrowdTrajectories:
 
 def mixed() -> nav.crowd.CrowdTrajectories:
     """All models, a recorded person, and somebody from a source, among three robots."""
-    models = [getattr(nav.crowd, name)() for name in scenes.MODELS]
+    models = [getattr(nav.crowd, name)() for name in world_scenes.MODELS]
     people = [
         nav.crowd.Person(start=(0.0, 1.2 * k), route=[(6.0, 1.2 * k)], model=each) for k, each in enumerate(models)
     ]
@@ -117,10 +117,10 @@ def test_the_instant_is_the_nearest_one_unless_given() -> None:
 
 
 def test_contacts_are_marked_and_in_the_legend() -> None:
-    touched = next(run for case in range(20) if scenes.contacts(run := crossed(case, visible=False)))
+    touched = next(run for case in range(20) if world_scenes.contacts(run := crossed(case, visible=False)))
     figure = plotting.crowds.crowd_paths(touched)
     assert "first contact" in legend(figure)
-    row, robot = scenes.contacts(touched)[0]
+    row, robot = world_scenes.contacts(touched)[0]
     marks = [line.get_xydata()[0].tolist() for line in figure.axes[0].lines if line.get_marker() == "X"]
     assert touched.robot_position[row, robot].tolist() in marks
     assert "first contact" not in legend(plotting.crowds.crowd_paths(corridor()))
@@ -129,15 +129,15 @@ def test_contacts_are_marked_and_in_the_legend() -> None:
 def test_colors_tell_models_or_groups() -> None:
     words = legend(plotting.crowds.crowd_paths(mixed()))
     assert [each for each in words if "person" in each or "Moussa" in each]
-    for model in (*scenes.MODELS.values(), "recorded person"):
+    for model in (*world_scenes.MODELS.values(), "recorded person"):
         assert any(model in each for each in words)
     words = legend(plotting.crowds.crowd_paths(groups(), color_by="group"))
     assert {"group 0", "group 7", "no group", "wall"} <= set(words)
-    assert not set(scenes.PEOPLE_COLORS) & set(style.RUN_COLORS)
+    assert not set(world_scenes.PEOPLE_COLORS) & set(style.RUN_COLORS)
 
 
 def test_a_floor_that_repeats_shows_people_at_all_their_places() -> None:
-    place = scenes.Floor(((-1.0, 11.0), (0.0, 3.0)), np.zeros(2), np.array([10.0, np.inf]))
+    place = world_scenes.Floor(((-1.0, 11.0), (0.0, 3.0)), np.zeros(2), np.array([10.0, np.inf]))
     found = sorted(float(each[0]) for each in place.copies(np.array([9.5, 1.0]), 0.25))
     assert found == [-0.5, 9.5]
     np.testing.assert_allclose(place.wrapped(np.array([[23.0, 1.0], [-1.0, 5.0]])), [[3.0, 1.0], [9.0, 5.0]])

@@ -16,7 +16,18 @@ from hrsafety.plotting import floor
 
 LIMITS = ((-1.0, 3.0), (0.0, 2.0))
 # Pictures of the floor; a figure of their own kind would leave the shared panels.
-PICTURES = {"scenes", "law_runs", "sequences", "tracking", "repeated", "layouts", "follower", "skirt"}
+PICTURES = {
+    "scenes",
+    "law_runs",
+    "sequences",
+    "tracking",
+    "repeated",
+    "layouts",
+    "follower",
+    "skirt",
+    "instants",
+    "paths",
+}
 
 
 def test_panels_have_equal_scales_and_labels_where_nothing_lies_below() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hrsafety._arguments import callback
 from hrsafety.plotting import floor, movies, notes, style
-from hrsafety.plotting.crowds import scenes
+from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -83,8 +83,8 @@ def animate_crowd(
     ...     file.name
     'door.gif'
     """
-    run = scenes.checked_crowd(run)
-    kinds = scenes.kinds_of_people(run, color_by)
+    run = world_scenes.checked_crowd(run)
+    kinds = world_scenes.kinds_of_people(run, color_by)
     target = movies.checked_target(path)
     instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
     rows = [*(int(np.abs(run.time - instant).argmin()) for instant in instants), len(run.time) - 1]
@@ -96,18 +96,18 @@ def animate_crowd(
 class _Stage:
     """What moves in the picture of a world: its artists, and how they show one row."""
 
-    def __init__(self, axes: Axes, run: CrowdTrajectories, place: scenes.Floor, kinds: Sequence[str]) -> None:
+    def __init__(self, axes: Axes, run: CrowdTrajectories, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
         self.run, self.place = run, place
-        colors = scenes.color_of(kinds)
+        colors = world_scenes.color_of(kinds)
         self.people = [
             _circle(axes, radius, colors[kind], 3.2) for kind, radius in zip(kinds, run.radius.tolist(), strict=True)
         ]
-        looks = [str(look["color"]) for look in scenes.robot_looks(len(run.world.robots))]
+        looks = [str(look["color"]) for look in world_scenes.robot_looks(len(run.world.robots))]
         self.trails = [axes.plot([], [], color=color, linewidth=2.0, zorder=4.0, animated=True)[0] for color in looks]
         self.robots = [
             _circle(axes, robot.robot.radius, color, 5.0) for robot, color in zip(run.world.robots, looks, strict=True)
         ]
-        self.touched = scenes.contacts(run)
+        self.touched = world_scenes.contacts(run)
         self.contacts = axes.plot([], [], zorder=7.0, animated=True, **floor.CONTACT)[0]
         box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
         where: style.Properties = {"x": 0.015, "y": 0.975, "transform": axes.transAxes, "ha": "left", "va": "top"}
@@ -142,7 +142,7 @@ def _circle(axes: Axes, radius: float, color: str, zorder: float) -> Any:
 
 
 def _background(
-    run: CrowdTrajectories, place: scenes.Floor, kinds: Sequence[str], *, title: str | None
+    run: CrowdTrajectories, place: world_scenes.Floor, kinds: Sequence[str], *, title: str | None
 ) -> tuple[Figure, Axes]:
     """Return a figure with everything that does not move."""
     handles = _handles(run, kinds)
@@ -150,8 +150,8 @@ def _background(
     figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
     axes = figure.subplots()
     style.frame_scene(axes, place.limits)
-    scenes.add_walls(axes, run.world, place)
-    scenes.add_goals(axes, run.world)
+    world_scenes.add_walls(axes, run.world, place)
+    world_scenes.add_goals(axes, run.world)
     style.legend_below(figure, handles, columns=3)
     notes.add_warnings(figure, run)
     return figure, axes
@@ -163,8 +163,8 @@ def _handles(run: CrowdTrajectories, kinds: Sequence[str]) -> list[Artist]:
     if run.world.robots:
         look: style.Properties = {"marker": "o", "markersize": 9, "linestyle": "-", "linewidth": 2.0}
         handles.append(floor.handle("robot, path so far", color=style.RUN_COLORS[0], **look))
-    handles += scenes.people_handles(kinds) + scenes.scene_handles(run.world)
-    if scenes.contacts(run):
+    handles += world_scenes.people_handles(kinds) + world_scenes.scene_handles(run.world)
+    if world_scenes.contacts(run):
         handles.append(floor.handle("first contact", **floor.CONTACT))
     return handles
 
@@ -173,7 +173,7 @@ def _frames(
     run: CrowdTrajectories, rows: Sequence[int], kinds: Sequence[str], *, title: str | None
 ) -> Iterator[movies.Frame]:
     """Return the pictures: only what moves is drawn again."""
-    place = scenes.Floor.of(run)
+    place = world_scenes.Floor.of(run)
     figure, axes = _background(run, place, kinds, title=title)
     stage = _Stage(axes, run, place, kinds)
     artists = stage.artists()

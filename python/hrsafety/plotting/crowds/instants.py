@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.plotting import floor, style
-from hrsafety.plotting.crowds import scenes
+from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -21,7 +21,7 @@ __all__ = ["crowd_instant"]
 FAR = 15.0  # m around robots; walls beyond are not in view
 Body = tuple[tuple[float, float], float]
 
-PERSON_COLOR, OTHER_COLOR, ROBOT_COLOR = scenes.PEOPLE_COLORS[0], style.RUN_COLORS[4], style.RUN_COLORS[0]
+PERSON_COLOR, OTHER_COLOR, ROBOT_COLOR = world_scenes.PEOPLE_COLORS[0], style.RUN_COLORS[4], style.RUN_COLORS[0]
 
 
 @style.styled
@@ -49,17 +49,17 @@ def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Bo
     # Where nothing bounds the floor, as wide as long, with room for detours.
     half = (0.5 if world.walls else 0.65) * max(float(np.abs(ends[0] - ends[1]).max()), 1.0)
     square = np.array([ends.mean(axis=0) - half, ends.mean(axis=0) + half])
-    place = scenes.Floor.cell(world).showing(world, square, near=FAR)
+    place = world_scenes.Floor.cell(world).showing(world, square, near=FAR)
     handles = _handles(world)
     title = f"t = {time:.2f} s"
     figure, (axes,) = floor.panels(place.limits, entries=len(handles), legend_columns=3, title=title)
-    scenes.add_walls(axes, world, place)
-    scenes.add_goals(axes, world)
+    world_scenes.add_walls(axes, world, place)
+    world_scenes.add_goals(axes, world)
     drawn = ((people, PERSON_COLOR, 3.2), (robots, OTHER_COLOR, 4.4), ([robot], ROBOT_COLOR, 4.5))
     for bodies, color, zorder in drawn:
         look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": zorder}
         for where, radius in bodies:
-            scenes.draw_body(axes, place, np.asarray(where), radius, **look)
+            world_scenes.draw_body(axes, place, np.asarray(where), radius, **look)
     return floor.finish(figure, handles, columns=3)
 
 
@@ -71,4 +71,4 @@ def _handles(world: World) -> list[Artist]:
         handles.append(floor.handle("other robot", color=OTHER_COLOR, **look))
     if world.people or world.sources:
         handles.append(floor.handle("person", color=PERSON_COLOR, **look))
-    return handles + scenes.scene_handles(world)
+    return handles + world_scenes.scene_handles(world)

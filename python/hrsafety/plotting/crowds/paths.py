@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety._arguments import number
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import floor, inputs, style
-from hrsafety.plotting.crowds import scenes
+from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -72,19 +72,19 @@ def crowd_paths(
     >>> figure.get_suptitle()
     't = 5.00 s'
     """
-    run = scenes.checked_crowd(run)
+    run = world_scenes.checked_crowd(run)
     names = inputs.checked_labels(labels, len(run.world.robots), stem="robot")
     row = _row(run, at)
-    place = scenes.Floor.of(run)
-    kinds = scenes.kinds_of_people(run, color_by)
-    touched = scenes.contacts(run)
+    place = world_scenes.Floor.of(run)
+    kinds = world_scenes.kinds_of_people(run, color_by)
+    touched = world_scenes.contacts(run)
     handles = _handles(run, names, kinds, touched=bool(touched))
     words = f"t = {run.time[row]:.2f} s" if title is None else f"{title}, t = {run.time[row]:.2f} s"
     figure, (axes,) = floor.panels(place.limits, entries=len(handles), legend_columns=3, title=words)
-    scenes.add_walls(axes, run.world, place)
+    world_scenes.add_walls(axes, run.world, place)
     _draw_people(axes, run, row, place, kinds)
     _draw_robots(axes, run, row, place)
-    scenes.add_goals(axes, run.world)
+    world_scenes.add_goals(axes, run.world)
     for instant, robot in touched:
         axes.plot(*run.robot_position[instant, robot], zorder=7.0, **floor.CONTACT)
     return floor.finish(figure, handles, columns=3, runs=[run])
@@ -100,13 +100,13 @@ def _row(run: CrowdTrajectories, at: float | None) -> int:
         return int(np.abs(run.time - instant).argmin())
     if not run.world.robots or not run.position.shape[1]:
         return len(run.time) // 2
-    gap = [scenes.gaps(run, robot).min(axis=1) for robot in range(len(run.world.robots))]
+    gap = [world_scenes.gaps(run, robot).min(axis=1) for robot in range(len(run.world.robots))]
     return int(np.min(gap, axis=0).argmin())
 
 
-def _draw_people(axes: Axes, run: CrowdTrajectories, row: int, place: scenes.Floor, kinds: Sequence[str]) -> None:
+def _draw_people(axes: Axes, run: CrowdTrajectories, row: int, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
     """Draw people and their paths; of many people fainter ones."""
-    colors = scenes.color_of(kinds)
+    colors = world_scenes.color_of(kinds)
     strength = 0.9 if len(kinds) <= FEW else 0.35
     for person, kind in enumerate(kinds):
         color = colors[kind]
@@ -114,34 +114,34 @@ def _draw_people(axes: Axes, run: CrowdTrajectories, row: int, place: scenes.Flo
             look: style.Properties = {"color": color, "linewidth": 1.1, "alpha": strength, "linestyle": dashes}
             floor.line(axes, place.path(part), zorder=2.5, **look)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 3.2}
-        scenes.draw_body(axes, place, run.position[row, person], float(run.radius[person]), alpha=0.85, **body)
+        world_scenes.draw_body(axes, place, run.position[row, person], float(run.radius[person]), alpha=0.85, **body)
 
 
-def _draw_robots(axes: Axes, run: CrowdTrajectories, row: int, place: scenes.Floor) -> None:
+def _draw_robots(axes: Axes, run: CrowdTrajectories, row: int, place: world_scenes.Floor) -> None:
     """Draw robots and their paths, which do not begin again where the floor repeats itself: goals do not either."""
-    for index, look in enumerate(scenes.robot_looks(len(run.world.robots))):
+    for index, look in enumerate(world_scenes.robot_looks(len(run.world.robots))):
         robot = run.world.robots[index]
         path, color = run.robot_position[:, index], str(look["color"])
         floor.line(axes, path[: row + 1], zorder=5.0, color=color, linewidth=2.0)
         floor.line(axes, path[row:], zorder=4.9, color=color, linewidth=1.6, linestyle=TO_COME)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 4.5}
-        scenes.draw_body(axes, place, path[row], robot.robot.radius, **body)
+        world_scenes.draw_body(axes, place, path[row], robot.robot.radius, **body)
 
 
 def _handles(run: CrowdTrajectories, names: Sequence[str], kinds: Sequence[str], *, touched: bool) -> list[Artist]:
     """Return the legend."""
     robots = len(names)
-    looks = scenes.robot_looks(robots)
-    shown = list(names) if robots <= scenes.MOST_ROBOTS else ["robot"]
+    looks = world_scenes.robot_looks(robots)
+    shown = list(names) if robots <= world_scenes.MOST_ROBOTS else ["robot"]
     look: style.Properties = {"marker": "o", "markersize": 9, "linestyle": "-", "linewidth": 2.0}
     handles: list[Artist] = [
         floor.handle(name, **look, color=looks[index]["color"]) for index, name in enumerate(shown)
     ]
-    handles += scenes.people_handles(kinds)
+    handles += world_scenes.people_handles(kinds)
     if robots or kinds:
         handles.append(floor.handle("path so far", linestyle=SO_FAR, linewidth=1.4))
         handles.append(floor.handle("path to come", linestyle=TO_COME, linewidth=1.4))
-    handles += scenes.scene_handles(run.world)
+    handles += world_scenes.scene_handles(run.world)
     if touched:
         handles.append(floor.handle("first contact", **floor.CONTACT))
     return handles

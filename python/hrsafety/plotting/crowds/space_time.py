@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety._arguments import pair
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import floor, inputs, notes, style
-from hrsafety.plotting.crowds import scenes
+from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,7 +70,7 @@ def space_time(
     >>> [axes.get_ylabel() for axes in plotting.crowds.space_time(run).axes]
     ['x (m)', 'speed (m/s)']
     """
-    run = scenes.checked_crowd(run)
+    run = world_scenes.checked_crowd(run)
     names = inputs.checked_labels(labels, len(run.world.robots), stem="robot")
     given = np.array(pair("along", along))
     length = float(np.hypot(*given))
@@ -86,14 +86,14 @@ def space_time(
     if lines is not None:
         figure.colorbar(lines, ax=axes, label="speed (m/s)", pad=0.01)
     handles = []
-    for index, (name, look) in enumerate(zip(names, scenes.robot_looks(len(names)), strict=True)):
+    for index, (name, look) in enumerate(zip(names, world_scenes.robot_looks(len(names)), strict=True)):
         place = (run.robot_position[rows, index] - start) @ direction
         # A white edge keeps robots apart from people.
         time, way = _broken(run.time[rows], place, period)
         axes.plot(time, way, color="white", linewidth=4.4, zorder=4.0)
         axes.plot(time, way, linewidth=2.4, zorder=5.0, **look)
-        if index == 0 or len(names) <= scenes.MOST_ROBOTS:
-            one = name if len(names) <= scenes.MOST_ROBOTS else "robot"
+        if index == 0 or len(names) <= world_scenes.MOST_ROBOTS:
+            one = name if len(names) <= world_scenes.MOST_ROBOTS else "robot"
             handles.append(floor.handle(one, linewidth=2.4, **look))
     axes.set_xlabel("time (s)")
     axes.set_ylabel(OTHER_WAY if start.any() else AXES.get(tuple(direction.tolist()), OTHER_WAY))
