@@ -45,6 +45,7 @@ lint: build
 
 docs: build
 	$(BIN)/sphinx-build -W --keep-going -b html docs target/docs
+	$(BIN)/python docs/check_links.py target/docs
 
 check: lint docs
 

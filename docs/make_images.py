@@ -1,33 +1,84 @@
-"""Make the pictures of the documentation: run the code of the gallery, keep its PNG files."""
+"""Make the pictures of the documentation: run the code of the pages that show them, keep what it saves."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+SHOWN = re.compile(r"!\[[^\]]*\]\([\w./]*images/([\w.]+)\)")
+SAVED = re.compile(r"\"([\w.]+\.(?:png|gif))\"")
+GALLERY = "gallery.md"
+# Drawn from the source code by a script of its own.
+DRAWN = {"architecture.png": "make_architecture.py"}
 
 
-def main(recording: str) -> None:
-    """Make all pictures; the gallery reads the recording by its name."""
-    code = "\n".join(BLOCK.findall((DOCS / "gallery.md").read_text(encoding="utf-8")))
+def code_of(page: Path) -> str:
+    """Return the code of a page, block after block."""
+    return "\n".join(BLOCK.findall(page.read_text(encoding="utf-8")))
+
+
+def makers(docs: Path = DOCS) -> dict[str, str]:
+    """Return the page that makes each picture: it shows and saves it; the gallery before all others."""
+    pages = sorted(docs.rglob("*.md"), key=lambda page: (page.name != GALLERY, str(page)))
+    found: dict[str, str] = {}
+    for page in pages:
+        saved = set(SAVED.findall(code_of(page)))
+        for name in SHOWN.findall(page.read_text(encoding="utf-8")):
+            if name in saved:
+                found.setdefault(name, page.relative_to(docs).as_posix())
+    return found
+
+
+def make(page: str, recordings: Iterable[Path], images: Path, docs: Path = DOCS) -> list[str]:
+    """Run the code of a page in a folder with the recordings, and keep the pictures that are its own.
+
+    Parameters
+    ----------
+    page : str
+        Its path below the documentation.
+    recordings : iterable of Path
+        Files that the code reads by their names.
+    images : Path
+        Where the pictures are kept.
+    docs : Path
+        The documentation.
+
+    Returns
+    -------
+    list of str
+        Names of the pictures.
+    """
+    own = [name for name, maker in makers(docs).items() if maker == page]
     with tempfile.TemporaryDirectory() as folder:
-        shutil.copy(recording, folder)
-        os.chdir(folder)
-        exec(compile(code, "gallery.md", "exec"), {})
-        for picture in sorted(Path(folder).glob("*.png")):
-            shutil.copy(picture, DOCS / "images")
-            print(f"docs/images/{picture.name}")
-        os.chdir(DOCS)
+        for recording in recordings:
+            shutil.copy(recording, folder)
+        (Path(folder) / "page.py").write_text(code_of(docs / page), encoding="utf-8")
+        environment = {**os.environ, "MPLBACKEND": "Agg"}
+        subprocess.run([sys.executable, "-W", "error", "page.py"], cwd=folder, env=environment, check=True)
+        for name in own:
+            shutil.copy(Path(folder) / name, images)
+    return own
+
+
+def main() -> None:
+    """Make the pictures of all pages, or of some."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("recording", type=Path, help="zara01.csv")
+    parser.add_argument("pages", nargs="*", help="pages below docs, as gallery.md [all that have pictures]")
+    options = parser.parse_args()
+    for page in options.pages or sorted(set(makers().values())):
+        for name in make(page, [options.recording], DOCS / "images"):
+            print(f"docs/images/{name}", flush=True)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python docs/make_images.py zara01.csv")
-    os.environ.setdefault("MPLBACKEND", "Agg")
-    main(sys.argv[1])
+    main()

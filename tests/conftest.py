@@ -47,8 +47,8 @@ SLOW = {
         "test_reproduce_reactive.py",
         "test_reproduce_rows.py",
     },
-    "api/sweep": {"test_sweep_pools.py", "test_sweep_resume.py"},
-    "docs": {"test_built_numbers.py", "test_documents.py", "test_gains_guide.py", "test_numbers.py"},
+    "api/sweep": {"test_sweep_pools.py", "test_sweep_resume.py", "test_sweep_shares.py"},
+    "docs": {"test_built_numbers.py", "test_documents.py", "test_gains_guide.py", "test_images.py", "test_numbers.py"},
     "golden": {"test_impact_exact.py", "test_impact_gradients.py", "test_impact_tables.py", "test_reciprocal.py"},
     "properties": {
         *("test_identification.py", "test_lyapunov.py", "test_runs.py", "test_tracking_convergence.py"),

@@ -102,7 +102,7 @@ def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str
     yield f"chunks   {found.chunk_count:,} of at most {found.chunk_rows * each:,} rows"
     yield f"size     about {size_words(found.bytes)} in {found.store} files"
     measured = f"{found.measured_rows * each:,} measured rows"
-    yield f"time     about {time_words(found.seconds)} in one process, from {measured}"
+    yield f"time     about {time_words(found.seconds)} of computing in one process, from {measured}"
 
 
 def _share_words(options: argparse.Namespace, result: sweep.SweepResult) -> str:

@@ -60,7 +60,7 @@ class SweepEstimate:
         chunks = "1 chunk" if self.chunk_count == 1 else f"{self.chunk_count:,} chunks"
         return (
             f"{self.rows:,} rows in {chunks}, about {size_words(self.bytes)} in {self.store} files, "
-            f"about {time_words(self.seconds)} in one process ({self.measured_rows:,} rows were measured)"
+            f"about {time_words(self.seconds)} of computing in one process ({self.measured_rows:,} rows were measured)"
         )
 
 
@@ -153,7 +153,7 @@ def estimate(
         store=store,
         bytes=round(rows * each + len(wanted) * (one.size - one.rows * each)),
         seconds=rows * most.seconds / most.rows,
-        measured_rows=sum(block.rows for block in blocks),
+        measured_rows=min(sum(block.rows for block in blocks), plan.rows),
     )
 
 

@@ -372,7 +372,7 @@ def test_dry_run_shows_rows_size_and_time_and_writes_nothing(
     assert re.search(r"^rows     1,000 of \d+ columns besides the axes$", text, re.MULTILINE)
     assert re.search(r"^chunks   20 of at most 50 rows$", text, re.MULTILINE)
     assert re.search(r"^size     about \S+ kB in parquet files$", text, re.MULTILINE)
-    assert re.search(r"^time     about \S+ s in one process, from \d+ measured rows$", text, re.MULTILINE)
+    assert re.search(r"^time     about \S+ s of computing in one process, from \d+ measured rows$", text, re.MULTILINE)
     assert sorted(tmp_path.iterdir()) == before
 
 
