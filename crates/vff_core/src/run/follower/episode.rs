@@ -313,7 +313,7 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
         self.ended
     }
 
-    #[inline(always)] // one of two calls is the loop
+    #[inline]
     fn decide(&mut self, time: f64, (): (), _: Interrupted<'_>) -> Result<bool> {
         let (place, senses) = (&self.place, &self.senses);
         let forces = self.law.answer(&Percept {
@@ -349,7 +349,7 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
         self.outcome.turning += moved.turn_rate.abs() * clock.step;
     }
 
-    #[inline(always)] // one of two calls is the loop
+    #[inline]
     fn look_around(&mut self, clock: &Clock, step: usize) {
         let time = clock.time(step);
         // A touch counts however near the sensors look.
