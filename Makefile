@@ -55,7 +55,7 @@ RECORDING ?= zara01.csv
 images: build
 	$(BIN)/python docs/make_images.py $(RECORDING)
 
-# Random inputs to constructors, functions and readers: an hour on two cores for ten million.
+# Random inputs to constructors, functions and readers: half an hour on two cores for ten million.
 INPUTS ?= 10000000
 SEED   ?= 1
 

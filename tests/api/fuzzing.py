@@ -40,6 +40,8 @@ AXIS = sweep.Axis(name="foam_damping", low=0.0, high=100.0)
 WALK = {"time_s": [0.0, 0.4, 0.8], "person": [7, 7, 7], "position": [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]}
 RECORDING = datasets.Recording(**WALK)
 WEIGHED, LIMITS = arms.Arm.example(), standards.limits()
+# All joints but two: a grid of ten values of six joints is a million poses.
+STILL = dict.fromkeys(WEIGHED.joint_names[:4], 0.0)
 POINT: dict[str, Any] = {"joints": np.zeros(6), "link": "tool", "point": (0.0, 0.0, 0.1), "threads": 1}
 APART = {"reaction_time": 0.1, "deceleration": 3.0, "human_speed": 1.6, "intrusion": 0.2, "uncertainty": 0.1}
 LEADER = reactive.FollowerLayouts(kind="static").scene(0)
@@ -176,7 +178,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Arm.velocity": (WEIGHED.velocity, POINT | {"rates": np.ones(6)}),
     "workspace": (
         arms.workspace,
-        {"arm": WEIGHED, "link": "tool", "samples": 4, "grid": None, "seed": 0},
+        {"arm": WEIGHED, "link": "tool", "samples": 4, "grid": None, "seed": 0, "fixed": STILL},
     ),
     "along": (arms.along, {"arm": WEIGHED, "time": [0.0, 1.0, 2.0], "joints": np.zeros((3, 6)), "link": "tool"}),
     "limits": (standards.limits, {"name_or_path": "iso_ts_15066_2016"}),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import pickle
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import pytest
 
 from hrsafety import InvalidParameterError, reactive, sweep
 from hrsafety import navigation as nav
+from hrsafety._atomic import create_file, only_writer
 from hrsafety.cli import main
 from hrsafety.errors import FolderInUseError, StorageError
 
@@ -95,6 +97,48 @@ def test_bytes_behind_a_chunk_are_noticed(behind: bytes, tmp_path: Path) -> None
     np.testing.assert_array_equal(again["y"], whole)
 
 
+# ---- files of several processes ------------------------------------------------------------
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_file_that_is_there_stays(links: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_links(*_: object) -> None:
+        raise OSError(errno.EPERM, "Operation not permitted")
+
+    if not links:
+        monkeypatch.setattr(os, "link", no_links)
+    for text in ("first", "second"):
+        create_file(tmp_path / "a.json", text)
+    assert (tmp_path / "a.json").read_text(encoding="utf-8") == "first"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="files are not locked there")
+def test_parts_of_a_lock_are_held_by_several_processes(tmp_path: Path) -> None:
+    lock = tmp_path / ".lock"
+    child = holder(lock, "(0, 5)")
+    try:
+        with only_writer(lock, FolderInUseError, (5, 5)):
+            assert lock.exists()
+        assert lock.exists()
+        with (
+            pytest.raises(FolderInUseError, match=r"another process is writing some of the chunks 4:6 into"),
+            only_writer(lock, FolderInUseError, (4, 2)),
+        ):
+            pass
+        with (
+            pytest.raises(FolderInUseError, match="another process is writing into"),
+            only_writer(lock, FolderInUseError),
+        ):
+            pass
+    finally:
+        child.kill()
+        child.communicate()
+    with only_writer(lock, FolderInUseError, (4, 2)):
+        pass
+    assert not lock.exists()
+
+
 # ---- a full disk ----------------------------------------------------------------------------
 
 
@@ -142,14 +186,14 @@ HOLD = """
 import sys, time
 from pathlib import Path
 from hrsafety._atomic import only_writer
-with only_writer(Path(sys.argv[1]), RuntimeError):
+with only_writer(Path(sys.argv[1]), RuntimeError, eval(sys.argv[2])):
     print("held", flush=True)
     time.sleep(60)
 """
 
 
-def holder(lock: Path) -> subprocess.Popen[str]:
-    child = subprocess.Popen([sys.executable, "-c", HOLD, str(lock)], stdout=subprocess.PIPE, text=True)
+def holder(lock: Path, part: str = "None") -> subprocess.Popen[str]:
+    child = subprocess.Popen([sys.executable, "-c", HOLD, str(lock), part], stdout=subprocess.PIPE, text=True)
     assert child.stdout is not None
     assert child.stdout.readline() == "held\n"
     return child
