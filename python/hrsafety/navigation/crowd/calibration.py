@@ -141,8 +141,8 @@ def fit_people(
     True
     """
     instance("model", model, Pedestrian)
-    windows = Windows.of(recording, seen=seen, foretold=foretold, every=every)
     box = _box(model, names, bounds)
+    windows = Windows.of(recording, seen=seen, foretold=foretold, every=every)
     tried = count("evaluations", evaluations, least=20 * len(box), most=MOST_EVALUATIONS)
     halves = windows.part("first"), windows.part("second")
     body, workers = positive("radius", radius), thread_count(threads)
