@@ -184,8 +184,8 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "goal=[(1, 0)], awareness=2)",
         "radius of an instant": "nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, 0)], velocity=[(0, 0)], "
         "goal=[(1, 0)], radius=-0.2)",
-        "robot and people of unequal length": "nav.metrics.Episode(position=[(0, 0), (1, 0)], people=[[(2, 0)]], step=0.1, "
-        "goal=(5, 0), robot_radius=0.3)",
+        "robot and people of unequal length": "nav.metrics.Episode(position=[(0, 0), (1, 0)], people=[[(2, 0)]], "
+        "step=0.1, goal=(5, 0), robot_radius=0.3)",
         "scenario among worlds": "nav.simulate_many([nav.crowd.World(), 3], nav.VirtualForceField())",
         "world without a robot for a law": "nav.simulate_many(nav.crowd.World(), nav.VirtualForceField())",
         "step of a world from outside": "nav.simulate_many(scenarios.circle_crossing(0), "
