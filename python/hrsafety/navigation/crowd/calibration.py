@@ -170,7 +170,8 @@ def fit_people(
 
 
 def _with(model: Pedestrian, names: Sequence[str], logarithms: Array) -> Pedestrian:
-    return replace(model, **dict(zip(names, np.exp(logarithms).tolist(), strict=True)))
+    values = dict(zip(names, np.exp(logarithms).tolist(), strict=True))
+    return replace(model, **values)  # type: ignore[type-var]  # every model is a dataclass
 
 
 def _box(
@@ -229,4 +230,5 @@ def _trial(points: Array, values: Array, row: int, generator: np.random.Generato
     moved = toward + SHARE * (points[one] - points[two])
     changed = generator.random(len(moved)) < CROSSING
     changed[generator.integers(len(moved))] = True
-    return np.where(changed, moved, points[row])
+    trial: Array = np.where(changed, moved, points[row])
+    return trial
