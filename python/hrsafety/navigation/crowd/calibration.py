@@ -133,9 +133,9 @@ def fit_people(
     --------
     >>> import numpy as np
     >>> from hrsafety import datasets, navigation as nav
-    >>> time = np.tile(0.4 * np.arange(30), 2)
-    >>> place = np.column_stack([1.2 * time, np.repeat([0.0, 0.8], 30)])
-    >>> walk = datasets.Recording(time_s=np.sort(time), person=np.tile([1, 2], 30), position=place[time.argsort()])
+    >>> time, person = np.repeat(0.4 * np.arange(30), 2), np.tile([1, 2], 30)
+    >>> place = np.column_stack([1.2 * time, 0.8 * person])
+    >>> walk = datasets.Recording(time_s=time, person=person, position=place)
     >>> found = nav.crowd.fit_people(nav.crowd.SocialForce2000(), walk, ["strength"], evaluations=20)
     >>> found.fitted.average <= found.start_fitted.average
     True

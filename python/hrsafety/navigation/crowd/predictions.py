@@ -277,9 +277,9 @@ def prediction_errors(
     --------
     >>> import numpy as np
     >>> from hrsafety import datasets, navigation as nav
-    >>> time = np.tile(0.4 * np.arange(30), 2)
-    >>> place = np.column_stack([1.2 * time, np.repeat([0.0, 3.0], 30)])
-    >>> walk = datasets.Recording(time_s=np.sort(time), person=np.tile([1, 2], 30), position=place[time.argsort()])
+    >>> time, person = np.repeat(0.4 * np.arange(30), 2), np.tile([1, 2], 30)
+    >>> place = np.column_stack([1.2 * time, 3.0 * person])
+    >>> walk = datasets.Recording(time_s=time, person=person, position=place)
     >>> found = nav.crowd.prediction_errors("constant_velocity", walk)
     >>> found.windows, found.final < 1e-9
     (6, True)
