@@ -10,7 +10,7 @@ from sphinx.util.nodes import make_refnode
 
 import hrsafety
 
-sys.path.insert(0, str(Path(__file__).parent))  # for mathml_equations
+sys.path.insert(0, str(Path(__file__).parent))  # for mathml_equations, source_links
 
 project = "hrsafety"
 author = copyright = "hrsafety developers"
@@ -20,6 +20,7 @@ extensions = [
     "mathml_equations",
     "myst_parser",
     "numpydoc",
+    "source_links",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.viewcode",

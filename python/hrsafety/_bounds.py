@@ -81,7 +81,7 @@ MOST_DRAWN = 10**6
 # Samples of a record: 80 MB a column.
 MOST_SAMPLES = 10**7
 # Radians that a mass swings on its foam within a record: a drop test has a hundred.
-MOST_SWINGS = 2 * 10**4
+MOST_SWINGS = 5 * 10**4
 # Draws of a bootstrap.
 MOST_RESAMPLES = 10**6
 # Pixels along a side of a picture.

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from check_links import broken, main
+from source_links import own_anchors
 
 INDEX = """<html><head><link href="style.css"></head><body id="top">
 <a href="guide/first.html#start">right</a> <a href="guide/">folder</a> <a href="#top">here</a>
@@ -54,3 +55,17 @@ def test_each_broken_link_is_found_once(link: str, words: str, tmp_path: Path) -
 
 def test_site_without_pages_is_no_success(tmp_path: Path) -> None:
     assert main(tmp_path) == 1
+
+
+@pytest.mark.parametrize(
+    ("link", "mended"),
+    [
+        ("a.metrics.Standing.html#a.Standing", "a.metrics.Standing.html#a.metrics.Standing"),
+        ("a.metrics.Table.html#a.Table.columns", "a.metrics.Table.html#a.metrics.Table.columns"),
+        ("a.metrics.Standing.html#a.metrics.Standing", "a.metrics.Standing.html#a.metrics.Standing"),
+        ("a.metrics.Standing.html#a.Other", "a.metrics.Standing.html#a.Other"),
+    ],
+)
+def test_links_from_source_code_have_the_anchors_of_their_pages(link: str, mended: str) -> None:
+    page = '<a class="viewcode-back" href="../../api/generated/{}">[docs]</a>'
+    assert own_anchors(page.format(link)) == page.format(mended)
