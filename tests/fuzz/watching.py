@@ -16,9 +16,11 @@ from fuzz.inputs import ANSWERS, in_new_folder
 __all__ = ["Escape", "Tally", "worked_off"]
 
 # Seconds after which a call counts as one that does not end, and bytes that a process may take.
-PATIENCE = 30.0
+PATIENCE = 60.0
 MOST_MEMORY = 6 * 2**30
 _POLL = 0.2
+# Seconds that a process may take to start: it imports everything and writes its files.
+_START = 300.0
 
 
 class Escape(NamedTuple):
@@ -91,7 +93,7 @@ class _Worker:
         self.seed, self.span, self.names = seed, span, names
         context = multiprocessing.get_context("spawn")
         self.counts = context.RawArray("q", len(names) * len(ANSWERS))
-        self.state = context.RawArray("d", [span.start, 0, time.monotonic() + PATIENCE])
+        self.state = context.RawArray("d", [span.start, 0, time.monotonic() + _START])
         self.messages, theirs = context.Pipe(duplex=False)
         arguments = (seed, span, self.counts, self.state, theirs)
         self.process = context.Process(target=_work, args=arguments, daemon=True)
