@@ -184,13 +184,12 @@ impl StaticMap {
                     ..
                 } => {
                     let [one, two, three, four] = placed.corners().map(<[f64; 2]>::from);
-                    match outline::outline(&[one, two, four, three]) {
-                        Ok(sides) => shapes.capsules.extend(sides),
+                    if let Ok(sides) = outline::outline(&[one, two, four, three]) {
+                        shapes.capsules.extend(sides);
+                    } else {
                         // Sides that rounding makes one line: the disc around it.
-                        Err(_) => {
-                            let around = half_length.hypot(half_width);
-                            shapes.capsules.push(Capsule::disc(placed.center, around));
-                        }
+                        let around = half_length.hypot(half_width);
+                        shapes.capsules.push(Capsule::disc(placed.center, around));
                     }
                 }
             }
