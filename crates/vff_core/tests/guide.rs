@@ -186,6 +186,37 @@ proptest! {
     }
 }
 
+/// Looks in which any plan of these tests is complete.
+const LOOKS: usize = 60;
+
+#[test]
+fn a_plan_around_who_stands_is_taken_when_it_is_complete() {
+    let map = walls(&[[[2.0, -4.0], [2.0, 0.0]], [[2.0, 1.0], [2.0, 4.0]]]);
+    let guide = Guide::default();
+    let (start, goal) = ([0.0, 0.5], [4.0, 0.5]);
+    let plan = guide.plan(&map, 0.3, [start, goal], Stop::never()).unwrap();
+    let guidance = Guidance::new(guide, 0.3, plan);
+    let at = Point::from(start);
+    let direct = guidance.plan().cost(at).unwrap();
+    let people = [Some(PlacedShape::disc([2.0, 0.5], 0.3))];
+    // Somebody else who stops and leaves again and again does not keep the plan from being complete.
+    let looks = |comes_and_goes: bool| {
+        let mut guidance = guidance.clone();
+        guidance.observe(0.0, at, people.into_iter());
+        (1..LOOKS).find(|look| {
+            let other =
+                (comes_and_goes && look / 2 % 2 == 0).then(|| PlacedShape::disc([0.0, 3.0], 0.3));
+            let time = 2.0 + 2.0 * f64::from(u32::try_from(*look).unwrap());
+            let others = people.into_iter().chain([other]);
+            guidance.observe(time, at, others) && guidance.plan().cost(at).unwrap() > direct + 1.0
+        })
+    };
+    let needed = looks(false).unwrap();
+    assert!(needed > 10, "{needed}");
+    assert_eq!(looks(false), Some(needed));
+    assert_eq!(looks(true), Some(needed));
+}
+
 #[test]
 fn the_plan_leads_around_who_stands_until_he_leaves() {
     // A corridor with two doors; somebody stands in the nearer one.
@@ -207,7 +238,10 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
     let person = Some(PlacedShape::disc([2.0, 0.5], 0.3));
     let mut look = |time: f64, person| {
         let people = std::iter::once(person);
-        guidance.observe(time, at, people, Stop::never()).unwrap();
+        // A plan is complete after some looks at the same instant.
+        for _ in 0..LOOKS {
+            guidance.observe(time, at, people.clone());
+        }
         guidance.plan().cost(at).unwrap()
     };
     assert_eq!(look(0.0, person), direct);
@@ -223,9 +257,9 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
     // In the way of both doors nobody waits for another plan.
     let mut both = |time: f64| {
         let people = [0.5, -2.0].map(|y| Some(PlacedShape::disc([2.0, y], 0.45)));
-        guidance
-            .observe(time, at, people.into_iter(), Stop::never())
-            .unwrap();
+        for _ in 0..LOOKS {
+            guidance.observe(time, at, people.into_iter());
+        }
         guidance.plan().cost(at).unwrap()
     };
     both(7.0);

@@ -2,10 +2,13 @@
 
 use nalgebra::Vector2;
 
-use crate::error::{Failure, Result};
-use crate::laws::Stop;
+use crate::laws::guide::plan::Planning;
 use crate::laws::guide::{Guide, LocalGoal, Plan, Standing, View};
 use crate::world::shape::PlacedShape;
+
+/// Most nodes that a plan made again settles in one look: an update of a robot takes no longer, and a
+/// run and a robot take the plan at the same look, however fast they are.
+const NODES_OF_A_LOOK: usize = 2000;
 
 /// Plans of one run.
 #[derive(Clone, Debug)]
@@ -16,7 +19,11 @@ pub struct Guidance {
     alone: Plan,
     /// The plan around those who stand, if somebody does and there is one.
     around: Option<Plan>,
+    /// The plan around those who stand now, while it is made.
+    planning: Option<Planning>,
     standing: Standing,
+    /// Whether others stand than the last plan was begun for.
+    changed: bool,
 }
 
 impl Guidance {
@@ -28,7 +35,9 @@ impl Guidance {
             robot_radius,
             alone: plan,
             around: None,
+            planning: None,
             standing: Standing::default(),
+            changed: false,
         }
     }
 
@@ -38,53 +47,56 @@ impl Guidance {
         self.around.as_ref().unwrap_or(&self.alone)
     }
 
-    /// Looks at people, given by their outlines, `None` for who is away, and plans again
-    /// when others stand than before; without a plan around them that without them is used. Returns
-    /// whether there is another plan.
-    ///
-    /// # Errors
-    /// The caller asked to stop.
-    #[allow(clippy::needless_pass_by_value)] // an iterator over what the caller has
+    /// Looks at people, given by their outlines, `None` for who is away. When others stand than before, a
+    /// plan around them is made, by a bounded number of nodes in each look, and taken when it is
+    /// complete; without a plan around them that without them is used. Returns whether there is
+    /// another plan.
     pub fn observe(
         &mut self,
         time: f64,
         position: Vector2<f64>,
         people: impl Iterator<Item = Option<PlacedShape>> + Clone,
-        stop: Stop<'_>,
-    ) -> Result<bool> {
+    ) -> bool {
         let places = people
             .clone()
             .map(|person| person.map(|placed| placed.center));
-        if !self.standing.observe(time, places) {
-            return Ok(false);
+        self.changed |= self.standing.observe(time, places);
+        if self.changed && self.standing.places().next().is_none() {
+            (self.changed, self.planning) = (false, None);
+            return self.around.take().is_some();
         }
-        let mut shapes = Vec::new();
-        for (index, center) in self.standing.places() {
-            if let Some(Some(placed)) = people.clone().nth(index) {
-                shapes.push(PlacedShape { center, ..placed });
+        // A plan under way is completed first, else people who come and go would keep it from ever
+        // being complete.
+        if self.changed && self.planning.is_none() {
+            self.changed = false;
+            self.planning = self.begin(people);
+            if self.planning.is_none() {
+                return self.around.take().is_some();
             }
         }
-        let had = self.around.is_some();
-        self.around = self.plan_around(&shapes, position, stop)?;
-        Ok(had || self.around.is_some())
+        let complete = self
+            .planning
+            .take_if(|planning| planning.advance(NODES_OF_A_LOOK));
+        let Some(planning) = complete else {
+            return false;
+        };
+        let (had, plan) = (self.around.is_some(), planning.finish());
+        self.around = plan.view(position).is_some().then_some(plan);
+        had || self.around.is_some()
     }
 
-    fn plan_around(
-        &self,
-        shapes: &[PlacedShape],
-        position: Vector2<f64>,
-        stop: Stop<'_>,
-    ) -> Result<Option<Plan>> {
-        if shapes.is_empty() {
-            return Ok(None);
-        }
-        let map = self.alone.map().with_shapes(shapes);
-        match self.alone.again(self.guide, &map, self.robot_radius, stop) {
-            Ok(plan) => Ok(plan.view(position).is_some().then_some(plan)),
-            Err(Failure::Interrupted) => Err(Failure::Interrupted),
-            // Somebody stands on the goal.
-            Err(_) => Ok(None),
-        }
+    /// Begins a plan around those who stand; `None` where somebody stands on the goal.
+    fn begin(&self, people: impl Iterator<Item = Option<PlacedShape>>) -> Option<Planning> {
+        let people: Vec<Option<PlacedShape>> = people.collect();
+        let standing = self.standing.places().filter_map(|(index, center)| {
+            let placed = people.get(index).copied()??;
+            Some(PlacedShape { center, ..placed })
+        });
+        let shapes: Vec<PlacedShape> = standing.collect();
+        let map = self.alone.map().with_shapes(&shapes);
+        self.alone
+            .begin_again(self.guide, &map, self.robot_radius)
+            .ok()
     }
 
     /// Cost at a position and the local goal there; `None` without a plan there.

@@ -8,9 +8,11 @@ use crate::error::{Failure, Given, Result};
 use crate::laws::Stop;
 use crate::laws::guide::Guide;
 use crate::laws::guide::nodes::Nodes;
-use crate::laws::guide::search::{CostToGo, Room, cost_to_go};
+use crate::laws::guide::search::{CostToGo, Room, Search};
 use crate::world::map::StaticMap;
 
+/// Nodes between two looks at whether to stop.
+const BETWEEN_LOOKS: usize = 4096;
 /// The goal's node is sought within so many cells.
 const GOAL_REACH: i64 = 8;
 /// The start node is sought in squares of so many cells, one after the other.
@@ -81,6 +83,61 @@ impl LocalGoal {
     }
 }
 
+/// A plan that is made a part at a time.
+#[derive(Clone, Debug)]
+pub(super) struct Planning {
+    guide: Guide,
+    nodes: Nodes,
+    map: StaticMap,
+    least: f64,
+    goal: Vector2<f64>,
+    search: Search,
+}
+
+impl Planning {
+    /// Begins with costs from everywhere to a goal.
+    pub fn new(
+        guide: Guide,
+        nodes: Nodes,
+        map: &StaticMap,
+        robot_radius: f64,
+        goal: Vector2<f64>,
+    ) -> Result<Self> {
+        let least = robot_radius + guide.margin;
+        let first = goal_node(&nodes, map, least, goal)?;
+        let room = Room {
+            map: map.clone(),
+            robot_radius,
+            least,
+        };
+        Ok(Self {
+            guide,
+            nodes,
+            map: map.clone(),
+            least,
+            goal,
+            search: Search::new(room, nodes, first),
+        })
+    }
+
+    /// Settles so many nodes at most; whether the plan is complete.
+    pub fn advance(&mut self, nodes: usize) -> bool {
+        self.search.advance(nodes)
+    }
+
+    /// The plan, when it is complete.
+    pub fn finish(self) -> Plan {
+        Plan {
+            guide: self.guide,
+            nodes: self.nodes,
+            map: self.map,
+            least: self.least,
+            goal: self.goal,
+            found: Arc::new(self.search.found()),
+        }
+    }
+}
+
 impl Plan {
     /// Costs from everywhere to a goal.
     pub(super) fn new(
@@ -91,32 +148,23 @@ impl Plan {
         goal: Vector2<f64>,
         stop: Stop<'_>,
     ) -> Result<Self> {
-        let least = robot_radius + guide.margin;
-        let first = goal_node(&nodes, map, least, goal)?;
-        let room = Room {
-            map,
-            robot_radius,
-            least,
-        };
-        Ok(Self {
-            guide,
-            nodes,
-            map: map.clone(),
-            least,
-            goal,
-            found: Arc::new(cost_to_go(room, nodes, first, stop)?),
-        })
+        let mut planning = Planning::new(guide, nodes, map, robot_radius, goal)?;
+        while !planning.advance(BETWEEN_LOOKS) {
+            if stop.asked() {
+                return Err(Failure::Interrupted);
+            }
+        }
+        Ok(planning.finish())
     }
 
-    /// The plan for the same nodes and goal in another map.
-    pub(super) fn again(
+    /// Begins the plan for the same nodes and goal in another map.
+    pub(super) fn begin_again(
         &self,
         guide: Guide,
         map: &StaticMap,
         robot_radius: f64,
-        stop: Stop<'_>,
-    ) -> Result<Self> {
-        Self::new(guide, self.nodes, map, robot_radius, self.goal, stop)
+    ) -> Result<Planning> {
+        Planning::new(guide, self.nodes, map, robot_radius, self.goal)
     }
 
     /// The goal in m.

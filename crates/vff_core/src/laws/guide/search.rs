@@ -5,8 +5,6 @@ use std::collections::BinaryHeap;
 
 use nalgebra::Vector2;
 
-use crate::error::{Failure, Result};
-use crate::laws::Stop;
 use crate::laws::guide::nodes::Nodes;
 use crate::world::map::StaticMap;
 
@@ -14,12 +12,10 @@ use crate::world::map::StaticMap;
 const NEAR: f64 = 0.3;
 /// How much dearer it is at the map.
 const DEARER: f64 = 2.0;
-/// Nodes between two looks at whether to stop.
-const BETWEEN_LOOKS: usize = 4096;
-
 /// What keeps a robot and its margin away from a map.
-pub(super) struct Room<'a> {
-    pub map: &'a StaticMap,
+#[derive(Clone, Debug)]
+pub(super) struct Room {
+    pub map: StaticMap,
     pub robot_radius: f64,
     /// Least clearance `rho + m_p` of nodes and links, in m.
     pub least: f64,
@@ -32,70 +28,18 @@ pub(super) struct CostToGo {
     pub next: Vec<u32>,
 }
 
-/// The nodes while they are looked at.
-struct Search<'a> {
-    room: Room<'a>,
+/// A search from the goal's node, which goes on where it was left.
+#[derive(Clone, Debug)]
+pub(super) struct Search {
+    room: Room,
     nodes: Nodes,
     /// Clearances up to `far`, NaN where not yet known.
     clearance: Vec<f64>,
     far: f64,
-}
-
-/// Costs from the goal's node, whose own cost is its distance in m.
-pub(super) fn cost_to_go(
-    room: Room<'_>,
-    nodes: Nodes,
-    (goal, cost_of_goal): (usize, f64),
-    stop: Stop<'_>,
-) -> Result<CostToGo> {
-    let far = room.robot_radius + NEAR.max(room.least - room.robot_radius + 3.0 * nodes.spacing);
-    let mut search = Search {
-        clearance: vec![f64::NAN; nodes.count()],
-        far,
-        room,
-        nodes,
-    };
-    let mut found = CostToGo {
-        cost: vec![f64::INFINITY; nodes.count()],
-        next: vec![0; nodes.count()],
-    };
-    // Costs are not negative, so their bits are in the order of the numbers; of equal ones the
-    // node with the lower index comes first.
-    let mut queue = BinaryHeap::new();
-    found.cost[goal] = cost_of_goal;
-    found.next[goal] = narrow(goal);
-    queue.push(Reverse((cost_of_goal.to_bits(), goal)));
-    let mut settled = 0;
-    while let Some(Reverse((bits, node))) = queue.pop() {
-        let cost = f64::from_bits(bits);
-        if cost > found.cost[node] {
-            continue;
-        }
-        settled += 1;
-        if settled % BETWEEN_LOOKS == 0 && stop.asked() {
-            return Err(Failure::Interrupted);
-        }
-        let (place, clearance) = (nodes.place(node), search.clearance_of(node));
-        let weight = search.weight(clearance);
-        for (other, cells) in nodes.linked(node) {
-            let length = cells * nodes.spacing;
-            // The weight of the other end is one at least.
-            if cost + length * 0.5 * (weight + 1.0) >= found.cost[other] {
-                continue;
-            }
-            let there = search.clearance_of(other);
-            let total = cost + length * 0.5 * (weight + search.weight(there));
-            if there >= search.room.least
-                && total < found.cost[other]
-                && search.free_link([place, nodes.place(other)], [clearance, there], length)
-            {
-                found.cost[other] = total;
-                found.next[other] = narrow(node);
-                queue.push(Reverse((total.to_bits(), other)));
-            }
-        }
-    }
-    Ok(found)
+    found: CostToGo,
+    /// Costs are not negative, so their bits are in the order of the numbers; of equal ones the
+    /// node with the lower index comes first.
+    queue: BinaryHeap<Reverse<(u64, usize)>>,
 }
 
 #[allow(clippy::cast_possible_truncation)] // there are at most 2^24 nodes
@@ -103,7 +47,72 @@ fn narrow(node: usize) -> u32 {
     node as u32
 }
 
-impl Search<'_> {
+impl Search {
+    /// From the goal's node, whose own cost is its distance in m.
+    pub fn new(room: Room, nodes: Nodes, (goal, cost_of_goal): (usize, f64)) -> Self {
+        let beyond = room.least - room.robot_radius + 3.0 * nodes.spacing;
+        let mut found = CostToGo {
+            cost: vec![f64::INFINITY; nodes.count()],
+            next: vec![0; nodes.count()],
+        };
+        found.cost[goal] = cost_of_goal;
+        found.next[goal] = narrow(goal);
+        Self {
+            clearance: vec![f64::NAN; nodes.count()],
+            far: room.robot_radius + NEAR.max(beyond),
+            room,
+            nodes,
+            found,
+            queue: BinaryHeap::from([Reverse((cost_of_goal.to_bits(), goal))]),
+        }
+    }
+
+    /// Settles so many nodes at most; whether those were all.
+    pub fn advance(&mut self, most: usize) -> bool {
+        let mut settled = 0;
+        while settled < most {
+            let Some(Reverse((bits, node))) = self.queue.pop() else {
+                return true;
+            };
+            let cost = f64::from_bits(bits);
+            if cost <= self.found.cost[node] {
+                settled += 1;
+                self.settle(node, cost);
+            }
+        }
+        false
+    }
+
+    /// The costs, when all nodes are settled.
+    pub fn found(self) -> CostToGo {
+        self.found
+    }
+
+    /// Tells the neighbors of a node of their way through it.
+    #[inline]
+    fn settle(&mut self, node: usize, cost: f64) {
+        let nodes = self.nodes;
+        let (place, clearance) = (nodes.place(node), self.clearance_of(node));
+        let weight = self.weight(clearance);
+        for (other, cells) in nodes.linked(node) {
+            let length = cells * nodes.spacing;
+            // The weight of the other end is one at least.
+            if cost + length * 0.5 * (weight + 1.0) >= self.found.cost[other] {
+                continue;
+            }
+            let there = self.clearance_of(other);
+            let total = cost + length * 0.5 * (weight + self.weight(there));
+            if there >= self.room.least
+                && total < self.found.cost[other]
+                && self.free_link([place, nodes.place(other)], [clearance, there], length)
+            {
+                self.found.cost[other] = total;
+                self.found.next[other] = narrow(node);
+                self.queue.push(Reverse((total.to_bits(), other)));
+            }
+        }
+    }
+
     fn clearance_of(&mut self, node: usize) -> f64 {
         let known = &mut self.clearance[node];
         if known.is_nan() {

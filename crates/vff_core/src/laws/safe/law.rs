@@ -189,10 +189,7 @@ impl SafeLaw {
             };
         };
         let people = self.around.standing(situation.bodies);
-        // Whoever asks to stop is told so by the run.
-        let again = guidance
-            .observe(time, position, people, situation.stop)
-            .unwrap_or(false);
+        let again = guidance.observe(time, position, people);
         let found = guidance.local_goal(position);
         let mut heading = Heading {
             local: found.map(|(_, local)| local),
