@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hrsafety._arguments import word
+from hrsafety._display import displayed
 from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.metrics.declared import METRICS
@@ -19,6 +20,7 @@ _OF_SUCCESS = ("arrival_time", "path_length")
 """What a run that ended otherwise has no fair value of."""
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CrowdStanding:
     """What one law did in all episodes among people that react.

@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, positive, thread_count, whole_steps, word
 from hrsafety._bounds import MOST_INTERVAL
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
@@ -32,6 +33,7 @@ _ROUNDING = 1e-6
 """Share of an interval by which instants of a recording may be off."""
 
 
+@displayed
 class PredictionErrors(NamedTuple):
     """Mean distances between where people were foretold and where they were recorded.
 
