@@ -92,7 +92,7 @@ impl GibsonAshby {
             d,
             m,
             plateau_end,
-            dense_scale: plateau / d * lock.powf(m) * first.powf(1.0 - m),
+            dense_scale: plateau / d * raised(lock, m) * first.powf(1.0 - m),
         }
     }
 
@@ -106,7 +106,7 @@ impl GibsonAshby {
     #[must_use]
     pub fn dense(&self, strain: f64) -> [f64; 2] {
         let left = self.lock - strain;
-        let stress = self.plateau / self.d * (self.lock / left).powf(self.m);
+        let stress = self.plateau / self.d * raised(self.lock / left, self.m);
         [stress, self.m * stress / left]
     }
 
@@ -296,7 +296,7 @@ impl Material {
             } else {
                 // Rounding must not fall short of the plateau's end.
                 let ratio = law.plateau / (law.d * stress);
-                let strain = law.lock * (1.0 - ratio.powf(1.0 / law.m));
+                let strain = law.lock * (1.0 - raised(ratio, 1.0 / law.m));
                 strain.max(law.plateau_end())
             }),
             Self::Rusch { a, p, b, .. } if *b == 0.0 => Some((stress / a).powf(1.0 / p)),
@@ -318,6 +318,11 @@ impl Material {
             Self::Table(table) => table.kinks(),
         }
     }
+}
+
+/// `x^exponent`; an exponent of 1, the usual one of a densification, takes no time.
+fn raised(x: f64, exponent: f64) -> f64 {
+    if exponent == 1.0 { x } else { x.powf(exponent) }
 }
 
 /// `factor x^exponent` and its slope.

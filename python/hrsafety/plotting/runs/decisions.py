@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety._arguments import callback, instance
 from hrsafety.navigation.moving_rectangle import Box
+from hrsafety.navigation.obstacles import Obstacle
 from hrsafety.navigation.safety_record import SafetyDecision, SafetyRecord
 from hrsafety.plotting import floor, inputs, movies, shapes, style, walls
 
@@ -69,7 +70,7 @@ def safety_decision(record: SafetyRecord, time: float, *, title: str | None = No
     shown = instance("record", record, SafetyRecord)
     decision = shown.at(time)
     handles = _handles(shown)
-    figure, (axes,) = floor.panels(_limits(shown), entries=len(handles), title=title)
+    figure, (axes,) = floor.panels(_limits(shown, decision), entries=len(handles), title=title)
     _add_scene(axes, shown)
     _add_decision(axes, shown, decision)
     return floor.finish(figure, handles, runs=[shown.trajectory])
@@ -161,11 +162,24 @@ def _frames(record: SafetyRecord, rows: list[int], title: str | None) -> Iterato
     return movies.drawn(figure, axes, rows, shown)
 
 
-def _limits(record: SafetyRecord) -> style.Limits:
+def _limits(record: SafetyRecord, decision: SafetyDecision | None = None) -> style.Limits:
+    """Return what is in view: the run and the scene, and all that one decision is about."""
     run = record.trajectory
     points: list[Any] = [run.position, run.scenario.start, run.scenario.goal]
+    if decision is not None:
+        points += [_corners(obstacle, decision, index) for index, obstacle in enumerate(run.scenario.obstacles)]
     points += shapes.scene_points(run.scenario.obstacles) + walls.points_of(walls.maps_of([run]))
     return inputs.view_limits(points, margin=MARGIN, least_ratio=0.5)
+
+
+def _corners(obstacle: Obstacle, decision: SafetyDecision, index: int) -> inputs.Array:
+    """Return corners around somebody who can move and the reach that is drawn, none of who is absent."""
+    place, reach = decision.obstacle_position[index], float(decision.obstacle_reach[index])
+    if not shapes.is_mobile(obstacle) or not np.isfinite(place).all():
+        return np.empty((0, 2))
+    size = 0.0 if isinstance(obstacle, Box) else shapes.least_half_width(obstacle)
+    drawn = shapes.region(obstacle, place, size + (reach if np.isfinite(reach) else 0.0))
+    return np.asarray(drawn.get_extents().get_points())
 
 
 def _add_scene(axes: Axes, record: SafetyRecord) -> None:
