@@ -27,6 +27,12 @@ const SOONEST: f64 = 0.05;
 /// How far ahead walls are looked for, in s.
 const WALL_HORIZON: f64 = 1.0;
 
+/// People of whom those who matter are sorted out before velocities are priced; more are all looked at.
+const SORTED: usize = 64;
+
+/// More than what rounding adds to a distance, in m.
+const SLACK: f64 = 1e-6;
+
 /// What is nearer to a wall meets it, in m.
 const TOUCHING: f64 = 1e-3;
 
@@ -93,6 +99,34 @@ pub struct Passerby {
     pub touch: f64,
 }
 
+impl Passerby {
+    /// Takes the place of who is not there.
+    const NOBODY: Self = Self {
+        offset: Vector2::new(0.0, 0.0),
+        velocity: Vector2::new(0.0, 0.0),
+        touch: 0.0,
+    };
+
+    /// Least distance in m, over the time up to a horizon in s, between the surface and the ground that
+    /// a robot of some speed in m/s can have reached; a bound from below.
+    fn gap_to(&self, speed: f64, horizon: f64) -> f64 {
+        // |o + w t| - v t falls at most as fast as |w| + v, and is convex: least at an end or where
+        // the slope is zero.
+        let at = |time: f64| (self.offset + self.velocity * time).norm() - speed * time;
+        let own = self.velocity.norm_squared();
+        let least = if own > speed * speed {
+            let closest = -self.offset.dot(&self.velocity) / own;
+            let across = self.offset.perp(&self.velocity).abs() / own.sqrt();
+            // sqrt(a^2 + w^2 s^2) - v (s + c) is least where w^2 s = v sqrt(a^2 + w^2 s^2).
+            let later = speed * across / (own * (own - speed * speed)).sqrt();
+            at((closest + later).clamp(0.0, horizon))
+        } else {
+            f64::INFINITY
+        };
+        least.min(at(0.0)).min(at(horizon)) - self.touch
+    }
+}
+
 /// What the robot wants, and where it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook<'a> {
@@ -104,6 +138,8 @@ pub struct Outlook<'a> {
     pub to_goal: Vector2<f64>,
     /// Everybody around.
     pub people: &'a [Passerby],
+    /// Whether somebody who cannot be met has been left out.
+    pub left_out: bool,
     /// What does not move.
     pub walls: Walls<'a>,
 }
@@ -198,6 +234,13 @@ impl Yielder {
         let Yielding {
             horizon, comfort, ..
         } = self.settings;
+        let mut room = [Passerby::NOBODY; SORTED];
+        let people = self.near(outlook, &mut room);
+        let outlook = &Outlook {
+            people,
+            left_out: outlook.left_out || people.len() < outlook.people.len(),
+            ..*outlook
+        };
         let alone = self.meeting::<f64>(outlook, outlook.wanted);
         let free = alone.clearance >= comfort && alone.time >= horizon;
         if free && self.wall_time(outlook, outlook.wanted) >= horizon && verified(wanted) {
@@ -209,6 +252,26 @@ impl Yielder {
             verified,
         };
         self.processor.dispatch(choice)
+    }
+
+    /// Those who can be met, or passed with less than the comfortable distance, within the horizon by some
+    /// velocity: nobody else has a part in any price.
+    fn near<'a>(&self, outlook: &Outlook<'a>, room: &'a mut [Passerby; SORTED]) -> &'a [Passerby] {
+        if outlook.people.len() > SORTED {
+            return outlook.people;
+        }
+        let velocities = [outlook.robot.velocity, outlook.wanted].map(|velocity| velocity.norm());
+        let fastest = velocities.into_iter().fold(self.limits.max_speed, f64::max);
+        let room_left = self.settings.clearance.max(self.settings.comfort) + SLACK;
+        let mut count = 0;
+        for person in outlook.people {
+            if person.gap_to(fastest, self.settings.horizon) > room_left {
+                continue;
+            }
+            room[count] = *person;
+            count += 1;
+        }
+        &room[..count]
     }
 
     /// First meeting and least clearance of a robot that takes up velocities and keeps them.
@@ -228,6 +291,10 @@ impl Yielder {
             time: R::splat(horizon),
             clearance: R::splat(f64::INFINITY),
         };
+        if outlook.left_out {
+            // As of somebody who is not met: a sum that may be rounded.
+            meeting.time = meeting.time.min(ramp + rest);
+        }
         for person in outlook.people {
             let (touch, near) = (person.touch, person.touch + clearance);
             let own = Vector2::<R>::splat(person.velocity.into());
@@ -407,6 +474,7 @@ mod tests {
             wanted: Vector2::new(1.0, 0.0),
             to_goal: Vector2::x(),
             people,
+            left_out: false,
             walls: Walls::NONE,
         }
     }
@@ -491,5 +559,38 @@ mod tests {
                 assert_eq!(alone.to_bits(), together.lane(lane).to_bits());
             }
         }
+    }
+
+    #[test]
+    fn who_cannot_be_met_has_no_part_in_any_price() {
+        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
+        let mut stream = numeric::random::Stream::new(5, 0);
+        let (mut kept, mut all) = (0, 0);
+        for _ in 0..400 {
+            let mut draw = |most: f64| stream.uniform(-most, most);
+            let people: Vec<Passerby> = (0..12)
+                .map(|_| passerby([draw(14.0), draw(14.0)], [draw(2.5), draw(2.5)]))
+                .collect();
+            let mut whole = outlook(&people);
+            whole.robot.velocity = Vector2::new(draw(1.0), draw(1.0));
+            let mut room = [Passerby::NOBODY; SORTED];
+            let near = yielder.near(&whole, &mut room);
+            let sorted = Outlook {
+                people: near,
+                left_out: near.len() < people.len(),
+                ..whole
+            };
+            kept += near.len();
+            all += people.len();
+            for chunk in 0..CHUNKS {
+                let candidates = yielder.candidates(&whole, chunk);
+                let one = yielder.price(&yielder.meeting(&whole, candidates));
+                let other = yielder.price(&yielder.meeting(&sorted, candidates));
+                for lane in 0..WIDTH {
+                    assert_eq!(one.lane(lane).to_bits(), other.lane(lane).to_bits());
+                }
+            }
+        }
+        assert!(kept > all / 10 && kept < 8 * all / 10, "{kept} of {all}");
     }
 }

@@ -223,6 +223,7 @@ impl SafeLaw {
             wanted,
             to_goal: to_goal / to_goal.norm().max(f64::MIN_POSITIVE),
             people: &self.around.passersby,
+            left_out: false,
             walls: self.around.walls(),
         };
         self.yielder.as_ref()?.decide(&outlook, verified)
