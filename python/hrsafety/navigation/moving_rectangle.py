@@ -19,6 +19,7 @@ from hrsafety.navigation.obstacles import (
     Path,
     Rectangle,
     Segment,
+    as_made,
     frozen_path,
     frozen_segments,
 )
@@ -101,10 +102,11 @@ class MovingRectangle(Obstacle):
         self._converted(**sides)
         given = {**sides, **self._limits()}
         if self.path is not None:
-            time, position = self.path
+            time, position = as_made("path", self.path, 2)
             native = _hrsafety.Obstacle.recorded(time=time, position=position, **given)
         elif self.segments is not None:
-            native = _hrsafety.Obstacle.piecewise(start=self.center, segments=self.segments, **given)
+            segments = as_made("segments", self.segments, None)
+            native = _hrsafety.Obstacle.piecewise(start=self.center, segments=segments, **given)
         else:
             motion = {"velocity": self.velocity, "acceleration": self.acceleration, "stop": self.stop}
             native = _hrsafety.Obstacle.moving_rectangle(start=self.center, **motion, **given)

@@ -338,7 +338,7 @@ def frozen_segments(segments: Iterable[tuple[float, Sequence[float], Sequence[fl
     return tuple(frozen)
 
 
-def _as_made(name: str, value: object, length: int | None) -> Any:
+def as_made(name: str, value: object, length: int | None) -> Any:
     """Return what a classmethod has made of a motion: constructors take it for copies only."""
     tuples = isinstance(value, tuple) and all(isinstance(each, tuple) for each in value)
     if not tuples or (length is not None and len(value) != length):  # type: ignore[arg-type]  # a tuple
@@ -355,10 +355,10 @@ def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, de
     if limits["max_speed"] is None:
         limits["max_speed"] = default_max_speed
     if obstacle.path is not None:
-        time, position = _as_made("path", obstacle.path, 2)
+        time, position = as_made("path", obstacle.path, 2)
         native = _hrsafety.Obstacle.recorded(time=time, position=position, radius=radius, **limits)
     elif obstacle.segments is not None:
-        segments = _as_made("segments", obstacle.segments, None)
+        segments = as_made("segments", obstacle.segments, None)
         native = _hrsafety.Obstacle.piecewise(start=start, segments=segments, radius=radius, **limits)
     else:
         native = _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three

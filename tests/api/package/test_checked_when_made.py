@@ -50,6 +50,14 @@ CASES: dict[str, tuple[str, Callable[[], Any]]] = {
         "segments must be None, or as it was made",
         lambda: nav.Human(start=(0, 0), velocity=(1, 0), segments=3),
     ),
+    "path of a rectangle": (
+        "path must be None, or as it was made, .*use from_path",
+        lambda: nav.MovingRectangle(center=(0, 0), length=1, width=1, velocity=(1, 0), path=3),
+    ),
+    "segments of a rectangle": (
+        "segments must be None, or as it was made",
+        lambda: nav.MovingRectangle(center=(0, 0), length=1, width=1, velocity=(1, 0), segments=3),
+    ),
     "set-point": ("segments must be a sequence", lambda: impact.SetPoint(segments=np.array(1.0))),
     "angle": ("angle must be finite", lambda: nav.robots.OpenLoopTest(command=1.0, time=[0.0, 1.0], angle=[0.0, NAN])),
     "discs": ("discs must be", lambda: nav.maps.StaticMap(discs=RAGGED)),
