@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, count, instance, number, numbers, pair, positive
+from hrsafety._arguments import Pair, count, instance, number, numbers, pair, positive, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown, SimulationError
+from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -151,7 +152,7 @@ class Controller:
         From where plans are made; the first position that is told when ``None``, and then the first update
         takes as long as planning does.
     obstacles : sequence of Obstacle
-        What stands, beside the map.
+        What stands, beside the map; who moves is told in updates.
     people : int
         How many can be there at once.
     person_radius, person_speed : float
@@ -213,7 +214,7 @@ class Controller:
         self._rules: dict[str, Any] = {
             "robot": instance("robot", robot, HolonomicRobot, DifferentialDriveRobot),
             "goal": pair("goal", goal),
-            "obstacles": (*places, *obstacles),
+            "obstacles": (*places, *_standing(obstacles)),
             "control_period": positive("control_period", control_period),
             "arrival_tolerance": positive("arrival_tolerance", arrival_tolerance),
             "seed": seed,
@@ -369,6 +370,16 @@ _NOTHING: Mapping[str, Any] = {
     "oldest": 0.0,
 }
 """What a robot is told that does not know yet where it is."""
+
+
+def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:
+    """Return obstacles that stand: where another one is, nobody would ever tell."""
+    found: list[Obstacle] = sequence("obstacles", "be a sequence of obstacles", obstacles)
+    for index, obstacle in enumerate(found):
+        if not stands(instance(f"obstacles[{index}]", obstacle, Obstacle)):
+            remedy = "tell where it is in people= of every update"
+            raise InvalidParameterError(f"obstacles[{index}]", "stand for all time", obstacle, remedy)
+    return found
 
 
 def _with_map(law: Any, map: StaticMap | None) -> Any:
