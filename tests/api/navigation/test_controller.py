@@ -206,6 +206,23 @@ def test_a_scan_that_sees_the_place_empty_forgets_after_two_seconds() -> None:
     assert told(2.0, 2.1) == ("a",)
 
 
+def test_a_scan_forgets_nobody_beyond_its_largest_range() -> None:
+    law = SafeNavigation(FIELD, shield=Shield())
+    for reading in (math.inf, 2.9, 60.0):
+        lidar = nav.Lidar(beams=360, range_max=2.9)
+        controller = Controller(law, ROBOT, (20.0, 0.0), start=(0.0, 0.0), lidar=lidar)
+        still(controller, 0.0, people={"a": (3.0, 0.0, 0.0, 0.0)})
+        still(controller, 2.1, scan=np.full(360, reading))
+        assert controller.people == ("a",), reading
+
+
+def test_an_obstacle_that_moves_is_refused_as_nobody_would_tell_where_it_is() -> None:
+    cart = nav.MovingRectangle(center=(2.0, 0.0), length=1.0, width=0.8, velocity=(0.0, -0.1))
+    wall = nav.Rectangle(center=(2.0, 3.0), length=1.0, width=0.1)
+    with pytest.raises(InvalidParameterError, match=r"obstacles\[1\] must stand for all time.*people="):
+        Controller(FIELD, ROBOT, (20.0, 0.0), obstacles=[wall, cart])
+
+
 def test_places_of_those_who_left_are_given_to_others() -> None:
     controller = Controller(FIELD, ROBOT, (20.0, 0.0), people=2)
     still(controller, 0.0, people={"a": (3.0, 0.0, 0.0, 0.0), "b": (4.0, 0.0, 0.0, 0.0)})

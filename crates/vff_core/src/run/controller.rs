@@ -17,7 +17,7 @@ use crate::world::frame::Frame;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::motion::BodyState;
 use crate::world::scenario::Scenario;
-use crate::world::shape::Shape;
+use crate::world::shape::PlacedShape;
 
 /// Whoever was not seen for so long is forgotten once his place is seen to be empty, in s.
 const FORGOTTEN: f64 = 2.0;
@@ -248,16 +248,12 @@ impl Controller {
         scans.read(ranges, frame, &mut self.bodies[people..])?;
         let bodies = self.bodies[..people].iter_mut();
         for (body, age) in bodies.zip(&self.ages) {
-            let radius = match body.shape {
-                Shape::Disc { radius } => radius,
-                Shape::Rectangle {
-                    half_length,
-                    half_width,
-                    ..
-                } => half_length.hypot(half_width),
+            let placed = PlacedShape {
+                center: body.state.position.into(),
+                shape: body.shape,
             };
             let lost = body.state.present && *age > FORGOTTEN;
-            if lost && scans.saw_empty(frame, body.state.position.into(), radius) {
+            if lost && scans.saw_empty(frame, &placed) {
                 body.state.present = false;
             }
         }

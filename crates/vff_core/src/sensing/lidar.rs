@@ -317,23 +317,24 @@ impl Scans {
         Ok(())
     }
 
-    /// Whether the last scan saw a disc in m to be empty: beams go through it, and none ends in or
-    /// before it.
-    pub fn saw_empty(&self, pose: &Frame, center: Vector2<f64>, radius: f64) -> bool {
-        let disc = PlacedShape::disc(center.into(), radius);
+    /// Whether the last scan saw a place to be empty: beams go through the outline there, and none ends
+    /// in or before the disc around it. Nothing is seen beyond the largest range.
+    pub fn saw_empty(&self, pose: &Frame, placed: &PlacedShape) -> bool {
+        let radius = placed.shape.extent();
+        let around = PlacedShape::disc(placed.center.into(), radius);
         let mut through = false;
         for (beam, range) in self.ranges.iter().enumerate() {
             let (sin, cos) = self.options.bearing(beam).sin_cos();
             let along = pose.outward(Vector2::new(cos, sin));
-            let near = disc.cast(pose.position, along);
-            if !near.is_finite() {
+            if !around.cast(pose.position, along).is_finite() {
                 continue;
             }
-            let far = (center - pose.position).dot(&along) + radius;
-            if *range < far {
+            let far = (placed.center - pose.position).dot(&along) + radius;
+            if range.min(self.options.range_max) < far {
                 return false;
             }
-            through = true;
+            // A beam beside a rectangle, though in the disc around it, tells nothing of it.
+            through |= placed.cast(pose.position, along).is_finite();
         }
         through
     }
@@ -364,7 +365,9 @@ impl Scans {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robots::HolonomicRobot;
     use crate::world::map::MapShapes;
+    use crate::world::scenario::Rules;
 
     fn room() -> StaticMap {
         let mut shapes = MapShapes::new();
@@ -551,5 +554,29 @@ mod tests {
             let message = lidar.checked().unwrap_err().to_string();
             assert!(message.starts_with(name), "{message}");
         }
+    }
+
+    #[test]
+    fn a_rectangle_is_gone_only_where_beams_would_have_hit_it() {
+        let options = Lidar {
+            beams: 91,
+            field_of_view: std::f64::consts::FRAC_PI_2,
+            range_max: 20.0,
+            ..Lidar::default()
+        };
+        let pose = Frame::at([0.0, 0.0], 0.0);
+        let mut scans = Scans::new(&empty_floor(), &options, 0).unwrap();
+        scans.read(&[f64::INFINITY; 91], &pose, &mut []).unwrap();
+        // Along the left edge of the view, and all of it beyond: only the disc around it is in view.
+        let gate =
+            |center: [f64; 2]| PlacedShape::turned(center, [4.0, 0.1], std::f64::consts::FRAC_PI_4);
+        assert!(!scans.saw_empty(&pose, &gate([3.0, 3.5])));
+        assert!(scans.saw_empty(&pose, &gate([3.5, 0.5])));
+        assert!(!scans.saw_empty(&pose, &gate([19.0, 0.5])));
+    }
+
+    fn empty_floor() -> Scenario {
+        let (robot, rules) = (HolonomicRobot::default(), Rules::default());
+        Scenario::new(robot, [0.0; 2], [9.0, 0.0], Vec::new(), rules).unwrap()
     }
 }

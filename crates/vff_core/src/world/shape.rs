@@ -48,6 +48,19 @@ impl Shape {
             axis: Vector2::new(cos, sin),
         }
     }
+
+    /// Distance of the farthest point from the center, in m.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        match *self {
+            Self::Disc { radius } => radius,
+            Self::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => half_length.hypot(half_width) * axis.norm(),
+        }
+    }
 }
 
 impl<B: Real> Shape<B> {

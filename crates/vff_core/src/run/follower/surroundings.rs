@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::run::follower::scene::FollowerScene;
 use crate::world::frame::Frame;
-use crate::world::shape::{PlacedShape, SLACK, Shape};
+use crate::world::shape::{PlacedShape, SLACK};
 
 /// A touch of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl Surroundings {
                         cursor: 0,
                         stands_from,
                         stands: stands_from <= 0.0,
-                        extent: SLACK * extent(&each.shape),
+                        extent: SLACK * each.shape.extent(),
                     }
                 })
                 .collect(),
@@ -133,17 +133,5 @@ impl Surroundings {
             obstacle: self.nearest,
             bearing: to.y.atan2(to.x),
         }
-    }
-}
-
-/// Distance of the farthest point of an outline from its center, in m.
-fn extent(shape: &Shape) -> f64 {
-    match *shape {
-        Shape::Disc { radius } => radius,
-        Shape::Rectangle {
-            half_length,
-            half_width,
-            axis,
-        } => half_length.hypot(half_width) * axis.norm(),
     }
 }
