@@ -53,7 +53,8 @@ class Shield(Parameters):
     ----------
     person_speed : float or None
         Largest speed of people in m/s; 1.6 m/s is that of ISO 13855. ``None``: that of each
-        obstacle of the scene. What never moves in a scene is taken to stand.
+        obstacle of the scene, without a bound for one that accelerates: then the robot stays where it is
+        unless velocities are bounded. What never moves in a scene is taken to stand.
     latency : float
         Largest age of a measured position when the command takes effect, in s.
     position_error : float

@@ -54,13 +54,20 @@ impl Person {
         self.position_error + self.max_speed * (self.latency + time)
     }
 
-    /// Largest speed at which what is known of him can come nearer until a time, in m/s.
+    /// Largest speed at which what is known of him can come nearer until a time, in m/s; infinite where
+    /// nothing is known.
     pub(super) fn rate(&self, until: f64) -> f64 {
-        let known = self.known.map_or(0.0, |known| {
-            let spread = known.error + known.acceleration * (self.latency + until);
-            known.velocity.norm() + spread
-        });
-        self.max_speed.max(known)
+        let Some(known) = &self.known else {
+            return self.max_speed;
+        };
+        let spread = known.error + known.acceleration * (self.latency + until);
+        let rate = known.velocity.norm() + spread;
+        // Who may have any speed is where his velocity lets him be.
+        if self.max_speed == f64::INFINITY {
+            rate
+        } else {
+            rate.max(self.max_speed)
+        }
     }
 
     /// `g`: distance of the half disc ahead from everywhere that he can be at a time, in m;

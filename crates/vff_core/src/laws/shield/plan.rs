@@ -11,6 +11,9 @@ const STILL: f64 = 1e-9;
 /// Conservative advancement refuses what comes nearer than this, in m.
 const LEAST: f64 = 1e-4;
 
+/// Accuracy of a least distance as a share of its largest change: it bounds the steps to find it.
+const FINEST: f64 = 1e-6;
+
 /// Rounding of a number of periods.
 const ROUNDING: f64 = 1e-9;
 
@@ -127,6 +130,10 @@ impl Plan {
         }
         let radius = limits.radius + person.radius();
         let (rate, end) = (self.rate(person), self.end());
+        if rate == f64::INFINITY {
+            // He can be anywhere at once.
+            return false;
+        }
         let mut time = 0.0;
         loop {
             let clearance = self.clearance(person, radius, time);
@@ -140,8 +147,8 @@ impl Plan {
         }
     }
 
-    /// Least `g` over the plan in m, to `accuracy` m and never above it by more; infinite for a
-    /// robot that rests.
+    /// Least `g` over the plan in m, to `accuracy` m (at the finest a millionth of what `g` can
+    /// change by) and never above it by more; infinite for a robot that rests.
     #[must_use]
     pub fn gap(&self, person: &Person, limits: &Limits, accuracy: f64) -> f64 {
         if self.rests() {
@@ -149,6 +156,10 @@ impl Plan {
         }
         let radius = limits.radius + person.radius();
         let (rate, end) = (self.rate(person), self.end());
+        if rate == f64::INFINITY {
+            return f64::NEG_INFINITY;
+        }
+        let accuracy = accuracy.max(FINEST * rate * end);
         // Right after the ramp only the direction of the command counts.
         let mut least = self.clearance(person, radius, self.period);
         let mut time = 0.0;

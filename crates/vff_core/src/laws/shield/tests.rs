@@ -199,3 +199,60 @@ fn braking_continues_a_verified_plan() {
         }
     }
 }
+
+#[test]
+fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
+    let limits = Limits {
+        radius: 0.3,
+        max_speed: 1.0,
+        max_acceleration: 1.0,
+        period: 0.1,
+    };
+    let robot = RobotState {
+        position: Vector2::zeros(),
+        velocity: Vector2::new(0.5, 0.0),
+    };
+    for latency in [0.0, 0.1] {
+        let anywhere = Person {
+            max_speed: f64::INFINITY,
+            latency,
+            ..Person::disc([5.0, 0.0], 0.3)
+        };
+        let known = Person {
+            known: Some(KnownVelocity {
+                velocity: Vector2::new(0.1, 0.0),
+                error: 0.1,
+                acceleration: 1.0,
+            }),
+            ..anywhere
+        };
+        let plan = Plan::new(&robot, robot.velocity, &limits);
+        assert!(!plan.avoids(&anywhere, &limits, 0.0));
+        assert_eq!(plan.gap(&anywhere, &limits, 1e-3), f64::NEG_INFINITY);
+        assert!(plan.avoids(&known, &limits, 0.0));
+        let gap = plan.gap(&known, &limits, 1e-3);
+        assert!(gap > 3.0 && gap < 5.0, "{gap}");
+    }
+}
+
+#[test]
+fn a_gap_from_a_very_fast_one_takes_a_bounded_number_of_steps() {
+    let limits = Limits {
+        radius: 0.3,
+        max_speed: 1.0,
+        max_acceleration: 1.0,
+        period: 0.1,
+    };
+    let robot = RobotState {
+        position: Vector2::zeros(),
+        velocity: Vector2::new(0.5, 0.0),
+    };
+    let fast = Person {
+        max_speed: 1e12,
+        ..Person::disc([5.0, 0.0], 0.3)
+    };
+    let plan = Plan::new(&robot, robot.velocity, &limits);
+    let least = 4.4 - 1e12 * plan.end();
+    let gap = plan.gap(&fast, &limits, 1e-5);
+    assert!((gap / least - 1.0).abs() < 1e-5, "{gap} {least}");
+}
