@@ -56,9 +56,10 @@ class SafetyDecision:
     obstacle_reach : ndarray, shape (n,)
         How far each of them can have come from there when the robot rests, in m; 0 for what stands.
     path : ndarray, shape (p, 2)
-        Path of the guide through the map from here, in m; empty without a guide.
+        Path of the guide through the map alone from here, in m; empty without a guide. Around people who
+        stand the guide makes another plan in the run, which is not recorded.
     local_goal : (float, float) or None
-        Where the guide sends the law, in m.
+        Local goal on that path, in m: where the guide sends the law while nobody stands.
     """
 
     time: float

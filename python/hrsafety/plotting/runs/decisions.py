@@ -33,7 +33,8 @@ VERDICTS = {"kept": style.RUN_COLORS[1], "changed": style.PERSON_COLORS[1], "bra
 def safety_decision(record: SafetyRecord, time: float, *, title: str | None = None) -> Figure:
     """Draw one decision of the parts around a law.
 
-    Shown are the path of the guide to the goal and the local goal on it, the wanted and the commanded
+    Shown are the path of the guide through the map alone and the local goal on it (around people who
+    stand the law follows another plan), the wanted and the commanded
     velocity as the ways of one second, the ground that the robot sweeps until it rests in the plan
     behind the command, and how far everybody can have come by then. Color and text give the verdict:
     kept, changed or braking, with the margin by which the plan is verified.
