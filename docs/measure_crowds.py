@@ -19,7 +19,8 @@ from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import SUITES, entry
 from hrsafety.benchmarks.protocol import Case
-from hrsafety.benchmarks.reacting import SCENES, touched_at_fault
+from hrsafety.benchmarks.reacting import SCENES
+from hrsafety.navigation.crowd.contacts import contacts_of
 from page_tables import DOCS, head, line, percent, print_or_write
 
 MODELS = (
@@ -112,7 +113,7 @@ def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTra
     table = nav.metrics.evaluate_many(episodes)
     contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
     faults = [
-        touched_at_fault(episode, float(arrival)) > 0 or walls > 0
+        contacts_of(episode, float(arrival)).at_fault > 0 or walls > 0
         for episode, arrival, walls in zip(episodes, table.arrival_time, table.wall_contacts, strict=True)
     ]
     whole = [nav.crowd.world_metrics(run) for run in runs]

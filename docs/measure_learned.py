@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.benchmarks.reacting import touched_at_fault
+from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.shield_warnings import Motion
 from page_tables import DOCS, head, line, percent, print_or_write
@@ -60,7 +60,7 @@ def row(words: str, name: str, law: object) -> str:
     table = nav.metrics.evaluate_many(episodes)
     touched = table.robot_on_person + table.person_on_robot + table.mutual_contacts > 0
     ends = table.arrival_time.tolist()
-    fault = sum(touched_at_fault(each, end) > 0 for each, end in zip(episodes, ends, strict=True))
+    fault = sum(contacts_of(each, end).at_fault > 0 for each, end in zip(episodes, ends, strict=True))
     counts = (int(table.success.sum()), int(touched.sum()), fault)
     arrival = table.arrival_time[table.arrived].mean()
     return line(words, name, *(percent(count, CASES) for count in counts), f"{arrival:.2f}")
