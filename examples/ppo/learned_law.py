@@ -112,13 +112,14 @@ def compare(path: str | Path, *, first: int = 0, cases: int = 500) -> None:
     shield = nav.Shield(person_speed=1.0)
     bare: dict[str, Any] = {"reciprocal": nav.OptimalReciprocalCollisionAvoidance(), "learned": LearnedLaw.load(path)}
     laws = bare | {f"{name}, shield": nav.SafeNavigation(law, shield=shield) for name, law in bare.items()}
-    print(f"{'law':20} {'success, 95 % interval':38} {'drove into somebody':38} time (s)")
+    words = ("success, 95 % interval", "contact", "moved toward whom it touched")
+    print(f"{'law':20}" + "".join(f" {each:38}" for each in words) + " time (s)")
+    worlds = [scenarios.circle_crossing(case, visible=False) for case in range(first, first + cases)]
     for name, law in laws.items():
-        worlds = [scenarios.circle_crossing(case, law=law, visible=False) for case in range(first, first + cases)]
-        table = nav.crowd.crowd_batch(worlds)
-        drove = nav.metrics.wilson(int((table.robot_on_person + table.mutual_contacts > 0).sum()), cases)
-        time = table.arrival_time[table.arrived].mean()
-        print(f"{name:20} {table.success_share!s:38} {drove!s:38} {time:.2f}", flush=True)
+        table = nav.simulate_many(worlds, law)
+        fault = nav.metrics.wilson(int((table.contacts_at_fault > 0).sum()), cases)
+        shares = "".join(f" {each!s:38}" for each in (table.success_share, table.contact_share, fault))
+        print(f"{name:20}{shares} {table.arrival_time[table.arrived].mean():.2f}", flush=True)
 
 
 def main() -> None:

@@ -64,3 +64,16 @@ def test_it_succeeds_more_often_than_reciprocal_avoidance_and_drives_into_nobody
     assert bare.success_share.low > reciprocal.success_share.high
     assert shielded.success_share.low > reciprocal.success_share.high
     assert (shielded.robot_on_person + shielded.mutual_contacts).sum() == 0
+
+
+def test_the_example_prints_every_fault_as_the_table_of_the_guide_counts_it(
+    learned: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    learned.compare(learned.WEIGHTS, cases=20)
+    line = next(each for each in capsys.readouterr().out.splitlines() if each.startswith("reciprocal "))
+    worlds = [scenarios.circle_crossing(case, visible=False) for case in range(20)]
+    table = nav.simulate_many(worlds, nav.OptimalReciprocalCollisionAvoidance())
+    counts = table.success_share, table.contact_share, nav.metrics.wilson(int((table.contacts_at_fault > 0).sum()), 20)
+    assert all(str(share) in line for share in counts)
+    # Contacts that the person brought about, while the robot moved toward them, too.
+    assert (table.contacts_at_fault > 0).sum() > (table.robot_on_person + table.mutual_contacts > 0).sum()
