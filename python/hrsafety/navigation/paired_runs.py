@@ -97,8 +97,13 @@ class PairedRuns(Table, Generic[R]):
         InvalidParameterError
             If there is no such law.
         """
-        touched = self.outcome == "collided"
+        touched = self._touched()
         return compare_paired(touched[self._row("first", first)], touched[self._row("second", second)])
+
+    def _touched(self) -> npt.NDArray[np.bool_]:
+        """Return which runs had a contact."""
+        found: npt.NDArray[np.bool_] = self.outcome == "collided"
+        return found
 
     def _difference(self, first: str, second: str, values: Array, *, successful: bool) -> Mean:
         """Return the mean difference of two laws where both values are finite, or both arrived without a contact."""

@@ -20,6 +20,17 @@ LAWS = {"reciprocal": RECIPROCAL, "field": FIELD}
 CIRCLES = {f"case {case}": scenarios.circle_crossing(case) for case in range(3)}
 
 
+class Constant:
+    """A law that looks at nobody."""
+
+    def __init__(self, speed: float) -> None:
+        self.name, self.speed = f"{speed:g} m/s", speed
+
+    def velocity(self, situation: nav.laws.Situation) -> np.ndarray:
+        way = situation.goal - situation.position
+        return self.speed * way / max(float(np.hypot(*way)), 1.0)
+
+
 def assert_same(one: nav.crowd.CrowdTable, other: nav.crowd.CrowdTable) -> None:
     first, second = one.columns(), other.columns()
     assert list(first) == list(second)
@@ -162,6 +173,27 @@ def test_a_world_that_diverges_is_an_outcome() -> None:
     table = nav.simulate_many(nav.crowd.World(people=people, robots=[robot]), RECIPROCAL)
     assert table.outcome.tolist() == ["diverged"]
     assert table.success_share.count == 0
+
+
+@pytest.mark.parametrize(("goal", "outcome"), [(1.8, "collided"), (9.0, "diverged")])
+def test_a_contact_counts_although_the_world_diverges_later(goal: float, outcome: str) -> None:
+    model = nav.crowd.SocialForce2000(stiffness=1e308)
+    ways = ((-20.0, 20.0), (-8.0, -20.0))  # they meet after some seconds
+    far = [nav.crowd.Person(start=(x, 20.0), route=[(end, 20.0)], model=model) for x, end in ways]
+    stands = nav.crowd.Person(start=(1.0, 0.2), awareness=0.0)
+    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(goal, 0.0))
+    world = nav.crowd.World(people=[*far, stands], robots=[robot], time_limit=30.0)
+    law = Constant(1.0)
+    table = nav.simulate_many(world, law)
+    assert nav.crowd.simulate_crowd(replace(world, robots=[replace(robot, law=law)])).diverged is not None
+    assert table.outcome.tolist() == [outcome]
+    assert table.touched.tolist() == [True]
+    assert (table.success_share.count, table.contact_share.count, int(table.contacts_at_fault[0])) == (0, 1, 1)
+    compared = nav.compare(world, {"blind": law, "rests": Constant(0.0)})
+    standing = compared.standing("blind")
+    assert (standing.success.count, standing.contact.count, standing.at_fault.count) == (0, 1, 1)
+    assert standing.diverged.count == (outcome == "diverged")
+    assert compared.contacts_compared("blind", "rests").only_first == 1
 
 
 def test_doubts_of_the_shield_travel_with_the_table() -> None:

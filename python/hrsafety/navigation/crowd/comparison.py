@@ -29,9 +29,10 @@ class CrowdStanding:
     ----------
     law : str
         Its name.
-    success, contact : Share
-        Share of the episodes in which the robot arrived without a contact with people or walls, and with
-        one, with 95 % Wilson intervals.
+    success, contact, diverged : Share
+        Share of the episodes in which the robot arrived without a contact with people or walls, in which it
+        had one, however they ended, and in which the world diverged before the robot arrived, with 95 %
+        Wilson intervals.
     moving_contact, at_fault : Share
         Share with a contact while the robot itself was moving, and with one at fault.
     arrival_time, path_length : Mean
@@ -45,6 +46,7 @@ class CrowdStanding:
     law: str
     success: Share
     contact: Share
+    diverged: Share
     moving_contact: Share
     at_fault: Share
     arrival_time: Mean
@@ -112,6 +114,9 @@ class CrowdComparison(PairedRuns[CrowdTable]):
         """
         return self._by_law(self.runs.values[word("name", name, tuple(METRICS))])
 
+    def _touched(self) -> np.ndarray:
+        return self._by_law(self.runs.touched)
+
     def standing(self, law: str) -> CrowdStanding:
         """Return what one law did in all episodes.
 
@@ -143,7 +148,8 @@ class CrowdComparison(PairedRuns[CrowdTable]):
         return CrowdStanding(
             law=law,
             success=share(arrived),
-            contact=share(self.outcome[row] == "collided"),
+            contact=share(self._touched()[row]),
+            diverged=share(self.outcome[row] == "diverged"),
             moving_contact=share(self._by_law(self.runs.contacts_moving)[row] > 0),
             at_fault=share(self._by_law(self.runs.contacts_at_fault)[row] > 0),
             arrival_time=mean("arrival_time"),

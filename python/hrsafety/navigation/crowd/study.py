@@ -277,6 +277,7 @@ def _with_walls(contacts: Sequence[Contacts], table: MetricTable) -> np.ndarray[
 
 def _outcome(table: MetricTable, row: int, run: CrowdTrajectories, robot: int) -> str:
     touched = (table.robot_on_person, table.person_on_robot, table.mutual_contacts, table.wall_contacts)
-    if run.diverged is not None:
-        return run.outcomes[robot]
+    # Who had arrived before the world diverged did so with the contacts that it had.
+    if run.outcomes[robot] == "diverged":
+        return "diverged"
     return "collided" if any(kind[row] for kind in touched) else run.outcomes[robot]

@@ -21,6 +21,7 @@ __all__ = ["CrowdTable"]
 
 _OF_ROWS = ("law_index", "scenario_index", "gain_index", "robot", "seed", "gains", "outcome", "end_time")
 _CONTACTS = ("contacts_moving", "contacts_standing", "contacts_at_fault")
+_TOUCHES = ("robot_on_person", "person_on_robot", "mutual_contacts", "wall_contacts")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -51,7 +52,8 @@ class CrowdTable(
         Gains of each run; NaN where its law has no such gain.
     outcome : ndarray of str, shape (n,)
         ``"arrived"`` without a contact with people or walls, ``"collided"``, ``"timed_out"``, or
-        ``"diverged"`` where the state of the world was no longer finite.
+        ``"diverged"`` where the state of the world was no longer finite before the robot arrived; such a run
+        may have had a contact, too (``touched``).
     end_time : ndarray, shape (n,)
         When the world ended, in s.
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
@@ -113,8 +115,14 @@ class CrowdTable(
 
     @property
     def contact_share(self) -> Share:
-        """Share of the rows with a contact, with its 95 % Wilson interval."""
-        return wilson(int((self.outcome == "collided").sum()), len(self))
+        """Share of the rows with a contact, those that diverged later included, with its 95 % Wilson interval."""
+        return wilson(int(self.touched.sum()), len(self))
+
+    @property
+    def touched(self) -> npt.NDArray[np.bool_]:
+        """Whether the robot of each run had a contact with people or walls, however the run ended."""
+        counts = (self.values[name] for name in _TOUCHES)
+        return sum(counts, np.zeros(len(self), dtype=np.int64)) > 0
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
