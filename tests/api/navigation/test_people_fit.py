@@ -143,6 +143,15 @@ def corridor(n: int, **changes: Any) -> nav.crowd.World:
     return scenarios.corridor(n, **{"length": 20.0, "two_way": False, "radius": 0.2, "time_limit": 20.0, **changes})
 
 
+def single_file(n: int, end: float = 1e6) -> nav.crowd.World:
+    model = nav.crowd.CollisionFreeSpeed(time_gap=1.0)
+    people = [
+        nav.crowd.Person(start=(20.0 * k / n, 0.0), route=[(end, 0)], radius=0.2, desired_speed=1.3, model=model)
+        for k in range(n)
+    ]
+    return nav.crowd.World(people=people, period=(20.0, 0.0), time_limit=2.0)
+
+
 def test_the_reference_is_that_of_weidmann() -> None:
     assert nav.crowd.weidmann_speed(5.4) == 0.0
     assert nav.crowd.weidmann_speed([1e-3])[0] == pytest.approx(1.34)
@@ -162,14 +171,8 @@ def test_collision_free_people_slow_down_as_measured_crowds_do() -> None:
 
 
 def test_single_file_walks_at_the_speed_of_its_gap() -> None:
-    model = nav.crowd.CollisionFreeSpeed(time_gap=1.0)
     for n in (4, 12, 20, 40):
-        people = [
-            nav.crowd.Person(start=(20.0 * k / n, 0.0), route=[(1e6, 0)], radius=0.2, desired_speed=1.3, model=model)
-            for k in range(n)
-        ]
-        world = nav.crowd.World(people=people, period=(20.0, 0.0), time_limit=2.0)
-        found = nav.crowd.fundamental_diagram([world], width=1.0)
+        found = nav.crowd.fundamental_diagram([single_file(n)], width=1.0)
         assert found.speed[0] == pytest.approx(np.clip(20.0 / n - 0.4, 0.0, 1.3), abs=1e-9)
 
 
@@ -179,6 +182,13 @@ def test_worlds_without_a_diagram_are_refused() -> None:
         (corridor(0), r"worlds\[0\].people must"),
         (replace(corridor(3), people=()), r"worlds\[0\].people must"),
         (3, r"worlds\[0\] must be a World"),
+        # Both ways the mean velocity is 0 at any density; half the width is twice the density.
+        (corridor(40, two_way=True), r"worlds\[0\].people\[\d+\].route must lead to \+x"),
+        (corridor(40, width=6.0), r"width must be the distance of the walls of worlds\[0\], 6 m"),
+        (replace(single_file(4), people=[nav.crowd.Person(start=(0, 0))]), r"people\[0\].route must lead to \+x"),
+        (replace(single_file(4, end=21.0), time_limit=9.0), r"people\[3\].route must lead farther .*an arrival at"),
     ):
         with pytest.raises(InvalidParameterError, match=words):
             nav.crowd.fundamental_diagram([world])  # type: ignore[list-item]
+    with pytest.raises(InvalidParameterError, match="worlds must hold at least one world"):
+        nav.crowd.fundamental_diagram([])

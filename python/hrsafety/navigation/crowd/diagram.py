@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.obstacles import Disc, Rectangle
 from hrsafety.tables import Columns, Table
 
 __all__ = ["FundamentalDiagram", "fundamental_diagram", "weidmann_speed"]
@@ -120,8 +122,9 @@ def fundamental_diagram(
     Raises
     ------
     InvalidParameterError
-        If a world does not repeat itself along x, has nobody or has sources, or is denser than 5.4 people
-        for each square meter.
+        If there is no world, or one does not repeat itself along x, has nobody or has sources, has somebody
+        who does not walk to +x or arrives, has walls at another distance than the width, or is denser than
+        5.4 people for each square meter.
     SimulationError
         If the state of a world became non-finite.
 
@@ -136,6 +139,8 @@ def fundamental_diagram(
     ([0.25, 2.0], True)
     """
     given = sequence("worlds", "be a sequence of World", worlds)
+    if not given:
+        raise InvalidParameterError("worlds", "hold at least one world", Shown("none"))
     wide = positive("width", width)
     density = np.array([_density(f"worlds[{index}]", world, wide) for index, world in enumerate(given)])
     reference = weidmann_speed(density)
@@ -152,13 +157,36 @@ def _density(name: str, world: object, width: float) -> float:
     if not place.people or place.sources:
         found = "nobody" if not place.people else "sources"
         raise InvalidParameterError(f"{name}.people", "be there from the start, at least one", Shown(found))
+    for index, person in enumerate(place.people):
+        way = [person.start[0], *(point[0] for point in person.route)]
+        if len(way) < 2 or not (np.diff(way) > 0.0).all():
+            rule = "lead to +x, as of everybody in the corridor"
+            remedy = "of scenarios.corridor, give two_way=False"
+            raise InvalidParameterError(f"{name}.people[{index}].route", rule, person.route, remedy)
+    apart = _between_walls(place)
+    if apart is not None and not math.isclose(apart, width, rel_tol=1e-6):
+        raise InvalidParameterError("width", f"be the distance of the walls of {name}, {apart:g} m", width)
     return len(place.people) / (place.period[0] * width)
+
+
+def _between_walls(world: World) -> float | None:
+    """Return the distance of the walls along x on both sides of all people; ``None`` without them."""
+    across = [person.start[1] for person in world.people]
+    walls = [np.asarray(wall)[:, 1] for wall in world.walls if not isinstance(wall, Disc | Rectangle)]
+    along = [float(wall[0]) for wall in walls if (wall == wall[0]).all()]
+    below, above = [y for y in along if y <= min(across)], [y for y in along if y >= max(across)]
+    return min(above) - max(below) if below and above else None
 
 
 def _speed(index: int, run: CrowdTrajectories) -> float:
     """Return the mean velocity along x over the second half of the time."""
     if run.diverged is not None:
         raise SimulationError(f"worlds[{index}] diverged at {run.diverged.time:g} s", index)
+    arrived = np.flatnonzero(~np.isnan(run.arrival_time))
+    if arrived.size > 0:
+        found = Shown(f"an arrival at {run.arrival_time[arrived[0]]:g} s")
+        rule = "lead farther than the person walks within the time limit"
+        raise InvalidParameterError(f"worlds[{index}].people[{arrived[0]}].route", rule, found)
     first = len(run.time) // 2
     way = run.position[-1, :, 0] - run.position[first, :, 0]
     return float(way.mean() / (run.time[-1] - run.time[first]))
