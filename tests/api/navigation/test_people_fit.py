@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -134,6 +135,28 @@ def test_mistakes_are_named(change: dict[str, Any], words: str) -> None:
     given = {"model": nav.crowd.SocialForce2000(), "recording": WALK, "names": ["strength"], "evaluations": 20}
     with pytest.raises(InvalidParameterError, match=words):
         nav.crowd.fit_people(**given | change)
+
+
+def test_values_that_are_not_finite_are_refused_and_not_averaged() -> None:
+    for name, row in (("position", 25), ("time_s", 3)):
+        values = getattr(WALK, name).copy()
+        values[row] = np.nan
+        parts = {"time_s": WALK.time_s, "person": WALK.person, "position": WALK.position, name: values}
+        with pytest.raises(InvalidParameterError, match=rf"recording.{name}\[{row}\] must be finite"):
+            nav.crowd.prediction_errors("constant_velocity", SimpleNamespace(**parts))
+    with pytest.raises(InvalidParameterError, match="recording must have time_s, person and position"):
+        nav.crowd.prediction_errors("straight", None)  # type: ignore[arg-type]
+
+
+def test_rows_by_person_have_the_windows_of_rows_by_time() -> None:
+    order = np.lexsort((WALK.time_s, -WALK.person))
+    rows = SimpleNamespace(time_s=WALK.time_s[order], person=WALK.person[order], position=WALK.position[order])
+    assert rows.time_s[0] > WALK.time_s[0]
+    for part in ("first", "all"):
+        given = {"seen": 1.6, "foretold": 1.6, "part": part}
+        assert nav.crowd.prediction_errors("straight", rows, **given).windows == (
+            nav.crowd.prediction_errors("straight", WALK, **given).windows
+        )
 
 
 # ---- the fundamental diagram ----------------------------------------------------------------

@@ -96,7 +96,8 @@ def fit_people(
 
     The mean error over all instants that are foretold (`prediction_errors`) is minimized in the first half
     of the windows by differential evolution over the logarithms of the parameters; the other half is held
-    out.
+    out. The last windows of the first half reach into the other one where ``every`` is less than
+    ``seen + foretold``, and people may be in both: another recording is the stricter test.
 
     Parameters
     ----------

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
+import numpy.typing as npt
 
-from hrsafety._arguments import Array, positive, thread_count, whole_steps, word
+from hrsafety._arguments import Array, points, positive, thread_count, vector, whole_steps, word
 from hrsafety._bounds import MOST_INTERVAL
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
@@ -128,22 +129,43 @@ class Windows:
         return track.position[row : row + self.foretold]
 
 
+def _rows_of(recording: Recorded) -> tuple[Array, npt.NDArray[np.int64], Array]:
+    """Return instants, persons and positions, checked: the recording may be any object that has them."""
+    try:
+        given = recording.time_s, recording.person, recording.position
+    except AttributeError:
+        raise InvalidParameterError("recording", "have time_s, person and position", recording) from None
+    time, person = vector("recording.time_s", given[0]), np.asarray(given[1])
+    position = points("recording.position", given[2])
+    if person.ndim != 1 or person.dtype.kind not in "iu":
+        raise InvalidParameterError("recording.person", "be an array (n,) of integers", given[1])
+    if not len(time) == len(person) == len(position):
+        lengths = f"{len(time)}, {len(person)} and {len(position)} rows"
+        raise InvalidParameterError("recording", "have as many persons and positions as instants", Shown(lengths))
+    for name, values in (("time_s", time), ("position", position)):
+        if not np.isfinite(values).all():
+            row = int(np.flatnonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))[0])
+            raise InvalidParameterError(f"recording.{name}[{row}]", "be finite", values[row].tolist())
+    return time, person, position
+
+
 def _tracks(recording: Recorded) -> tuple[dict[int, Track], float]:
     """Return everybody's positions at equal instants, and the interval in s."""
-    rows = {int(who): recording.person == who for who in np.unique(recording.person)}
-    gaps = [np.diff(recording.time_s[kept]) for kept in rows.values()]
+    time, person, position = _rows_of(recording)
+    rows = {int(who): person == who for who in np.unique(person)}
+    gaps = [np.diff(time[kept]) for kept in rows.values()]
     if not any(len(each) for each in gaps):
         raise InvalidParameterError("recording", "have somebody at two instants", Shown("none"))
     interval = float(min(each.min() for each in gaps if len(each)))
     tracks = {}
-    begin = float(recording.time_s[0])
+    begin = float(time.min())
     for who, kept in rows.items():
-        number = (recording.time_s[kept] - begin) / interval
+        number = (time[kept] - begin) / interval
         whole = np.round(number)
         if np.abs(number - whole).max() > _ROUNDING * max(1.0, float(number[-1])) or (np.diff(whole) != 1.0).any():
             rule = f"have everybody at every interval of {interval:g} s while present"
             raise InvalidParameterError("recording", rule, Shown(f"person {who}"))
-        tracks[who] = Track(int(whole[0]), recording.position[kept])
+        tracks[who] = Track(int(whole[0]), position[kept])
     return tracks, interval
 
 
@@ -256,7 +278,8 @@ def prediction_errors(
     recording : Recording
         People at equal instants; any object with ``time_s``, ``person`` and ``position``.
     part : {"first", "second", "all"}
-        Which half of the instants with windows.
+        Which half of the instants with windows. Windows at the seam of the halves overlap where ``every`` is
+        less than ``seen + foretold``.
     seen, foretold, every : float
         Duration that is seen, that is foretold, and between two windows, in s: multiples of the interval of
         the recording.
