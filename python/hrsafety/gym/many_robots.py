@@ -13,7 +13,7 @@ import numpy.typing as npt
 from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
-from hrsafety._arguments import Array, numbers, positive, word
+from hrsafety._arguments import Array, checked_seed, numbers, positive, word
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
@@ -232,6 +232,8 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         """
         if seed is None and not self._seeded:
             seed = int(np.random.default_rng().integers(2**62))  # the same for the worlds of all robots
+        if seed is not None:
+            checked_seed("seed", seed)  # before anything of the episode under way is forgotten
         self._seeded = True
         for told in self._told.values():
             told.reset()

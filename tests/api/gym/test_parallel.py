@@ -162,3 +162,16 @@ def test_without_pettingzoo_it_says_what_is_missing(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "pettingzoo" else sys)
     with pytest.raises(MissingExtraError, match=r"hrsafety\[pettingzoo\]"):
         gym.parallel_env(world(robot(0)))
+
+
+def test_a_refused_seed_leaves_the_episode_as_it_was() -> None:
+    env, other = (gym.parallel_env(world(robot(0), robot(1)), action="unicycle") for _ in range(2))
+    action = {"robot_0": [0.5, 0.8], "robot_1": [0.5, -0.3]}
+    for each in (env, other):
+        each.reset(seed=4)
+        each.step(action)
+    with pytest.raises(InvalidParameterError, match="seed must"):
+        env.reset(seed=-1)
+    found, expected = env.step(action), other.step(action)
+    for name in env.agents:
+        np.testing.assert_array_equal(found[0][name], expected[0][name])
