@@ -160,7 +160,9 @@ def _array(values: np.ndarray[Any, Any]) -> str:
     finite = values[np.isfinite(values)]
     span = f"{finite.min():.6g} to {finite.max():.6g}" if finite.size else "no finite value"
     empty = int(np.isnan(values).sum()) if values.dtype.kind == "f" else 0
-    return f"{shape}: {span}" + (f", {empty} without value" if empty else "")
+    infinite = values.size - finite.size - empty
+    counts = ((infinite, "infinite"), (empty, "without value"))
+    return f"{shape}: {span}" + "".join(f", {count} {what}" for count, what in counts if count)
 
 
 def _sequence(values: tuple[Any, ...] | list[Any]) -> str:

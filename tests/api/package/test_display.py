@@ -11,7 +11,7 @@ import pytest
 
 from api.fuzzing import CALLS
 from fuzz.constructors import NO_CONSTRUCTORS, public_classes
-from hrsafety import impact, plausibility, sweep
+from hrsafety import _display, impact, plausibility, sweep
 from hrsafety import navigation as nav
 from hrsafety._display import _html, fields_with_units
 from hrsafety.plausibility import ResultWarning
@@ -170,3 +170,8 @@ def test_sweep_shows_columns_with_units_and_reads_nothing(monkeypatch: pytest.Mo
     assert "<td>closing_speed</td><td>axis</td><td>m/s</td>" in text
     assert "<td>peak_contact_force</td><td>number</td><td>N</td>" in text
     assert "SweepResult: grid, 2 rows" in text
+
+
+def test_infinite_values_are_counted_beside_the_range_of_the_others() -> None:
+    values = np.array([[0.5, np.inf], [2.0, -np.inf], [1.0, np.nan]])
+    assert _display._array(values) == "3 x 2: 0.5 to 2, 2 infinite, 1 without value"
