@@ -171,7 +171,13 @@ def simulate_many(
     sets = sets_of(drivers, gains)
     drawn = None if seeds is None else checked_seeds(seeds)
     if not isinstance(named, Numbered) and isinstance(next(iter(named.values())), World):
-        own = {"built": built, "paths": paths, "weights": weights, "integrator": integrator, "step": step}
+        own = {
+            "built": built,
+            "paths": paths,
+            "weights": check_weights(weights),
+            "integrator": integrator,
+            "step": step,
+        }
         _refuse_in_worlds(own | {"hold": hold, "stop_on_contact": stop_on_contact, "descent": descent})
         worlds = cast("Mapping[str, World]", named)
         crowds = CrowdStudy(worlds, drivers, sets, drawn, flag("people_alone", people_alone))
@@ -214,7 +220,9 @@ _OF_SCENARIOS: Mapping[str, Any] = {
 def _refuse_in_worlds(given: Mapping[str, object]) -> None:
     """Refuse options that worlds do not have."""
     for name, value in given.items():
-        if value is not _OF_SCENARIOS[name] and value != _OF_SCENARIOS[name]:
+        # Arrays have no single truth value.
+        plain = isinstance(value, bool | int | float | str | tuple | np.generic)
+        if value is not _OF_SCENARIOS[name] and not (plain and value == _OF_SCENARIOS[name]):
             remedy = "worlds have a step of their own, and run to their end"
             raise InvalidParameterError(name, "be left out for worlds", value, remedy)
 

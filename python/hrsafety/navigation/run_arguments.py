@@ -72,7 +72,7 @@ def named_scenarios(scenarios: object) -> Mapping[str, Scenario] | Mapping[str, 
     """
     if isinstance(scenarios, Scenarios):
         return Numbered(scenarios)
-    rule = "be a Scenario, a sequence of them or a mapping of names to them"
+    rule = "be a Scenario or World, a sequence of them or a mapping of names to them"
     given = listed("scenarios", rule, [scenarios] if isinstance(scenarios, (Scenario, World)) else scenarios)
     if isinstance(given[0][2], World):
         return {key: instance(f"scenarios[{shown}]", each, World) for key, shown, each in given}

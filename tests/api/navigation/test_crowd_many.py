@@ -261,3 +261,19 @@ def test_scenarios_have_no_people_that_react() -> None:
         nav.simulate_many(scenarios.configuration("c1"), FIELD, people_alone=True)  # type: ignore[call-overload]
     with pytest.raises(InvalidParameterError, match=r"scenarios\[1\] must be a Scenario"):
         nav.simulate_many([scenarios.configuration("c1"), CIRCLES["case 0"]], FIELD)  # type: ignore[list-item]
+
+
+def test_robots_that_touch_each_other_are_in_the_standing() -> None:
+    robots = [
+        nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(6.0, 0.0)),
+        nav.crowd.CrowdRobot(start=(6.0, 0.1), goal=(0.0, 0.1)),
+    ]
+    standing = nav.compare(nav.crowd.World(robots=robots), {"blind": Constant(1.0)}).standing("blind")
+    assert (standing.success.count, standing.contact.count, standing.robot_contact.count) == (2, 0, 2)
+
+
+def test_options_of_scenarios_may_be_arrays_and_are_refused_by_name() -> None:
+    world = CIRCLES["case 0"]
+    assert len(nav.simulate_many(world, RECIPROCAL, weights=np.full(3, 1 / 3))) == 1
+    with pytest.raises(InvalidParameterError, match="weights must be left out for worlds"):
+        nav.simulate_many(world, RECIPROCAL, weights=np.array([1.0, 0.0, 0.0]))

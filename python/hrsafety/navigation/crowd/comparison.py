@@ -35,6 +35,9 @@ class CrowdStanding:
         Wilson intervals.
     moving_contact, at_fault : Share
         Share with a contact while the robot itself was moving, and with one at fault.
+    robot_contact : Share
+        Share of the episodes in whose world robots touched each other, whichever; these are no contacts of
+        the shares above.
     arrival_time, path_length : Mean
         Over the episodes with success, in s and m, with 95 % bootstrap intervals.
     min_clearance, discomfort_time : Mean
@@ -49,6 +52,7 @@ class CrowdStanding:
     diverged: Share
     moving_contact: Share
     at_fault: Share
+    robot_contact: Share
     arrival_time: Mean
     path_length: Mean
     min_clearance: Mean
@@ -152,6 +156,7 @@ class CrowdComparison(PairedRuns[CrowdTable]):
             diverged=share(self.outcome[row] == "diverged"),
             moving_contact=share(self._by_law(self.runs.contacts_moving)[row] > 0),
             at_fault=share(self._by_law(self.runs.contacts_at_fault)[row] > 0),
+            robot_contact=share(self._by_law(self.runs.values["robot_contacts"])[row] > 0),
             arrival_time=mean("arrival_time"),
             path_length=mean("path_length"),
             min_clearance=mean("min_clearance"),

@@ -53,7 +53,8 @@ class CrowdTable(
     outcome : ndarray of str, shape (n,)
         ``"arrived"`` without a contact with people or walls, ``"collided"``, ``"timed_out"``, or
         ``"diverged"`` where the state of the world was no longer finite before the robot arrived; such a run
-        may have had a contact, too (``touched``).
+        may have had a contact, too (``touched``). Contacts between robots change no outcome; they are counted
+        for the whole world in ``robot_contacts``.
     end_time : ndarray, shape (n,)
         When the world ended, in s.
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
