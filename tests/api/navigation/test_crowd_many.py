@@ -185,7 +185,9 @@ def test_a_contact_counts_although_the_world_diverges_later(goal: float, outcome
     world = nav.crowd.World(people=[*far, stands], robots=[robot], time_limit=30.0)
     law = Constant(1.0)
     table = nav.simulate_many(world, law)
-    assert nav.crowd.simulate_crowd(replace(world, robots=[replace(robot, law=law)])).diverged is not None
+    run = nav.crowd.simulate_crowd(replace(world, robots=[replace(robot, law=law)]))
+    assert run.diverged is not None
+    assert f"warning: the world diverged at {run.diverged.time:g} s, person" in repr(run)
     assert table.outcome.tolist() == [outcome]
     assert table.touched.tolist() == [True]
     assert (table.success_share.count, table.contact_share.count, int(table.contacts_at_fault[0])) == (0, 1, 1)

@@ -83,8 +83,14 @@ class CrowdTrajectories(Table):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Those of the world."""
-        return self.world.warnings
+        """Those of the world, and that it diverged if it did."""
+        if self.diverged is None:
+            return self.world.warnings
+        who, when = f"{self.diverged.kind} {self.diverged.index}", self.diverged.time
+        message = (
+            f"the world diverged at {when:g} s, {who} first: nothing is known from then on; a smaller step may help"
+        )
+        return (ResultWarning("unfinished", "diverged", message), *self.world.warnings)
 
     @property
     def outcomes(self) -> tuple[str, ...]:
