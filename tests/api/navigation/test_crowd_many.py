@@ -173,6 +173,10 @@ def test_a_world_that_diverges_is_an_outcome() -> None:
     table = nav.simulate_many(nav.crowd.World(people=people, robots=[robot]), RECIPROCAL)
     assert table.outcome.tolist() == ["diverged"]
     assert table.success_share.count == 0
+    fine = nav.crowd.World(robots=[replace(robot, law=RECIPROCAL)])
+    scored = nav.crowd.crowd_batch([fine, replace(fine, people=people)])
+    assert [each.code for each in scored.warnings] == ["unfinished"]
+    assert scored.warnings[0].message.startswith("worlds[1]: the world diverged at")
 
 
 @pytest.mark.parametrize(("goal", "outcome"), [(1.8, "collided"), (9.0, "diverged")])

@@ -142,7 +142,7 @@ def crowd_batch(
     if people_alone:
         alone = list(simulate_crowds([replace(world, robots=()) for world in given], threads=threads))
     episodes = [each for run, other in zip(runs, alone, strict=True) for each in episodes_of(run, other)]
-    named = ((f"worlds[{index}]", world.warnings) for index, world in enumerate(given))
+    named = ((f"worlds[{index}]", run.warnings) for index, run in enumerate(runs))
     return table_of(episodes, gathered(named, "worlds"), threads=threads)
 
 
