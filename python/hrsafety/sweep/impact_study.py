@@ -63,7 +63,8 @@ class ImpactStudy(Study):
     horizon : float or None
         As for `impact.metrics`, in s.
     outputs : sequence of str or None
-        Columns to keep; all when ``None``.
+        Columns to keep; all when ``None``. Without ``"status"`` nothing tells the values of a foam that
+        bottomed from the others.
 
     Raises
     ------
