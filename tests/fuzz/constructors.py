@@ -146,6 +146,14 @@ OTHER_WAYS: dict[str, tuple[Callable[..., Any], Right]] = {
         nav.MovingDisc.from_path,
         {"time": [0.0, 1.0], "position": [[0.0, 0.0], [1.0, 0.0]], "radius": 0.2},
     ),
+    "MovingRectangle.from_path": (
+        nav.MovingRectangle.from_path,
+        {"time": [0.0, 1.0], "position": [[0.0, 0.0], [1.0, 0.0]], "length": 0.6, "width": 0.4},
+    ),
+    "MovingRectangle.from_segments": (
+        nav.MovingRectangle.from_segments,
+        {"start": (0.0, 0.0), "segments": [(1.0, (0.1, 0.0), (0.0, 0.0))], "length": 0.6, "width": 0.4},
+    ),
     "StaticMap.from_polylines": (nav.maps.StaticMap.from_polylines, {"polylines": [[(0.0, 0.0), (1.0, 0.0)]]}),
     "StaticMap.from_polygons": (
         nav.maps.StaticMap.from_polygons,
