@@ -160,19 +160,23 @@ fn a_two_wheel_robot_goes_by_echoes_too() {
 }
 
 #[test]
-fn a_rectangle_that_moves_is_for_sensors_only() {
-    let motion = Motion::moving([2.0, 2.0], [0.0, -0.5], [0.0; 2], None).unwrap();
-    let body = PlacedShape::upright([2.0, 2.0], [0.5, 0.5]);
-    let moving = Obstacle::seen(body, motion).unwrap();
-    let robot = HolonomicRobot::default();
-    let found = Scenario::new(
-        robot,
-        [0.0, 0.0],
-        [4.0, 0.0],
-        vec![moving],
-        Rules::default(),
-    );
-    assert!(found.unwrap_err().to_string().contains("obstacles[0]"));
+fn a_rectangle_that_moves_is_known_by_its_echoes() {
+    let beside = |speed: f64| {
+        let motion = Motion::moving([2.0, 1.2], [0.0, -speed], [0.0; 2], None).unwrap();
+        let body = PlacedShape::upright([2.0, 1.2], [0.5, 0.5]);
+        let scenario = scenario(vec![Obstacle::seen(body, motion).unwrap()]);
+        let ring = Ultrasonic {
+            max_speed: 0.3,
+            ..sonar(16, Firing::Together)
+        };
+        run(&scenario, &with(vec![ring])).0
+    };
+    let (coming, staying) = (beside(0.2), beside(0.05));
+    for summary in [&coming, &staying] {
+        assert_eq!(summary.outcome, Outcome::Arrived);
+        assert!(summary.contact[0].is_none());
+    }
+    assert!(coming.path_length > staying.path_length + 0.05);
 }
 
 #[test]

@@ -343,7 +343,8 @@ def as_made(name: str, value: object, length: int | None) -> Any:
     tuples = isinstance(value, tuple) and all(isinstance(each, tuple) for each in value)
     if not tuples or (length is not None and len(value) != length):  # type: ignore[arg-type]  # a tuple
         raise InvalidParameterError(name, "be None, or as it was made", value, f"use from_{name}")
-    return value
+    motion: Any = value
+    return frozen_path(*motion) if name == "path" else frozen_segments(motion)
 
 
 def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, default_max_speed: float | None) -> None:

@@ -50,6 +50,14 @@ CASES: dict[str, tuple[str, Callable[[], Any]]] = {
         "segments must be None, or as it was made",
         lambda: nav.Human(start=(0, 0), velocity=(1, 0), segments=3),
     ),
+    "segment of a person": (
+        r"segments\[0\] must be .duration, velocity, acceleration.",
+        lambda: nav.Human(start=(0, 0), velocity=(1, 0), segments=((1.0,),)),
+    ),
+    "time of a path": (
+        "time must be an array of numbers",
+        lambda: nav.MovingDisc(center=(0, 0), radius=0.2, velocity=(1, 0), path=(("a",), ("b",))),
+    ),
     "path of a rectangle": (
         "path must be None, or as it was made, .*use from_path",
         lambda: nav.MovingRectangle(center=(0, 0), length=1, width=1, velocity=(1, 0), path=3),
