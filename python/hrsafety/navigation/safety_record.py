@@ -10,6 +10,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, number
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
@@ -27,6 +28,7 @@ from hrsafety.navigation.trajectory import Trajectory
 __all__ = ["SafetyDecision", "SafetyRecord", "record_safety"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SafetyDecision:
     """A decision of the parts around a law, and the plan that it was verified with.
@@ -78,6 +80,7 @@ class SafetyDecision:
     local_goal: Pair | None
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SafetyRecord:
     """The decisions of a run, one a control period.
