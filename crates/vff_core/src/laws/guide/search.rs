@@ -28,7 +28,7 @@ pub(super) struct CostToGo {
     pub next: Vec<u32>,
 }
 
-/// A search from the goal's node, which goes on where it was left.
+/// A search from the goal's node, which resumes where it stopped.
 #[derive(Clone, Debug)]
 pub(super) struct Search {
     room: Room,
