@@ -12,17 +12,8 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, number, pair
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.obstacles import (
-    Human,
-    MovingDisc,
-    Obstacle,
-    Path,
-    Rectangle,
-    Segment,
-    as_made,
-    frozen_path,
-    frozen_segments,
-)
+from hrsafety.navigation.motions import Path, Segment, frozen_path, frozen_segments, moving_body
+from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
 
 __all__ = ["Box", "Mobile", "MovingRectangle"]
 
@@ -101,16 +92,12 @@ class MovingRectangle(Obstacle):
         sides = {name: number(name, getattr(self, name)) for name in ("length", "width", "heading")}
         self._converted(**sides)
         given = {**sides, **self._limits()}
-        if self.path is not None:
-            time, position = as_made("path", self.path, 2)
-            native = _hrsafety.Obstacle.recorded(time=time, position=position, **given)
-        elif self.segments is not None:
-            segments = as_made("segments", self.segments, None)
-            native = _hrsafety.Obstacle.piecewise(start=self.center, segments=segments, **given)
-        else:
+
+        def straight() -> _hrsafety.Obstacle:
             motion = {"velocity": self.velocity, "acceleration": self.acceleration, "stop": self.stop}
-            native = _hrsafety.Obstacle.moving_rectangle(start=self.center, **motion, **given)
-        self._set(_native=native)
+            return _hrsafety.Obstacle.moving_rectangle(start=self.center, **motion, **given)
+
+        self._set(_native=moving_body(self, self.center, given, straight))
 
     @classmethod
     def from_path(

@@ -12,13 +12,11 @@ from typing import Any, Self
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, not_negative, number, numbers, pair, points, positive, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety._arguments import Pair, Parameters, not_negative, number, pair, positive
+from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.motions import Path, Segment, frozen_path, frozen_segments, moving_body
 
 __all__ = ["Disc", "Human", "MovingDisc", "Obstacle", "Rectangle"]
-
-Segment = tuple[float, Pair, Pair]
-Path = tuple[tuple[float, ...], tuple[Pair, ...]]
 
 
 class Obstacle(Parameters):
@@ -306,64 +304,19 @@ class Rectangle(Obstacle):
         self._set(_native=native)
 
 
-def frozen_path(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
-    """Check the shapes of a recording and freeze it."""
-    instants = numbers("time", time, "be an array of numbers")
-    places = points("position", position)
-    if instants.ndim != 1:
-        raise ShapeError("time", "(n,)", instants.shape)
-    if len(places) != len(instants):
-        raise ShapeError("position", f"({len(instants)}, 2)", places.shape)
-    if len(instants) == 0:
-        raise InvalidParameterError("time", "hold at least one sample", Shown("an empty array"))
-    return tuple(instants.tolist()), tuple((x, y) for x, y in places.tolist())
-
-
-def frozen_segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]) -> tuple[Segment, ...]:
-    """Freeze a list of (duration, velocity, acceleration)."""
-    frozen = []
-    rule = "be (duration, velocity, acceleration)"
-    for index, segment in enumerate(sequence("segments", "be a list of (duration, velocity, acceleration)", segments)):
-        parts = sequence(f"segments[{index}]", rule, segment)
-        if len(parts) != 3:
-            raise InvalidParameterError(f"segments[{index}]", rule, segment)
-        duration, velocity, acceleration = parts
-        frozen.append(
-            (
-                number(f"segments[{index}].duration", duration),
-                pair(f"segments[{index}].velocity", velocity),
-                pair(f"segments[{index}].acceleration", acceleration),
-            )
-        )
-    return tuple(frozen)
-
-
-def as_made(name: str, value: object, length: int | None) -> Any:
-    """Return what a classmethod has made of a motion: constructors take it for copies only."""
-    tuples = isinstance(value, tuple) and all(isinstance(each, tuple) for each in value)
-    if not tuples or (length is not None and len(value) != length):  # type: ignore[arg-type]  # a tuple
-        raise InvalidParameterError(name, "be None, or as it was made", value, f"use from_{name}")
-    motion: Any = value
-    return frozen_path(*motion) if name == "path" else frozen_segments(motion)
-
-
 def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, default_max_speed: float | None) -> None:
-    """Build the native counterpart of a moving body from whichever motion it was given."""
+    """Build the native counterpart of a round body that moves."""
     radius, velocity = number("radius", obstacle.radius), pair("velocity", obstacle.velocity)
     stop = None if obstacle.stop is None else pair("stop", obstacle.stop)
     obstacle._converted(radius=radius, velocity=velocity, stop=stop)
     limits = obstacle._limits()
     if limits["max_speed"] is None:
         limits["max_speed"] = default_max_speed
-    if obstacle.path is not None:
-        time, position = as_made("path", obstacle.path, 2)
-        native = _hrsafety.Obstacle.recorded(time=time, position=position, radius=radius, **limits)
-    elif obstacle.segments is not None:
-        segments = as_made("segments", obstacle.segments, None)
-        native = _hrsafety.Obstacle.piecewise(start=start, segments=segments, radius=radius, **limits)
-    else:
-        native = _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
-    obstacle._set(_native=native)
+
+    def straight() -> _hrsafety.Obstacle:
+        return _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
+
+    obstacle._set(_native=moving_body(obstacle, start, {"radius": radius, **limits}, straight))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
