@@ -30,6 +30,9 @@ pub struct Shield(pub shield::Shield);
 /// Radius, largest speed, largest acceleration and control period of a robot.
 type RobotLimits = (f64, f64, f64, f64);
 
+/// Position and velocity of a robot.
+type MotionState = ([f64; 2], [f64; 2]);
+
 /// Center, outline (radius, or length, width and heading), velocity, largest speed and largest error of
 /// the position of somebody; a radius has NaN beside it.
 type OutlineState = ([f64; 2], [f64; 3], [f64; 2], [f64; 2]);
@@ -72,27 +75,13 @@ impl Shield {
     fn decide(
         &self,
         limits: RobotLimits,
-        state: ([f64; 2], [f64; 2]),
+        state: MotionState,
         wanted: [f64; 2],
         people: Vec<PersonState>,
     ) -> PyResult<([f64; 2], &'static str, [f64; 2])> {
-        let (radius, max_speed, max_acceleration, period) = limits;
-        let limits = Limits {
-            radius,
-            max_speed,
-            max_acceleration,
-            period,
-        };
-        let guard = Guard::new(self.0, limits).map_err(CoreError::from)?;
+        let guard = self.guard(limits)?;
         let people: Vec<Person> = people.into_iter().map(|each| self.person(each)).collect();
-        let view = View {
-            robot: RobotState {
-                position: state.0.into(),
-                velocity: state.1.into(),
-            },
-            people: &people,
-            walls: Walls::NONE,
-        };
+        let view = seen(state, &people);
         let clipped = guard.clipped(&view.robot, wanted.into());
         let decision = guard.decide(&view, wanted.into());
         let gaps = [clipped, decision.velocity].map(|velocity| guard.gap(&view, velocity));
@@ -105,27 +94,13 @@ impl Shield {
         &self,
         py: Python<'py>,
         limits: RobotLimits,
-        state: ([f64; 2], [f64; 2]),
+        state: MotionState,
         command: [f64; 2],
         others: Vec<OutlineState>,
     ) -> PyResult<(f64, [Bound<'py, PyAny>; 2])> {
-        let (radius, max_speed, max_acceleration, period) = limits;
-        let limits = Limits {
-            radius,
-            max_speed,
-            max_acceleration,
-            period,
-        };
-        let guard = Guard::new(self.0, limits).map_err(CoreError::from)?;
+        let guard = self.guard(limits)?;
         let others: Vec<Person> = others.into_iter().map(|each| self.other(each)).collect();
-        let view = View {
-            robot: RobotState {
-                position: state.0.into(),
-                velocity: state.1.into(),
-            },
-            people: &others,
-            walls: Walls::NONE,
-        };
+        let view = seen(state, &others);
         let plan = Plan::new(&view.robot, command.into(), &guard.limits);
         let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
         let instants: Vec<f64> = (0..=PARTS_OF_PLAN)
@@ -146,7 +121,30 @@ impl Shield {
 /// Parts of a plan between the instants that are told.
 const PARTS_OF_PLAN: u32 = 24;
 
+/// What a robot in the open sees.
+fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
+    View {
+        robot: RobotState {
+            position: position.into(),
+            velocity: velocity.into(),
+        },
+        people,
+        walls: Walls::NONE,
+    }
+}
+
 impl Shield {
+    /// The shield of a robot.
+    fn guard(&self, (radius, max_speed, max_acceleration, period): RobotLimits) -> PyResult<Guard> {
+        let limits = Limits {
+            radius,
+            max_speed,
+            max_acceleration,
+            period,
+        };
+        Ok(Guard::new(self.0, limits).map_err(CoreError::from)?)
+    }
+
     /// Somebody or something with bounds of its own.
     fn other(&self, (center, outline, velocity, [speed, error]): OutlineState) -> Person {
         let [size, width, heading] = outline;
