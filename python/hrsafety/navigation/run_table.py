@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, count, word
+from hrsafety._arguments import Array, count
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.bands import Band, along_the_way, over_time
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.run_rows import RunRows
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import SHOWN_ROWS, Column, Columns, Table, each, unit_suffix
+from hrsafety.tables import Column, Columns, each, unit_suffix
 
 __all__ = ["RunTable", "table_of_batch"]
 
@@ -46,7 +47,7 @@ _OF_OBSTACLES = {"min_distance": "m", "contact_time": "s", "contact_speed": "m/s
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class RunTable(Table):
+class RunTable(RunRows):
     """Many runs, one a row: n runs, g gains, m obstacles, k instants.
 
     `simulate_many` orders the rows by law, scenario, seed and gains, the gains fastest;
@@ -153,20 +154,6 @@ class RunTable(Table):
     motion_step: float = 0.01
     built: AsBuilt | None = None
 
-    def __len__(self) -> int:
-        """Return the number of runs."""
-        return len(self.outcome)
-
-    @property
-    def law(self) -> npt.NDArray[np.str_]:
-        """Name of the law of each run."""
-        return np.array(self.law_names)[self.law_index]
-
-    @property
-    def scenario(self) -> npt.NDArray[np.str_]:
-        """Name of the scenario of each run."""
-        return np.array(self.scenario_names)[self.scenario_index]
-
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
@@ -209,71 +196,14 @@ class RunTable(Table):
         """
         return self._columns(slice(None))
 
-    def _head(self) -> tuple[Columns, int]:
-        return self._columns(slice(SHOWN_ROWS)), len(self)
-
     def _columns(self, rows: slice) -> Columns:
-        """Return the columns of some rows; names are written out for these only."""
-        found: Columns = {
-            "law": np.array(self.law_names)[self.law_index[rows]],
-            "scenario": np.array(self.scenario_names)[self.scenario_index[rows]],
-            "seed": self.seed[rows],
-        }
-        units = {name: unit for law in reversed(self.laws) for name, unit in law.GAIN_UNITS.items()}
-        for index, name in enumerate(self.gain_names):
-            found[name + unit_suffix(units.get(name, ""))] = self.gains[rows, index]
+        found = self._of_law(rows) | self._of_gains(rows)
         for name, unit in _UNITS.items():
             found[name + unit_suffix(unit)] = getattr(self, name)[rows]
         for name, unit in _OF_OBSTACLES.items():
             values = getattr(self, name)
             found |= {} if values is None else each(f"{name}_{{}}", values[rows], unit)
         return found
-
-    def select(self, *, law: str | None = None, scenario: str | None = None) -> RunTable:
-        """Return the runs of one law, of one scenario, or of both.
-
-        Parameters
-        ----------
-        law, scenario : str or None
-            Name; all when ``None``.
-
-        Returns
-        -------
-        RunTable
-            These runs in the same order.
-
-        Raises
-        ------
-        InvalidParameterError
-            If there is no such law or scenario.
-
-        Examples
-        --------
-        >>> from hrsafety import navigation as nav, scenarios
-        >>> places = {name: scenarios.configuration(name) for name in ("c1", "c2")}
-        >>> runs = nav.simulate_many(places, [nav.VirtualForceField(), nav.Masoud()])
-        >>> len(runs.select(law="Masoud")), len(runs.select(law="Masoud", scenario="c2"))
-        (2, 1)
-        """
-        found = self
-        if law is not None:
-            found = found._only("law", self.law_names.index(word("law", law, self.law_names)))
-        if scenario is not None:
-            found = found._only("scenario", self.scenario_names.index(word("scenario", scenario, self.scenario_names)))
-        return found
-
-    def _only(self, what: str, index: int) -> RunTable:
-        """Return the runs of one law or scenario, by its index."""
-        kept = getattr(self, f"{what}_index") == index
-        arrays = {
-            field.name: values[kept]
-            for field in fields(self)
-            if isinstance(values := getattr(self, field.name), np.ndarray)
-        }
-        arrays[f"{what}_index"] = np.zeros(int(kept.sum()), dtype=np.int64)
-        names, objects = getattr(self, f"{what}_names"), getattr(self, f"{what}s")
-        single = {f"{what}_names": (names[index],), f"{what}s": (objects[index],)}
-        return replace(self, **arrays, **single)  # type: ignore[arg-type]  # each under its own name
 
     # ---- bands ------------------------------------------------------------------------------
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, word
+from hrsafety._arguments import Array
 from hrsafety._statistics import Share, wilson
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld
+from hrsafety.navigation.run_rows import RunRows
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import SHOWN_ROWS, Columns, Table, unit_suffix
+from hrsafety.tables import Columns, unit_suffix
 
 __all__ = ["CrowdTable"]
 
@@ -26,7 +27,7 @@ _TOUCHES = ("robot_on_person", "person_on_robot", "mutual_contacts", "wall_conta
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CrowdTable(
-    Table, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]], MeasuredWorld[Array, npt.NDArray[np.int64]]
+    RunRows, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]], MeasuredWorld[Array, npt.NDArray[np.int64]]
 ):
     """Runs of laws in worlds of people that react, a row for each robot; made by `simulate_many` and `compare`.
 
@@ -95,20 +96,6 @@ class CrowdTable(
             return object.__getattribute__(self, "values")[name]
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
 
-    def __len__(self) -> int:
-        """Return the number of rows."""
-        return len(self.outcome)
-
-    @property
-    def law(self) -> npt.NDArray[np.str_]:
-        """Name of the law of each run."""
-        return np.array(self.law_names)[self.law_index]
-
-    @property
-    def scenario(self) -> npt.NDArray[np.str_]:
-        """Name of the world of each run."""
-        return np.array(self.scenario_names)[self.scenario_index]
-
     @property
     def success_share(self) -> Share:
         """Share of the rows that arrived without a contact, with its 95 % Wilson interval."""
@@ -143,62 +130,13 @@ class CrowdTable(
         """
         return self._columns(slice(None))
 
-    def _head(self) -> tuple[Columns, int]:
-        return self._columns(slice(SHOWN_ROWS)), len(self)
-
     def _columns(self, rows: slice) -> Columns:
-        """Return the columns of some rows."""
-        found: Columns = {
-            "law": np.array(self.law_names)[self.law_index[rows]],
-            "scenario": np.array(self.scenario_names)[self.scenario_index[rows]],
-            "seed": self.seed[rows],
-            "robot": self.robot[rows],
-        }
-        units = {name: unit for law in reversed(self.laws) for name, unit in law.GAIN_UNITS.items()}
-        for index, name in enumerate(self.gain_names):
-            found[name + unit_suffix(units.get(name, ""))] = self.gains[rows, index]
+        found = self._of_law(rows) | {"robot": self.robot[rows]} | self._of_gains(rows)
         found |= {"outcome": self.outcome[rows], "end_time_s": self.end_time[rows]}
         found |= {name: getattr(self, name)[rows] for name in _CONTACTS}
         for metric in (*METRICS.values(), *WORLD_METRICS.values()):
             found[metric.name + unit_suffix(metric.unit)] = self.values[metric.name][rows]
         return found
 
-    def select(self, *, law: str | None = None, scenario: str | None = None) -> CrowdTable:
-        """Return the runs of one law, of one world, or of both.
-
-        Parameters
-        ----------
-        law, scenario : str or None
-            Name; all when ``None``.
-
-        Returns
-        -------
-        CrowdTable
-            These runs in the same order.
-
-        Raises
-        ------
-        InvalidParameterError
-            If there is no such law or world.
-
-        Examples
-        --------
-        >>> from hrsafety import navigation as nav, scenarios
-        >>> worlds = [scenarios.circle_crossing(case, law=nav.VirtualForceField()) for case in range(3)]
-        >>> runs = nav.simulate_many(worlds, [nav.VirtualForceField(), nav.VelocityObstacle()])
-        >>> len(runs.select(law="VelocityObstacle")), len(runs.select(scenario="2"))
-        (3, 2)
-        """
-        kept = np.ones(len(self), dtype=bool)
-        if law is not None:
-            kept &= self.law_index == self.law_names.index(word("law", law, self.law_names))
-        if scenario is not None:
-            kept &= self.scenario_index == self.scenario_names.index(word("scenario", scenario, self.scenario_names))
-        rows: dict[str, Any] = {name: getattr(self, name)[kept] for name in (*_OF_ROWS, *_CONTACTS)}
-        found = replace(self, **rows, values={name: column[kept] for name, column in self.values.items()})
-        return found if law is None else found._of_law(self.law_names.index(law))
-
-    def _of_law(self, index: int) -> CrowdTable:
-        """Return rows that are all of one law under its name alone."""
-        first = np.zeros(len(self), dtype=np.int64)
-        return replace(self, law_names=(self.law_names[index],), laws=(self.laws[index],), law_index=first)
+    def _kept(self, kept: npt.NDArray[np.bool_]) -> dict[str, Any]:
+        return super()._kept(kept) | {"values": {name: column[kept] for name, column in self.values.items()}}
