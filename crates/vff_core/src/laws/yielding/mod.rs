@@ -4,10 +4,15 @@
 //! priced by how far they are from the wanted one, how little they lead to the goal, how soon they
 //! meet somebody, and how near they come to anybody.
 
+mod meeting;
+
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 use crate::laws::shield::{Limits, Walls};
 use crate::world::geometry::RobotState;
+use meeting::{Meeting, Stretch};
+
+pub use meeting::Passerby;
 
 /// Directions of the candidates.
 const DIRECTIONS: usize = 36;
@@ -88,45 +93,6 @@ impl Yielding {
     }
 }
 
-/// Somebody who is given way to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passerby {
-    /// Position relative to the robot when the command takes effect, in m.
-    pub offset: Vector2<f64>,
-    /// Velocity in m/s.
-    pub velocity: Vector2<f64>,
-    /// Distance of the centers at contact, in m.
-    pub touch: f64,
-}
-
-impl Passerby {
-    /// Takes the place of who is not there.
-    const NOBODY: Self = Self {
-        offset: Vector2::new(0.0, 0.0),
-        velocity: Vector2::new(0.0, 0.0),
-        touch: 0.0,
-    };
-
-    /// Least distance in m, over the time up to a horizon in s, between the surface and the ground that
-    /// a robot of some speed in m/s can have reached; a bound from below.
-    fn gap_to(&self, speed: f64, horizon: f64) -> f64 {
-        // |o + w t| - v t falls at most as fast as |w| + v, and is convex: least at an end or where
-        // the slope is zero.
-        let at = |time: f64| (self.offset + self.velocity * time).norm() - speed * time;
-        let own = self.velocity.norm_squared();
-        let least = if own > speed * speed {
-            let closest = -self.offset.dot(&self.velocity) / own;
-            let across = self.offset.perp(&self.velocity).abs() / own.sqrt();
-            // sqrt(a^2 + w^2 s^2) - v (s + c) is least where w^2 s = v sqrt(a^2 + w^2 s^2).
-            let later = speed * across / (own * (own - speed * speed)).sqrt();
-            at((closest + later).clamp(0.0, horizon))
-        } else {
-            f64::INFINITY
-        };
-        least.min(at(0.0)).min(at(horizon)) - self.touch
-    }
-}
-
 /// What the robot wants, and where it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook<'a> {
@@ -142,46 +108,6 @@ pub struct Outlook<'a> {
     pub left_out: bool,
     /// What does not move.
     pub walls: Walls<'a>,
-}
-
-/// First meeting and least clearance of velocities side by side.
-#[derive(Clone, Copy, Debug)]
-struct Meeting<R> {
-    /// When surfaces come nearer than `y`, in s; the horizon if never.
-    time: R,
-    /// Least clearance within the horizon in m.
-    clearance: R,
-}
-
-/// A stretch of constant relative velocity.
-struct Stretch<R> {
-    from: Vector2<R>,
-    velocity: Vector2<R>,
-    duration: R,
-}
-
-impl<R: Real> Stretch<R> {
-    /// Time to come within a distance while closing, or to touch, the duration if neither; and the
-    /// least square of the distance.
-    #[inline(always)]
-    fn meet(&self, near: f64, touch: f64) -> (R, R) {
-        let zero = R::zero();
-        let square = self.from.dot(&self.from);
-        let closing = self.from.dot(&self.velocity);
-        let rate = self.velocity.dot(&self.velocity);
-        let outside = square - R::splat(near * near);
-        let root = (closing * closing - rate * outside).max(zero).sqrt();
-        // The nearer root as a quotient, exact where the two are close.
-        let entry = outside / (root - closing);
-        let meets = closing.lt(zero) & (rate * outside).le(closing * closing);
-        let inside = outside.le(zero) & closing.lt(zero);
-        let inside = inside | square.lt(R::splat(touch * touch));
-        let entry = R::select(meets, entry.min(self.duration), self.duration);
-        let time = R::select(inside, zero, entry);
-        let nearest = R::select(closing.lt(zero), -closing / rate, zero).min(self.duration);
-        let least = square + (closing * R::splat(2.0) + rate * nearest) * nearest;
-        (time, least.max(zero))
-    }
 }
 
 /// Giving way, for one robot.
@@ -453,144 +379,4 @@ fn cheapest(prices: Lanes<WIDTH>, among: <Lanes<WIDTH> as Real>::Mask) -> Option
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn limits() -> Limits {
-        Limits {
-            radius: 0.3,
-            max_speed: 1.5,
-            max_acceleration: 10.0,
-            period: 0.1,
-        }
-    }
-
-    fn outlook(people: &[Passerby]) -> Outlook<'_> {
-        Outlook {
-            robot: RobotState {
-                position: Vector2::zeros(),
-                velocity: Vector2::zeros(),
-            },
-            wanted: Vector2::new(1.0, 0.0),
-            to_goal: Vector2::x(),
-            people,
-            left_out: false,
-            walls: Walls::NONE,
-        }
-    }
-
-    fn passerby(offset: [f64; 2], velocity: [f64; 2]) -> Passerby {
-        Passerby {
-            offset: offset.into(),
-            velocity: velocity.into(),
-            touch: 0.6,
-        }
-    }
-
-    #[test]
-    fn the_wanted_velocity_is_kept_where_nobody_comes() {
-        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
-        let people = [passerby([0.0, 4.0], [0.0, 1.0])];
-        let decided = yielder.decide(&outlook(&people), |_| true);
-        assert_eq!(decided, Some(Vector2::new(1.0, 0.0)));
-    }
-
-    #[test]
-    fn it_gives_way_to_somebody_head_on() {
-        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
-        let people = [passerby([3.0, 0.0], [-1.0, 0.0])];
-        let decided = yielder.decide(&outlook(&people), |_| true).unwrap();
-        assert!(decided.y.abs() > 0.2, "{decided}");
-        assert_eq!(yielder.decide(&outlook(&people), |_| false), None);
-    }
-
-    #[test]
-    fn meetings_are_those_of_small_steps() {
-        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
-        let mut seen = outlook(&[]);
-        seen.robot.velocity = Vector2::new(-0.4, 0.9);
-        for (offset, velocity, target) in [
-            ([2.0, 1.0], [-0.8, 0.3], [1.5, 0.0]),
-            ([1.0, -2.0], [0.2, 0.9], [0.3, -0.6]),
-            ([4.0, 0.1], [-1.0, 0.0], [0.0, 0.0]),
-        ] {
-            let people = [passerby(offset, velocity)];
-            let target = Vector2::from(target);
-            let outlook = Outlook {
-                people: &people,
-                ..seen
-            };
-            let meeting = yielder.meeting::<f64>(&outlook, target);
-            let ramp = (target - seen.robot.velocity).norm() / 10.0;
-            let (mut first, mut least) = (5.0_f64, f64::INFINITY);
-            for step in 0..=50_000 {
-                let time = f64::from(step) * 1e-4;
-                let own = (seen.robot.velocity + target) * 0.5 * time.min(ramp)
-                    + target * (time - ramp).max(0.0);
-                let away = people[0].offset + people[0].velocity * time - own;
-                let clearance = away.norm() - 0.6;
-                least = least.min(clearance);
-                if clearance <= 0.15 {
-                    first = first.min(time);
-                }
-            }
-            assert!((meeting.time - first).abs() < 2e-4, "{meeting:?} {first}");
-            assert!(
-                (meeting.clearance - least).abs() < 2e-4,
-                "{meeting:?} {least}"
-            );
-        }
-    }
-
-    #[test]
-    fn lanes_price_as_single_velocities_do() {
-        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
-        let people = [
-            passerby([2.0, 1.0], [-0.8, 0.3]),
-            passerby([1.0, -0.5], [0.1, 0.2]),
-        ];
-        let outlook = outlook(&people);
-        for chunk in 0..CHUNKS {
-            let candidates = yielder.candidates(&outlook, chunk);
-            let together = yielder.price(&yielder.meeting(&outlook, candidates));
-            for lane in 0..WIDTH {
-                let one = Vector2::from(candidates.lane(lane));
-                let alone = yielder.price(&yielder.meeting::<f64>(&outlook, one));
-                assert_eq!(alone.to_bits(), together.lane(lane).to_bits());
-            }
-        }
-    }
-
-    #[test]
-    fn who_cannot_be_met_has_no_part_in_any_price() {
-        let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
-        let mut stream = numeric::random::Stream::new(5, 0);
-        let (mut kept, mut all) = (0, 0);
-        for _ in 0..400 {
-            let mut draw = |most: f64| stream.uniform(-most, most);
-            let people: Vec<Passerby> = (0..12)
-                .map(|_| passerby([draw(14.0), draw(14.0)], [draw(2.5), draw(2.5)]))
-                .collect();
-            let mut whole = outlook(&people);
-            whole.robot.velocity = Vector2::new(draw(1.0), draw(1.0));
-            let mut room = [Passerby::NOBODY; SORTED];
-            let near = yielder.near(&whole, &mut room);
-            let sorted = Outlook {
-                people: near,
-                left_out: near.len() < people.len(),
-                ..whole
-            };
-            kept += near.len();
-            all += people.len();
-            for chunk in 0..CHUNKS {
-                let candidates = yielder.candidates(&whole, chunk);
-                let one = yielder.price(&yielder.meeting(&whole, candidates));
-                let other = yielder.price(&yielder.meeting(&sorted, candidates));
-                for lane in 0..WIDTH {
-                    assert_eq!(one.lane(lane).to_bits(), other.lane(lane).to_bits());
-                }
-            }
-        }
-        assert!(kept > all / 10 && kept < 8 * all / 10, "{kept} of {all}");
-    }
-}
+mod tests;

@@ -1,0 +1,82 @@
+//! Meetings with people who keep their velocities, and who cannot be met.
+
+use crate::lanes::{Real, Vector2};
+
+/// Somebody who is given way to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passerby {
+    /// Position relative to the robot when the command takes effect, in m.
+    pub offset: Vector2<f64>,
+    /// Velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Distance of the centers at contact, in m.
+    pub touch: f64,
+}
+
+impl Passerby {
+    /// Takes the place of who is not there.
+    pub(super) const NOBODY: Self = Self {
+        offset: Vector2::new(0.0, 0.0),
+        velocity: Vector2::new(0.0, 0.0),
+        touch: 0.0,
+    };
+
+    /// Least distance in m, over the time up to a horizon in s, between the surface and the ground that
+    /// a robot of some speed in m/s can have reached; a bound from below.
+    pub(super) fn gap_to(&self, speed: f64, horizon: f64) -> f64 {
+        // |o + w t| - v t falls at most as fast as |w| + v, and is convex: least at an end or where
+        // the slope is zero.
+        let at = |time: f64| (self.offset + self.velocity * time).norm() - speed * time;
+        let own = self.velocity.norm_squared();
+        let least = if own > speed * speed {
+            let closest = -self.offset.dot(&self.velocity) / own;
+            let across = self.offset.perp(&self.velocity).abs() / own.sqrt();
+            // sqrt(a^2 + w^2 s^2) - v (s + c) is least where w^2 s = v sqrt(a^2 + w^2 s^2).
+            let later = speed * across / (own * (own - speed * speed)).sqrt();
+            at((closest + later).clamp(0.0, horizon))
+        } else {
+            f64::INFINITY
+        };
+        least.min(at(0.0)).min(at(horizon)) - self.touch
+    }
+}
+
+/// First meeting and least clearance of velocities side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting<R> {
+    /// When surfaces come nearer than `y`, in s; the horizon if never.
+    pub time: R,
+    /// Least clearance within the horizon in m.
+    pub clearance: R,
+}
+
+/// A stretch of constant relative velocity.
+pub(super) struct Stretch<R> {
+    pub from: Vector2<R>,
+    pub velocity: Vector2<R>,
+    pub duration: R,
+}
+
+impl<R: Real> Stretch<R> {
+    /// Time to come within a distance while closing, or to touch, the duration if neither; and the
+    /// least square of the distance.
+    #[inline(always)]
+    pub(super) fn meet(&self, near: f64, touch: f64) -> (R, R) {
+        let zero = R::zero();
+        let square = self.from.dot(&self.from);
+        let closing = self.from.dot(&self.velocity);
+        let rate = self.velocity.dot(&self.velocity);
+        let outside = square - R::splat(near * near);
+        let root = (closing * closing - rate * outside).max(zero).sqrt();
+        // The nearer root as a quotient, exact where the two are close.
+        let entry = outside / (root - closing);
+        let meets = closing.lt(zero) & (rate * outside).le(closing * closing);
+        let inside = outside.le(zero) & closing.lt(zero);
+        let inside = inside | square.lt(R::splat(touch * touch));
+        let entry = R::select(meets, entry.min(self.duration), self.duration);
+        let time = R::select(inside, zero, entry);
+        let nearest = R::select(closing.lt(zero), -closing / rate, zero).min(self.duration);
+        let least = square + (closing * R::splat(2.0) + rate * nearest) * nearest;
+        (time, least.max(zero))
+    }
+}
