@@ -15,6 +15,7 @@ from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
 from hrsafety.navigation.crowd.contacts import contacts_of
+from hrsafety.navigation.metrics.between import touched_between
 from hrsafety.navigation.shield_warnings import Motion
 
 __all__ = ["REACTING", "SCENES"]
@@ -82,16 +83,19 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
         table = nav.metrics.evaluate_many(episodes, threads=case.threads)
         contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
-            at_fault = contacts_of(episodes[row], float(table.arrival_time[row])).at_fault
+            arrival = float(table.arrival_time[row])
+            at_fault = contacts_of(episodes[row], arrival).at_fault
+            between = touched_between(episodes[row], arrival, float(table.min_time_to_collision[row]))
             yield Row(
                 case=index,
                 outcome="collided" if contacts[row] else each.outcomes[0],
-                arrival_time=float(table.arrival_time[row]),
+                arrival_time=arrival,
                 end_time=float(each.time[-1]),
                 contacts=int(contacts[row]),
                 at_fault=at_fault + int(table.wall_contacts[row]),
                 clearance=float(table.min_clearance[row]),
                 apart=0,
+                between=between.people,
             )
 
     return run

@@ -35,6 +35,8 @@ class Row:
         People touched, and how many of them at fault.
     apart : int
         People who touched the robot when they appeared in a recording, counted apart from the others.
+    between : int
+        People who touched the robot on straight lines between two instants and at none of them: no contacts.
     clearance : float
         Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
     score : float
@@ -50,10 +52,11 @@ class Row:
     apart: int
     clearance: float
     score: float = math.nan
+    between: int = 0
 
 
 NAMES = tuple(each.name for each in fields(Row))
-_COUNTS = ("case", "contacts", "at_fault", "apart")
+_COUNTS = ("case", "contacts", "at_fault", "apart", "between")
 
 
 def row_text(rows: Iterable[Row], *, head: bool) -> str:

@@ -14,6 +14,7 @@ from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
 from hrsafety.benchmarks.suites import CHUNK, SUITES
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.metrics.between import CONTACT_BETWEEN
 from hrsafety.navigation.shield_warnings import ASSUMES_LESS
 from hrsafety.plausibility import ResultWarning
 
@@ -116,7 +117,7 @@ def benchmark(
         if (name, speed) in kind.accepted
     }
     shielded = any("shield" in each.parts for each in entries)
-    doubts = tuple(_doubts(kind, person_speed)) if shielded else ()
+    doubts = (*(_doubts(kind, person_speed) if shielded else ()), *_between(kind, rows))
     return Result(suite=kind.name, rows=rows, accepted=asked, warnings=doubts)
 
 
@@ -138,6 +139,19 @@ def _doubts(kind: Suite, person_speed: float) -> Iterator[ResultWarning]:
         f"shields assume people of up to {person_speed:g} m/s, but people of {kind.name} {fastest}: what a shield "
         "proves does not hold for those who are faster",
     )
+
+
+def _between(kind: Suite, rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultWarning]:
+    """Warn where people passed through robots between instants, which counts as no contact."""
+    counts = {name: sum(row.between > 0 for row in found) for name, found in rows.items()}
+    told = ", ".join(f"{name} {count} of {len(rows[name])}" for name, count in counts.items() if count)
+    if told:
+        yield ResultWarning(
+            CONTACT_BETWEEN,
+            "contacts",
+            f"contacts of {kind.name} are counted at instants: in further episodes somebody touches the robot on "
+            f"straight lines between two of them ({told})",
+        )
 
 
 def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -> Case:

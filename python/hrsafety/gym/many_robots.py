@@ -21,6 +21,7 @@ from hrsafety.gym.worlds import Task
 from hrsafety.navigation.crowd.agents import CrowdRobot
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
+from hrsafety.navigation.metrics.between import wrapped
 
 __all__ = ["CrowdParallelEnv"]
 
@@ -195,8 +196,13 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         -------
         gymnasium.spaces.Space
             As of `CrowdEnv`.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such robot.
         """
-        return self._observation_spaces[agent]
+        return self._observation_spaces[word("agent", agent, self.possible_agents)]
 
     def action_space(self, agent: str) -> spaces.Space[Any]:
         """Return what a robot may be told, always the same object.
@@ -210,8 +216,13 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         -------
         gymnasium.spaces.Space
             As of `CrowdEnv`.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such robot.
         """
-        return self._action_spaces[agent]
+        return self._action_spaces[word("agent", agent, self.possible_agents)]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
@@ -294,7 +305,7 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         env = self._envs[name]
         (place, radius), _, others = env._all.places(0)
         wrap = env._all.task.world.period
-        gaps = [math.hypot(*_wrapped(other, place, wrap)) - radius - room for other, room in others]
+        gaps = [math.hypot(*wrapped(np.subtract(other, place), wrap)) - radius - room for other, room in others]
         return {"robot_clearance": min(gaps, default=math.inf)}
 
     def render(self) -> Frame | None:
@@ -309,9 +320,3 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
             gymnasium.logger.warn('render() needs render_mode="rgb_array" when the environment is made')
             return None
         return self._envs[self._shown].render()
-
-
-def _wrapped(to: tuple[float, float], start: tuple[float, float], period: tuple[float, float]) -> list[float]:
-    """Return the difference of two places in a world that repeats itself."""
-    away = [end - begin for end, begin in zip(to, start, strict=True)]
-    return [each - size * round(each / size) if size else each for each, size in zip(away, period, strict=True)]

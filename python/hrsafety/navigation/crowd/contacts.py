@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety.navigation.metrics.between import wrapped
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 
@@ -50,7 +51,7 @@ def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     if people.size == 0 or last < 1:
         return Contacts(0, 0, 0)
     own, people = own[: last + 1], people[: last + 1]
-    offset = _wrapped(people - own[:, None], episode.period)
+    offset = wrapped(people - own[:, None], episode.period)
     distance = np.linalg.norm(offset, axis=2)
     touching = distance < episode.robot_radius + np.asarray(episode.person_radius)
     velocity = np.diff(own, axis=0) / episode.step
@@ -74,13 +75,4 @@ def _moved_toward(
         after = (velocity[:, None] * offset[1:]).sum(axis=2) / distance[1:]
     toward = np.fmax(before, after) > CONTACT_SPEED
     found: npt.NDArray[np.bool_] = ((touching[:-1] | touching[1:]) & toward).any(axis=0)
-    return found
-
-
-def _wrapped(offset: Array, period: tuple[float, float]) -> Array:
-    """Return differences of positions where a world repeats itself."""
-    found = offset.copy()
-    for axis, length in enumerate(period):
-        if length > 0.0:
-            found[..., axis] -= length * np.floor(found[..., axis] / length + 0.5)
     return found

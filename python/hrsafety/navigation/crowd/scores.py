@@ -143,7 +143,8 @@ def crowd_batch(
         alone = list(simulate_crowds([replace(world, robots=()) for world in given], threads=threads))
     episodes = [each for run, other in zip(runs, alone, strict=True) for each in episodes_of(run, other)]
     named = ((f"worlds[{index}]", run.warnings) for index, run in enumerate(runs))
-    return table_of(episodes, gathered(named, "worlds"), threads=threads)
+    names = [f"worlds[{index}]" for index, run in enumerate(runs) for _ in run.world.robots]
+    return table_of(episodes, gathered(named, "worlds"), names=names, threads=threads)
 
 
 def world_metrics(run: CrowdTrajectories) -> WorldMetrics:

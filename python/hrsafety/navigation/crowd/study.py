@@ -20,6 +20,7 @@ from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS
 from hrsafety.navigation.metrics.scores import MetricTable, table_of
 from hrsafety.navigation.run_arguments import Progress
@@ -169,6 +170,13 @@ class CrowdStudy:
         )
         return gathered(driven, "scenarios")
 
+    def _between(self, parts: Sequence[_Rows]) -> tuple[ResultWarning, ...]:
+        """Return the doubts about contacts that no instant shows."""
+        runs = (
+            (self._names[job[0]], doubts) for part in parts for job, doubts in zip(part.jobs, part.doubts, strict=True)
+        )
+        return gathered(runs, "runs")
+
     def _table(self, parts: Sequence[_Rows]) -> CrowdTable:
         """Return the rows in the order of laws, scenarios, seeds, gains and robots."""
         jobs = np.concatenate([part.jobs for part in parts])
@@ -206,7 +214,7 @@ class CrowdStudy:
             contacts_standing=contacts[:, 1],
             contacts_at_fault=contacts[:, 2],
             values=values,
-            warnings=self._warnings(),
+            warnings=(*self._warnings(), *self._between(parts)),
         )
 
 
@@ -237,6 +245,7 @@ class _Rows:
     end_time: Array
     contacts: np.ndarray[Any, np.dtype[np.int64]]
     values: Mapping[str, np.ndarray[Any, np.dtype[Any]]]
+    doubts: Sequence[tuple[ResultWarning, ...]]
 
     @classmethod
     def of(
@@ -253,8 +262,10 @@ class _Rows:
             for job, run in zip(part, runs, strict=True)
             for each in episodes_of(run, without.get((job.scenario, job.seed)))
         ]
-        table = table_of(episodes, (), threads=threads)
-        contacts = [contacts_of(each, time) for each, time in zip(episodes, table.arrival_time.tolist(), strict=True)]
+        table = table_of(episodes, threads=threads)
+        ends = table.arrival_time.tolist()
+        contacts = [contacts_of(each, time) for each, time in zip(episodes, ends, strict=True)]
+        soonest = table.min_time_to_collision.tolist()
         owner = [index for index, _ in robots]
         worlds = [world_metrics(run).to_dict() for run in runs]
         values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {name: getattr(table, name) for name in METRICS}
@@ -265,6 +276,7 @@ class _Rows:
             end_time=np.array([runs[index].time[-1] for index in owner]),
             contacts=_with_walls(contacts, table),
             values=values,
+            doubts=[doubts_between(*each) for each in zip(episodes, ends, soonest, strict=True)],
         )
 
 

@@ -12,6 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, empty, number, numbers, pair, points, sequence, thread_count
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.trajectory import Trajectory
@@ -191,7 +192,10 @@ def evaluate(
     """
     episode = _episode(run, people, options)
     found = _hrsafety.crowd_metrics([episode._native], 1, None)
-    return EpisodeMetrics({name: values[0].item() for name, values in found.items()}, _warnings(run))
+    values = {name: column[0].item() for name, column in found.items()}
+    return EpisodeMetrics(
+        values, (*_warnings(run), *doubts_between(episode, values["arrival_time"], values["min_time_to_collision"]))
+    )
 
 
 def _warnings(run: object) -> tuple[ResultWarning, ...]:
@@ -254,28 +258,36 @@ def evaluate_many(
     """
     given = sequence("episodes", "be a sequence of episodes", episodes)
     named = ((f"episodes[{index}]", _warnings(each)) for index, each in enumerate(given))
-    return table_of(given, gathered(named, "episodes"), threads=threads, progress=progress)
+    names = [f"episodes[{index}]" for index in range(len(given))]
+    return table_of(given, gathered(named, "episodes"), names=names, threads=threads, progress=progress)
 
 
 def table_of(
     episodes: Sequence[Episode | Trajectory],
-    warnings: Iterable[ResultWarning],
+    warnings: Iterable[ResultWarning] = (),
     *,
+    names: Sequence[str] = (),
     threads: int | None,
     progress: Callable[[int, int], object] | None = None,
 ) -> MetricTable:
-    """Return the table of `evaluate_many` with the warnings of what the episodes come from."""
-    natives = [_native(f"episodes[{index}]", each) for index, each in enumerate(episodes)]
+    """Return the table of `evaluate_many` with the warnings of what the episodes come from.
+
+    With names of the episodes there are warnings of contacts between their instants, too.
+    """
+    scored = [_scored(f"episodes[{index}]", each) for index, each in enumerate(episodes)]
+    natives = [each._native for each in scored]
     found = _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
-    return MetricTable(found, warnings)
+    ends = zip(found["arrival_time"].tolist(), found["min_time_to_collision"].tolist(), strict=True)
+    between = [(name, doubts_between(each, *end)) for name, each, end in zip(names, scored, ends, strict=False)]
+    return MetricTable(found, (*warnings, *gathered(between, "episodes")))
 
 
-def _native(name: str, given: object) -> _hrsafety.CrowdEpisode:
+def _scored(name: str, given: object) -> Episode:
     if isinstance(given, Trajectory):
-        return Episode.from_trajectory(given)._native
+        return Episode.from_trajectory(given)
     if not isinstance(given, Episode):
         raise InvalidParameterError(name, "be an Episode or Trajectory", given)
-    return given._native
+    return given
 
 
 def evaluate_world(

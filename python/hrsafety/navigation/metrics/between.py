@@ -1,0 +1,95 @@
+"""Contacts that no instant shows: people who pass through a robot between two of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hrsafety._arguments import Array
+from hrsafety.navigation.metrics.episode import Episode
+from hrsafety.plausibility import ResultWarning
+
+__all__ = ["CONTACT_BETWEEN", "Between", "doubts_between", "touched_between", "wrapped"]
+
+CONTACT_BETWEEN = "contact_between_instants"
+
+
+class Between(NamedTuple):
+    """Who touches a robot on straight lines between instants, and at none of them.
+
+    Attributes
+    ----------
+    people : int
+        Their number.
+    gap : float
+        The least distance of the surfaces in m, negative; infinite without anybody.
+    """
+
+    people: int
+    gap: float
+
+
+def wrapped(offset: Array, period: tuple[float, float]) -> Array:
+    """Return differences of positions where a world repeats itself."""
+    if period == (0.0, 0.0):
+        return offset
+    found = offset.copy()
+    for axis, length in enumerate(period):
+        if length > 0.0:
+            found[..., axis] -= length * np.floor(found[..., axis] / length + 0.5)
+    return found
+
+
+def touched_between(episode: Episode, arrival_time: float, time_to_collision: float) -> Between:
+    """Return who touches a robot between instants only, up to its arrival.
+
+    Parameters
+    ----------
+    episode : Episode
+        The robot and the people.
+    arrival_time : float
+        When the robot arrived, in s; NaN if it did not.
+    time_to_collision : float
+        The metric ``min_time_to_collision`` of the episode, in s: nobody is touched within a step that is shorter.
+
+    Returns
+    -------
+    Between
+        Their number, and how deep.
+    """
+    # The step and the time are rounded each.
+    if not time_to_collision <= episode.step * (1.0 + 1e-9):
+        return Between(0, np.inf)
+    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
+    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
+    own, people = own[: last + 1], people[: last + 1]
+    touch = episode.robot_radius + np.asarray(episode.person_radius)
+    start = wrapped(people - own[:, None], episode.period)
+    way = wrapped(np.diff(start, axis=0), episode.period)
+    square = _dots(way, way)
+    share = np.divide(-_dots(start[:-1], way), square, out=np.zeros_like(square), where=square > 0.0)
+    nearest = start[:-1] + np.clip(share, 0.0, 1.0)[..., None] * way
+    # Who is absent is nowhere near.
+    gap = np.sqrt(np.fmin.reduce(_dots(nearest, nearest), axis=0)) - touch
+    shown = np.sqrt(np.fmin.reduce(_dots(start, start), axis=0)) - touch
+    hidden = (gap < 0.0) & ~(shown < 0.0)
+    return Between(int(hidden.sum()), float(gap[hidden].min(initial=np.inf)))
+
+
+def _dots(first: Array, second: Array) -> Array:
+    found: Array = np.einsum("kij,kij->ki", first, second)
+    return found
+
+
+def doubts_between(episode: Episode, arrival_time: float, time_to_collision: float) -> tuple[ResultWarning, ...]:
+    """Return a warning if somebody touches the robot between instants only; see `touched_between`."""
+    found = touched_between(episode, arrival_time, time_to_collision)
+    if found.people == 0:
+        return ()
+    who = "1 person touches" if found.people == 1 else f"{found.people} people touch"
+    message = (
+        f"{who} the robot between two instants, by up to {-found.gap:.2g} m on straight lines, and at none of them: "
+        f"contacts are counted at instants {episode.step:g} s apart, a shorter step shows these"
+    )
+    return (ResultWarning(CONTACT_BETWEEN, "step", message),)
