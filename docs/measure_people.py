@@ -48,7 +48,7 @@ def predicted(folder: Path) -> None:
 
     def line(shown: str, parameters: str, model: nav.crowd.Pedestrian | str) -> None:
         given = ((one, "first"), (one, "second"), (other, "all"))
-        errors = [nav.crowd.prediction_errors(model, record, part=part) for record, part in given]  # type: ignore[arg-type]
+        errors = [nav.crowd.prediction_errors(model, record, part=part) for record, part in given]  # type: ignore[arg-type]  # words of the table above
         print(f"| {shown} | {parameters} | {' | '.join(map(cells, errors))} |", flush=True)
 
     for word, shown in SHOWN.items():

@@ -178,7 +178,7 @@ def public_classes() -> Iterator[type]:
     private = ("hrsafety.cli", "hrsafety.reproduce", "hrsafety.pages", "hrsafety.benchmarks", "hrsafety.plotting")
     names = ["hrsafety", *(module.name for module in pkgutil.walk_packages(hrsafety.__path__, "hrsafety."))]
     for name in names:
-        place = Path(importlib.util.find_spec(name).origin or "")  # type: ignore[union-attr]
+        place = Path(importlib.util.find_spec(name).origin or "")  # type: ignore[union-attr]  # the module is there
         if "._" in name or name.startswith(private) or (place.name != "__init__.py" and name.count(".") > 1):
             continue
         module = importlib.import_module(name)

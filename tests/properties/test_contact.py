@@ -191,7 +191,7 @@ def plain_solution(  # the equations as they are written, solved for d at every 
     def parted(_: float, y: Any) -> float:
         return float(y[0] - y[2]) if _ > 1e-4 else 1.0
 
-    parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
+    parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]  # as solve_ivp asks for
     found = solve_ivp(motion, (0.0, 0.5), [0.0, v, 0.0, 0.0], rtol=1e-9, atol=1e-12, events=parted, max_step=2e-3)
     forces = [force(y[0] - y[2], y[1] - y[3]) for y in found.y.T]
     place = int(np.argmax(forces))

@@ -105,7 +105,7 @@ def shielded(**shield: float) -> Controller:
 
 
 def still(controller: Controller, time: float, **told: object) -> Command:
-    return controller.update(time, (0.0, 0.0), (0.0, 0.0), **told)  # type: ignore[arg-type]
+    return controller.update(time, (0.0, 0.0), (0.0, 0.0), **told)  # type: ignore[arg-type]  # options by name
 
 
 def test_who_is_not_measured_again_can_be_ever_nearer() -> None:

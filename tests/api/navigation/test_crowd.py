@@ -71,7 +71,7 @@ def test_robots_of_both_kinds_arrive_among_people_under_any_law(law: object) -> 
     bodies = (nav.HolonomicRobot(), nav.DifferentialDriveRobot())
     person = nav.crowd.Person(start=(3.0, 5.0), route=[(3.0, -5.0)], desired_speed=1.2)
     for body in bodies:
-        robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0.2), law=law, robot=body)  # type: ignore[arg-type]
+        robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0.2), law=law, robot=body)  # type: ignore[arg-type]  # of two kinds
         run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=60.0))
         assert run.outcomes == ("arrived",), type(body)
 
@@ -220,7 +220,7 @@ def test_recorded_people_react_by_a_share() -> None:
 def test_mistakes_are_named_with_their_place() -> None:
     def words(make: object) -> str:
         with pytest.raises(InvalidParameterError) as caught:
-            make()  # type: ignore[operator]
+            make()  # type: ignore[operator]  # entries of the table are callables
         return str(caught.value)
 
     person = nav.crowd.Person(start=(0, 0), route=[(5, 0)])
@@ -253,7 +253,7 @@ def test_mistakes_are_named_with_their_place() -> None:
 
     def decided(**changes: object) -> str:
         given = {"position": np.zeros((2, 2)), "velocity": np.zeros((2, 2)), "goal": np.ones((2, 2))}
-        return words(lambda: nav.crowd.decide(nav.crowd.Moussaid(), **(given | changes)))  # type: ignore[arg-type]
+        return words(lambda: nav.crowd.decide(nav.crowd.Moussaid(), **(given | changes)))  # type: ignore[arg-type]  # options by name
 
     assert decided(radius=[0.2, -0.2]).startswith("radius[1] must be positive")
     assert decided(desired_speed=-1.0).startswith("desired_speed[0] must not be negative")

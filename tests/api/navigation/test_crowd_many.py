@@ -264,9 +264,9 @@ def test_mistakes_are_named(change: dict[str, Any], words: str) -> None:
 
 def test_scenarios_have_no_people_that_react() -> None:
     with pytest.raises(InvalidParameterError, match="people_alone must be False"):
-        nav.simulate_many(scenarios.configuration("c1"), FIELD, people_alone=True)  # type: ignore[call-overload]
+        nav.simulate_many(scenarios.configuration("c1"), FIELD, people_alone=True)  # type: ignore[call-overload]  # wrong on purpose
     with pytest.raises(InvalidParameterError, match=r"scenarios\[1\] must be a Scenario"):
-        nav.simulate_many([scenarios.configuration("c1"), CIRCLES["case 0"]], FIELD)  # type: ignore[list-item]
+        nav.simulate_many([scenarios.configuration("c1"), CIRCLES["case 0"]], FIELD)  # type: ignore[list-item]  # wrong on purpose
 
 
 def test_robots_that_touch_each_other_are_in_the_standing() -> None:

@@ -64,7 +64,7 @@ def test_a_result_is_a_table_that_cannot_be_changed() -> None:
     with pytest.raises(AttributeError):
         found.success = False
     with pytest.raises(AttributeError, match="arival"):
-        _ = found.arival_time  # type: ignore[attr-defined]
+        _ = found.arival_time  # type: ignore[attr-defined]  # wrong on purpose
     table = nav.metrics.evaluate_many([nav.metrics.Episode(position=PATH, **RULES)] * 4)
     assert table.success_share.value == 1.0
     assert len(table.columns()["mean_speed_m_per_s"]) == 4
@@ -173,7 +173,7 @@ def test_what_an_episode_has_is_not_given_again() -> None:
     with pytest.raises(InvalidParameterError, match="people must be None"):
         nav.metrics.evaluate(episode, PEOPLE)
     with pytest.raises(InvalidParameterError, match=r"episodes\[1\] must be an Episode or Trajectory"):
-        nav.metrics.evaluate_many([episode, PATH])  # type: ignore[list-item]
+        nav.metrics.evaluate_many([episode, PATH])  # type: ignore[list-item]  # wrong on purpose
 
 
 def test_a_world_counts_who_left() -> None:

@@ -145,7 +145,7 @@ def test_values_that_are_not_finite_are_refused_and_not_averaged() -> None:
         with pytest.raises(InvalidParameterError, match=rf"recording.{name}\[{row}\] must be finite"):
             nav.crowd.prediction_errors("constant_velocity", SimpleNamespace(**parts))
     with pytest.raises(InvalidParameterError, match="recording must have time_s, person and position"):
-        nav.crowd.prediction_errors("straight", None)  # type: ignore[arg-type]
+        nav.crowd.prediction_errors("straight", None)  # type: ignore[arg-type]  # wrong on purpose
 
 
 def test_rows_by_person_have_the_windows_of_rows_by_time() -> None:
@@ -212,6 +212,6 @@ def test_worlds_without_a_diagram_are_refused() -> None:
         (replace(single_file(4, end=21.0), time_limit=9.0), r"people\[3\].route must lead farther .*an arrival at"),
     ):
         with pytest.raises(InvalidParameterError, match=words):
-            nav.crowd.fundamental_diagram([world])  # type: ignore[list-item]
+            nav.crowd.fundamental_diagram([world])  # type: ignore[list-item]  # wrong on purpose
     with pytest.raises(InvalidParameterError, match="worlds must hold at least one world"):
         nav.crowd.fundamental_diagram([])

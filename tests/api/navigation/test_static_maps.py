@@ -87,7 +87,7 @@ def test_rectangles_and_discs_become_a_map() -> None:
     there = nav.StaticMap.from_obstacles([table, nav.Disc(center=(-1.0, 0.0), radius=0.25)])
     np.testing.assert_allclose(there.clearance([(1.0, 1.0), (2.0, 3.0), (0.0, 0.0)]), [0.75, 1.5, 0.75], atol=1e-12)
     with pytest.raises(InvalidParameterError, match=r"obstacles\[0\] must be a Disc or Rectangle"):
-        nav.StaticMap.from_obstacles([nav.Human(start=(0.0, 0.0), velocity=(1.0, 0.0))])  # type: ignore[list-item]
+        nav.StaticMap.from_obstacles([nav.Human(start=(0.0, 0.0), velocity=(1.0, 0.0))])  # type: ignore[list-item]  # wrong on purpose
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0), st.sampled_from([0.05, 0.1, 1.0]))

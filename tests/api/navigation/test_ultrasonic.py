@@ -46,7 +46,7 @@ def test_a_stepped_run_by_echoes_is_the_whole_run() -> None:
         seen = stepped.step()
     assert seen.obstacle_position.shape == (16, 2)
     assert stepped.trajectory.position.tobytes() == run(C1, RING).position.tobytes()
-    assert stepped.trajectory.sensing.obstacles == ("ultrasonic",)  # type: ignore[attr-defined]
+    assert stepped.trajectory.sensing.obstacles == ("ultrasonic",)  # type: ignore[attr-defined]  # a run as built has sensing
 
 
 @pytest.mark.parametrize("law", [nav.Khatib(), nav.VelocityObstacle(), nav.FieldDStar(), nav.VirtualImpedanceLaw()])

@@ -30,7 +30,7 @@ class Pedestrian(Parameters):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        names = [each.name for each in fields(self) if each.init and each.name != "cutoff"]  # type: ignore[arg-type]
+        names = [each.name for each in fields(self) if each.init and each.name != "cutoff"]  # type: ignore[arg-type]  # models are dataclasses
         counts = {"max_neighbors"} & set(names)
         values: dict[str, float] = {name: number(name, getattr(self, name)) for name in names if name not in counts}
         values |= {name: count(name, getattr(self, name), least=0, most=2**16) for name in counts}

@@ -441,7 +441,7 @@ class StaticMap(Parameters):
     def __repr__(self) -> str:
         """Return what is in the map and how far it reaches."""
         counts = {"wall": self.walls, "polygon": self.polygons, "disc": self.discs, "grid": self.grids}
-        parts = [counted(word, len(each)) for word, each in counts.items() if len(each)]  # type: ignore[arg-type]
+        parts = [counted(word, len(each)) for word, each in counts.items() if len(each)]  # type: ignore[arg-type]  # arrays have a length
         if self.bounds is None:
             return "StaticMap(nothing)"
         (left, low), (right, high) = self.bounds
