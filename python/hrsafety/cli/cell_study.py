@@ -13,21 +13,13 @@ from hrsafety import contact, standards
 from hrsafety._arguments import Array
 from hrsafety.cli.cell_chances import chance_of
 from hrsafety.cli.cell_file import Cell, Planned
+from hrsafety.cli.cell_judgement import FASTEST, Judged, common, governing, judged_of, known, strain
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
-from hrsafety.standards.verdicts import speed_verdict, strictest
+from hrsafety.standards.verdicts import strictest
 
 __all__ = ["Study", "numbers_of", "studied"]
 
-UNCHECKED = frozenset(
-    {
-        *("rising_at_horizon", "unfinished", "beyond_data", "invalid_numbers", "not_checked"),
-        *("outside_paraboloid", "beyond_pad", "beyond_thickness", "edge"),
-    }
-)
-"""Warnings with which a limit does not count as kept."""
-FASTEST = 20.0
-"""Up to this speed, in m/s, contacts are looked at."""
 SPEEDS = 41
 MAP_POINTS = 25
 MAP_SPAN = 4.0
@@ -77,18 +69,6 @@ class Study:
     warnings: tuple[ResultWarning, ...]
 
 
-class _Judged(NamedTuple):
-    planned: Planned
-    bare: contact.AllowedSpeed | None
-    covered: Mapping[str, contact.AllowedSpeed]
-    verdict: dict[str, Any]
-
-    @property
-    def chosen(self) -> contact.AllowedSpeed | None:
-        """The allowed speed with the planned covering."""
-        return self.bare if self.planned.covering is None else self.covered.get(self.planned.covering)
-
-
 def studied(cell: Cell) -> Study:
     """Return everything that the report shows.
 
@@ -102,9 +82,9 @@ def studied(cell: Cell) -> Study:
     Study
         With the warnings of all results.
     """
-    judged = [_judged(cell, planned) for planned in cell.contacts]
+    judged = [judged_of(cell, planned) for planned in cell.contacts]
     impacts, curves = _loads(cell, judged), _over_speed(cell, judged)
-    governing = _governing(judged)
+    least = governing(judged)
     speeds = _over_distance(cell, judged)
     results = [_result(cell, each, impacts) for each in judged]
     fields: dict[str, Any] = {
@@ -114,9 +94,9 @@ def studied(cell: Cell) -> Study:
         "limits": _limits(cell),
         "results": results,
         "curves": _curve_fields(impacts, curves),
-        "map": None if governing is None else _map(cell, governing),
+        "map": None if least is None else _map(cell, least),
         "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
-        "sensitivity": None if governing is None else _sensitivity(cell, governing),
+        "sensitivity": None if least is None else _sensitivity(cell, least),
         "probability": [_named(each) | chance_of(cell, each.planned, each.chosen) for each in judged],
     }
     return Study(
@@ -135,89 +115,6 @@ def numbers_of(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return "unbounded" if value > 0.0 else None
     return value
-
-
-# ---- verdicts -----------------------------------------------------------------------------------
-
-
-def _common(cell: Cell, planned: Planned) -> dict[str, Any]:
-    """Return what every computation about a contact is given."""
-    limit = planned.limit
-    return {
-        "robot_mass": cell.robot.mass,
-        "body_mass": limit.body_mass,
-        "region": limit.spring_constant,
-    }
-
-
-def _known(planned: Planned) -> bool:
-    """Whether a contact can be computed at all."""
-    return planned.limit.spring_constant is not None and planned.limit.body_mass is not None
-
-
-def _strain(cell: Cell, covering: str | None) -> float | None:
-    """Return the largest strain of a covering, ``None`` for its own."""
-    return None if covering is None else cell.strains[covering]
-
-
-def _allowed(cell: Cell, planned: Planned, covering: str | None) -> contact.AllowedSpeed:
-    pad = None if covering is None else cell.coverings[covering]
-    return contact.allowed_speed(
-        **_common(cell, planned),
-        limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
-        covering=pad,
-        area=planned.area if pad is None else None,
-        max_strain=_strain(cell, covering),
-        human_speed=cell.human_speed,
-    )
-
-
-def _judged(cell: Cell, planned: Planned) -> _Judged:
-    permitted = planned.limit.permitted
-    bare = _allowed(cell, planned, None) if permitted and _known(planned) else None
-    covered: dict[str, contact.AllowedSpeed] = {}
-    if bare is not None:
-        covered = {name: _allowed(cell, planned, name) for name in cell.coverings}
-    found = _Judged(planned, bare, covered, {})
-    return found._replace(verdict=_verdict(cell, planned, found.chosen))
-
-
-def _verdict(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None) -> dict[str, Any]:
-    limit, closing = planned.limit, planned.speed + cell.human_speed
-    reasons: list[str] = []
-    if not limit.permitted:
-        reasons.append("the limit set does not permit this contact")
-    elif allowed is None:
-        reasons.append("the limit set has no spring constant or no mass of the region")
-    else:
-        reasons += [each.message for each in allowed.warnings if each.code in UNCHECKED]
-    most = None
-    if allowed is not None:
-        most = FASTEST if allowed.status == "unlimited_up_to_20" else allowed.speed
-    checked = allowed is not None and most is not None and not reasons
-    word = speed_verdict(closing, most, permitted=limit.permitted, checked=checked)
-    speed = None if most is None else max(most - cell.human_speed, 0.0)
-    return {
-        "region": limit.region,
-        "area_name": limit.area,
-        "contact": limit.contact,
-        "covering": planned.covering,
-        "planned_speed": planned.speed,
-        "planned_closing_speed": closing,
-        "allowed_speed": speed,
-        "allowed_closing_speed": most,
-        "margin": None if speed is None else speed - planned.speed,
-        "governs": None if allowed is None else allowed.governs,
-        "status": "not_permitted" if not limit.permitted else None if allowed is None else allowed.status,
-        "verdict": word,
-        "reasons": reasons,
-    }
-
-
-def _governing(judged: list[_Judged]) -> _Judged | None:
-    """Return the contact with the least margin that has an allowed speed above 0."""
-    known = [each for each in judged if each.verdict["allowed_closing_speed"]]
-    return min(known, key=lambda each: float(each.verdict["margin"]), default=None)
 
 
 # ---- robot and limits ---------------------------------------------------------------------------
@@ -269,11 +166,11 @@ def _label(planned: Planned, covering: str | None) -> str:
 
 def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.ContactImpact | None:
     pad = None if covering is None else cell.coverings[covering]
-    common = _common(cell, planned)
-    if math.isinf(common["robot_mass"]) and math.isinf(common["body_mass"]):
+    given = common(cell, planned)
+    if math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"]):
         return None
     try:
-        return contact.simulate(**common, covering=pad, closing_speed=planned.speed + cell.human_speed, head=False)
+        return contact.simulate(**given, covering=pad, closing_speed=planned.speed + cell.human_speed, head=False)
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads; the verdict says so, too.
         if "beyond_data" not in error.requirement:
@@ -281,10 +178,10 @@ def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.Conta
         return None
 
 
-def _loads(cell: Cell, judged: list[_Judged]) -> dict[str, dict[str, contact.ContactImpact]]:
+def _loads(cell: Cell, judged: list[Judged]) -> dict[str, dict[str, contact.ContactImpact]]:
     found: dict[str, dict[str, contact.ContactImpact]] = {}
     for each in judged:
-        if not _known(each.planned):
+        if not known(each.planned):
             continue
         for covering in (None, *cell.coverings):
             impact = _impact(cell, each.planned, covering)
@@ -293,17 +190,17 @@ def _loads(cell: Cell, judged: list[_Judged]) -> dict[str, dict[str, contact.Con
     return found
 
 
-def _over_speed(cell: Cell, judged: list[_Judged]) -> dict[str, list[Curve]]:
+def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
     found: dict[str, list[Curve]] = {}
     for each in judged:
-        common = _common(cell, each.planned)
-        if not _known(each.planned) or (math.isinf(common["robot_mass"]) and math.isinf(common["body_mass"])):
+        given = common(cell, each.planned)
+        if not known(each.planned) or (math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"])):
             continue
         most = 1.5 * max(each.verdict["planned_closing_speed"], each.verdict["allowed_closing_speed"] or 0.0)
         speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
         for covering in dict.fromkeys((None, each.planned.covering)):
             pad = None if covering is None else cell.coverings[covering]
-            rows = contact.batch(**common, covering=pad, closing_speed=speeds)
+            rows = contact.batch(**given, covering=pad, closing_speed=speeds)
             label = _label(each.planned, covering)
             found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
     return found
@@ -320,7 +217,7 @@ def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
     }
 
 
-def _result(cell: Cell, judged: _Judged, impacts: Mapping[str, Mapping[str, contact.ContactImpact]]) -> dict[str, Any]:
+def _result(cell: Cell, judged: Judged, impacts: Mapping[str, Mapping[str, contact.ContactImpact]]) -> dict[str, Any]:
     """Return what was found of a contact bare and with every covering."""
     planned = judged.planned
     rows = []
@@ -358,7 +255,7 @@ def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
     limits = {"force": planned.limit.force, "pressure": planned.limit.pressure}
     closing = planned.speed + cell.human_speed
     found = contact.thickness(
-        **_common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=_strain(cell, covering)
+        **common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=strain(cell, covering)
     )
     return {"least_thickness": found.thickness, "least_thickness_status": found.status}
 
@@ -381,7 +278,7 @@ def _curve_fields(
 # ---- maps and chances ---------------------------------------------------------------------------
 
 
-def _named(judged: _Judged) -> dict[str, Any]:
+def _named(judged: Judged) -> dict[str, Any]:
     limit = judged.planned.limit
     return {
         "region": limit.region,
@@ -391,7 +288,7 @@ def _named(judged: _Judged) -> dict[str, Any]:
     }
 
 
-def _map(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
+def _map(cell: Cell, judged: Judged) -> dict[str, Any] | None:
     """Return the allowed speed over thickness and strength of the covering that is planned."""
     if judged.planned.covering is None:
         return None
@@ -404,10 +301,10 @@ def _map(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
     thickness, strength = pad.thickness * span, own * span
     limit = judged.planned.limit
     found = contact.allowed_speeds(
-        **_common(cell, judged.planned),
+        **common(cell, judged.planned),
         limits={"force": limit.force, "pressure": limit.pressure},
         covering=pad,
-        max_strain=_strain(cell, judged.planned.covering),
+        max_strain=strain(cell, judged.planned.covering),
         **{"thickness": thickness[:, np.newaxis], name: strength},
     )
     return {
@@ -420,7 +317,7 @@ def _map(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
     }
 
 
-def _over_distance(cell: Cell, judged: list[_Judged]) -> standards.SpeedCurve | None:
+def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | None:
     if cell.separation is None:
         return None
     rules: dict[str, Any] = dict(cell.separation)
@@ -428,9 +325,9 @@ def _over_distance(cell: Cell, judged: list[_Judged]) -> standards.SpeedCurve | 
     # A contact that is not permitted, or of which nothing is known, allows none at all.
     speeds = [each.verdict["allowed_speed"] for each in judged]
     unknown = any(each.verdict["verdict"] in ("not_permitted", "not_checked") for each in judged)
-    known = None if unknown or any(each is None for each in speeds) else min(speeds)
+    least = None if unknown or any(each is None for each in speeds) else min(speeds)
     return standards.speed_over_distance(
-        np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=known, max_speed=most, **rules
+        np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=least, max_speed=most, **rules
     )
 
 
@@ -445,23 +342,23 @@ def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
     }
 
 
-def _sensitivity(cell: Cell, judged: _Judged) -> dict[str, Any] | None:
+def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
     planned = judged.planned
     pad = None if planned.covering is None else cell.coverings[planned.covering]
     if math.isinf(cell.robot.mass):
         return None
     found = contact.sensitivity(
-        **_common(cell, planned),
+        **common(cell, planned),
         limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
         covering=pad,
         area=planned.area if pad is None else None,
-        max_strain=_strain(cell, planned.covering),
+        max_strain=strain(cell, planned.covering),
     )
     return {**_named(judged), "values": [{"name": name, "value": value} for name, value in found.items()]}
 
 
 def _warnings(
-    cell: Cell, judged: list[_Judged], impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
+    cell: Cell, judged: list[Judged], impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
 ) -> Iterator[ResultWarning]:
     yield from cell.robot.warnings
     for each in judged:
