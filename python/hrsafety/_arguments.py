@@ -281,6 +281,14 @@ def pair(name: str, value: object) -> Pair:
     return (float(array[0]), float(array[1]))
 
 
+def finite_pair(name: str, value: object) -> Pair:
+    """Return ``value`` as two finite floats, or say what it should have been."""
+    given = pair(name, value)
+    if not np.isfinite(given).all():
+        raise InvalidParameterError(name, "be two finite numbers", given)
+    return given
+
+
 def points(name: str, value: object) -> Array:
     """Return ``value`` as a contiguous (n, 2) array, or say what it should have been."""
     array = numbers(name, value, "be an array of numbers")

@@ -38,6 +38,7 @@ __all__ = [
     "Foam",
     "Follower",
     "FollowerLayouts",
+    "FollowerSteps",
     "GainProblem",
     "Guide",
     "Head",
@@ -62,6 +63,7 @@ __all__ = [
     "Shield",
     "SkirtMotion",
     "SkirtScene",
+    "SkirtSteps",
     "Slip",
     "Sonar",
     "StaticMap",
@@ -118,7 +120,6 @@ __all__ = [
     "foam_ratios",
     "follower_batch",
     "follower_layout",
-    "follower_record",
     "follower_touching",
     "force_field",
     "force_terms",
@@ -169,7 +170,6 @@ __all__ = [
     "skirt_directions",
     "skirt_least_sensors",
     "skirt_printed_gaps",
-    "skirt_run",
     "skirt_safe_distance",
     "skirt_states",
     "skirt_test",
@@ -1214,16 +1214,39 @@ def skirt_test(
 ) -> _SkirtTestFields:
     """Return the rows of the avoidance test."""
 
-def skirt_run(
-    skirt: UltrasonicSkirt,
-    scene: SkirtScene,
-    motion: SkirtMotion,
-    *,
-    index: int,
-    repeats: int,
-    seed: int,
-) -> _SkirtRunFields:
-    """Return one test of the avoidance test, step by step."""
+@final
+class SkirtSteps:
+    """A test under way."""
+
+    def __new__(
+        cls,
+        skirt: UltrasonicSkirt,
+        scene: SkirtScene,
+        motion: SkirtMotion,
+        *,
+        index: int,
+        repeats: int,
+        seed: int,
+    ) -> Self: ...
+    @property
+    def time(self) -> float:
+        """Time of the firings so far."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has ended."""
+
+    def percept(self) -> dict[str, Any]:
+        """Return the fields of what the skirt decides by."""
+
+    def step(self, *, action: str | None) -> None:
+        """Advance by one firing period."""
+
+    def run(self) -> None:
+        """Go on to the end."""
+
+    def recorded(self) -> _SkirtRunFields:
+        """Return the fields of the test so far."""
 
 # ---- sound ----------------------------------------------------------------------------------
 
@@ -1463,19 +1486,42 @@ def fix_deviations(range: _Array, bearing: _Array) -> dict[str, _Array]:
 def follower_layout(layouts: FollowerLayouts, seed: int) -> dict[str, Any]:
     """Return boxes, leader and length of the layout of a seed."""
 
-def follower_record(
-    follower: Follower,
-    law: VirtualImpedance,
-    obstacles: list[Mover],
-    *,
-    leader_start: _Pair,
-    leader_end: _Pair,
-    leader_speed: float,
-    leader_size: _Pair | None,
-    duration: float,
-    seed: int,
-) -> dict[str, Any]:
-    """Return one run, sample by sample."""
+@final
+class FollowerSteps:
+    """A run of the follower under way."""
+
+    def __new__(
+        cls,
+        follower: Follower,
+        law: VirtualImpedance,
+        obstacles: list[Mover],
+        *,
+        seed: int,
+        leader_start: _Pair,
+        leader_end: _Pair,
+        leader_speed: float,
+        leader_size: _Pair | None,
+        duration: float,
+    ) -> Self: ...
+    @property
+    def time(self) -> float:
+        """Time of the control periods so far."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has ended."""
+
+    def percept(self) -> dict[str, Any]:
+        """Return the fields of what the law decides by."""
+
+    def step(self, *, force: _Pair | None) -> None:
+        """Advance by one control period."""
+
+    def run(self) -> None:
+        """Go on to the end."""
+
+    def recorded(self) -> dict[str, Any]:
+        """Return the fields of the run so far."""
 
 def follower_touching(
     follower: Follower, layouts: FollowerLayouts, *, first: int, count: int, threads: int | None

@@ -112,6 +112,7 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     reactive.FollowerScene: {"leader": reactive.SoundLeader(start=(2.0, 0.0))},
     reactive.MovingObstacle: {"shape": reactive.Disc(center=(1.0, 2.0), radius=0.3)},
     reactive.SoundLeader: {"start": (2.0, 0.0)},
+    reactive.FollowerSteps: {"scene": reactive.FollowerScene(leader=reactive.SoundLeader(start=(2.0, 0.0)))},
     reactive.SoundRecording: {"samples": np.zeros((3, 8)), "sample_rate": 48e3},
     reactive.Wall: {"start": (1.0, 2.0), "end": (2.0, 2.0)},
     standards.LimitRow: {"region": "chest", "area": None, "contact": "transient"},

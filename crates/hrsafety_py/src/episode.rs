@@ -29,7 +29,8 @@ impl Run {
     }
 }
 
-fn busy() -> PyErr {
+/// Says that a run is being stepped.
+pub fn busy() -> PyErr {
     SimulationError::new_err("a step of this run is under way; step it from one place at a time")
 }
 

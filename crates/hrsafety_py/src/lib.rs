@@ -133,8 +133,10 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::reactive::follower::runs::{
-        FollowerLayouts, follower_batch, follower_layout, follower_record, follower_touching,
+        FollowerLayouts, follower_batch, follower_layout, follower_touching,
     };
+    #[pymodule_export]
+    use crate::reactive::follower::steps::FollowerSteps;
     #[pymodule_export]
     use crate::reactive::follower::{
         Follower, Mover, VirtualImpedance, attraction_forces, collision_feet, collision_points,
@@ -153,9 +155,11 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::reactive::skirt::{
         SkirtMotion, SkirtScene, TriOmniKinematics, UltrasonicSkirt, skirt_closing_gap,
-        skirt_closing_radius, skirt_directions, skirt_least_sensors, skirt_printed_gaps, skirt_run,
+        skirt_closing_radius, skirt_directions, skirt_least_sensors, skirt_printed_gaps,
         skirt_safe_distance, skirt_states, skirt_test,
     };
+    #[pymodule_export]
+    use crate::reactive::skirt_steps::SkirtSteps;
     #[pymodule_export]
     use crate::run::{
         evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,

@@ -8,8 +8,8 @@ use vff_core::error::Failure;
 use vff_core::laws::impedance::{BankOptions, Form, Rotation};
 use vff_core::robots::differential::VelocityDrive;
 use vff_core::run::follower::{
-    FixNoise, Follower, FollowerScene, Layouts, Leader, Setting, Settings, record, run_batch,
-    touching_layouts,
+    FixNoise, Follower, FollowerOutcome, FollowerRecord, FollowerScene, FollowerSteps, Layouts,
+    Leader, Setting, Settings, run_batch, touching_layouts,
 };
 use vff_core::world::frame::Frame;
 use vff_core::world::motion::Motion;
@@ -24,6 +24,17 @@ fn quiet(threads: usize) -> Work<'static> {
         interrupted: &|| false,
         progress: &|_| (),
     }
+}
+
+fn recorded(
+    follower: &Follower,
+    scene: &FollowerScene,
+    seed: u64,
+) -> (FollowerOutcome, FollowerRecord) {
+    let mut steps = FollowerSteps::new(follower, scene.clone(), seed).unwrap();
+    steps.run(&|| false).unwrap();
+    let (outcome, rows) = steps.recorded();
+    (outcome, rows.clone())
 }
 
 fn with_form(form: Form) -> Settings {
@@ -100,7 +111,7 @@ fn it_follows_a_leader_at_its_standoff() {
     settings.fixes.noise = FixNoise::none();
     let scene = Layouts::of(Setting::Tracking).scene(0).unwrap();
     let follower = Follower::new(&settings).unwrap();
-    let (outcome, rows) = record(&follower, &scene, 0, &|| false).unwrap();
+    let (outcome, rows) = recorded(&follower, &scene, 0);
     assert!(outcome.contact.is_none());
     assert_eq!(outcome.least_clearance, f64::INFINITY);
     // It overshoots its standoff and does not go back.
@@ -132,7 +143,7 @@ fn mirrored_layout_gives_the_mirrored_run() {
             obstacles: vec![Obstacle::seen(body, Motion::at_rest(place)).unwrap()],
             duration: 15.0,
         };
-        record(&follower, &scene, 0, &|| false).unwrap()
+        recorded(&follower, &scene, 0)
     };
     let ((one, rows), (other, mirrored)) = (run(1.0), run(-1.0));
     assert!((one.path_length - other.path_length).abs() < 1e-6);
@@ -151,12 +162,37 @@ fn a_record_is_the_run_and_a_batch_is_its_runs() {
     let three = run_batch(&settings, &layouts, &seeds, quiet(3)).unwrap();
     assert_eq!(one, three);
     for (seed, outcome) in seeds.iter().zip(&one).take(20) {
-        let (recorded, rows) =
-            record(&follower, &layouts.scene(*seed).unwrap(), *seed, &|| false).unwrap();
-        assert_eq!(recorded, *outcome);
+        let (found, rows) = recorded(&follower, &layouts.scene(*seed).unwrap(), *seed);
+        assert_eq!(found, *outcome);
         let least = rows.clearance.iter().copied().fold(f64::INFINITY, f64::min);
         assert!((least - outcome.least_clearance).abs() < 1e-12);
     }
+}
+
+#[test]
+fn a_force_from_outside_takes_the_place_of_the_law() {
+    let (layouts, seeds) = dynamic();
+    let follower = Follower::new(&Settings::default()).unwrap();
+    let scene = layouts.scene(seeds[0]).unwrap();
+    let start = || FollowerSteps::new(&follower, scene.clone(), seeds[0]).unwrap();
+    let (mut free, mut told, mut still) = (start(), start(), start());
+    for _ in 0..40 {
+        free.period(None, &|| false).unwrap();
+        let rows = told.recorded().1;
+        assert_eq!(rows, still.recorded().1);
+        let refused = told.period(Some(Vector2::new(f64::NAN, 0.0)), &|| false);
+        assert!(matches!(refused, Err(Failure::NonFinite { .. })));
+        assert_eq!(told.recorded().1, still.recorded().1);
+        told.period(Some(Vector2::new(0.0, 5.0)), &|| false)
+            .unwrap();
+        still
+            .period(Some(Vector2::new(0.0, 5.0)), &|| false)
+            .unwrap();
+    }
+    assert_eq!(free.time(), told.time());
+    let lateral = |steps: &FollowerSteps| steps.percept().pose.position.y;
+    assert!(lateral(&told) > lateral(&free) + 0.05);
+    assert_eq!(lateral(&told).to_bits(), lateral(&still).to_bits());
 }
 
 #[test]

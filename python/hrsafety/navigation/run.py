@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NoReturn
 
-import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, checked_seed, flag, instance, number, pair
+from hrsafety._arguments import checked_seed, finite_pair, flag, instance, number
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafetyTrace
@@ -188,8 +187,8 @@ class Run:
         if command is None and velocity is None and self._law is None:
             raise InvalidParameterError("command", "be a force in a run without a law", None, "or give velocity=(x, y)")
         self._native.step(
-            force=None if command is None else _finite("command", command),
-            velocity=None if velocity is None else _finite("velocity", velocity),
+            force=None if command is None else finite_pair("command", command),
+            velocity=None if velocity is None else finite_pair("velocity", velocity),
         )
         return self.observe()
 
@@ -209,10 +208,3 @@ def _commands(_: Situation) -> NoReturn:
 
 
 _COMMANDS = PythonLaw(function=_commands, name="commands")
-
-
-def _finite(name: str, value: npt.ArrayLike) -> Pair:
-    given = pair(name, value)
-    if not np.isfinite(given).all():
-        raise InvalidParameterError(name, "be two finite numbers", given)
-    return given

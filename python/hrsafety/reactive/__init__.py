@@ -8,10 +8,13 @@ from hrsafety.reactive import follower, skirt, sonar, sound
 from hrsafety.reactive.follower.experiments import FollowerExperiment, experiment
 from hrsafety.reactive.follower.impedance import VirtualImpedance
 from hrsafety.reactive.follower.layouts import FollowerLayouts
-from hrsafety.reactive.follower.runs import Follower, FollowerRun, follow
+from hrsafety.reactive.follower.runs import Follower, FollowerRun
 from hrsafety.reactive.follower.scenes import FollowerScene, MovingObstacle, SoundLeader
+from hrsafety.reactive.follower.steps import FollowerSteps, follow
+from hrsafety.reactive.percept import Percept
 from hrsafety.reactive.skirt.ring import UltrasonicSkirt
-from hrsafety.reactive.skirt.runs import SkirtMotion, SkirtRun, SkirtScene, SkirtTest, skirt_run, skirt_test
+from hrsafety.reactive.skirt.runs import SkirtMotion, SkirtRun, SkirtScene, SkirtTest, skirt_test
+from hrsafety.reactive.skirt.steps import SkirtSteps, skirt_run
 from hrsafety.reactive.skirt.study import SmallestSkirt, smallest_skirt
 from hrsafety.reactive.sonar.echoes import Box, Disc, Sonar, SonarMounts, Wall
 from hrsafety.reactive.sound.bursts import Burst, Converter, record_burst
@@ -34,11 +37,14 @@ __all__ = [
     "FollowerLayouts",
     "FollowerRun",
     "FollowerScene",
+    "FollowerSteps",
     "MicrophoneArray",
     "MovingObstacle",
+    "Percept",
     "SkirtMotion",
     "SkirtRun",
     "SkirtScene",
+    "SkirtSteps",
     "SkirtTest",
     "SmallestSkirt",
     "Sonar",

@@ -2,6 +2,7 @@
 
 pub mod echoes;
 pub mod runs;
+pub mod steps;
 
 use numeric::error::{Failure, Given};
 use numpy::PyReadonlyArray1;

@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::laws::escape::states::TABLE_1;
 use vff_core::robots::wheels::TriOmni;
-use vff_core::run::skirt::robot::Moment;
 use vff_core::run::skirt::{
     Action, Direction, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan, Travel,
     normal_distances, test_batch,
@@ -22,7 +21,7 @@ use crate::keywords::Keywords;
 use crate::watch::{Report, watched};
 
 /// Word of an action.
-fn action_word(action: Action) -> &'static str {
+pub fn action_word(action: Action) -> &'static str {
     match action {
         Action::Keep => "keep",
         Action::Spin => "spin",
@@ -184,7 +183,7 @@ fn ring_of(given: &Keywords<'_>) -> PyResult<Ring> {
 
 /// Ring of sensors with its decisions.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct UltrasonicSkirt(Skirt);
+pub struct UltrasonicSkirt(pub Skirt);
 
 #[pymethods]
 impl UltrasonicSkirt {
@@ -287,7 +286,7 @@ fn policy_of(word: &str) -> CoreResult<Policy> {
 
 /// How discs are laid out.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtScene(DiscSceneOptions);
+pub struct SkirtScene(pub DiscSceneOptions);
 
 #[pymethods]
 impl SkirtScene {
@@ -313,7 +312,7 @@ impl SkirtScene {
 
 /// How the robot moves.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtMotion(Travel);
+pub struct SkirtMotion(pub Travel);
 
 #[pymethods]
 impl SkirtMotion {
@@ -378,90 +377,4 @@ pub fn skirt_test<'py>(
         rows.iter().map(|row| row.nearest_seen).collect(),
     )?;
     Ok(fields.finish())
-}
-
-/// One test of the avoidance test, step by step.
-#[pyfunction]
-#[pyo3(signature = (skirt, scene, motion, *, index, repeats, seed))]
-pub fn skirt_run<'py>(
-    py: Python<'py>,
-    skirt: &UltrasonicSkirt,
-    scene: &SkirtScene,
-    motion: &SkirtMotion,
-    index: usize,
-    repeats: usize,
-    seed: u64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let plan = TestPlan {
-        layouts: 1,
-        repeats,
-        scene: scene.0,
-        motion: motion.0,
-        seed,
-    }
-    .checked(&skirt.0)
-    .map_err(CoreError::from)?;
-    let mut record = Record::default();
-    let (row, drawn) = watched(py, Report::none(), |control| {
-        let watch = |moment: &Moment<'_>| record.push(moment);
-        plan.run(&skirt.0, index, watch, &|| control.interrupted())
-    })?;
-    let fields = Fields::new(py);
-    record.fill(&fields)?;
-    let discs = drawn.discs.len();
-    let centers = drawn
-        .discs
-        .iter()
-        .flat_map(|disc| [disc.center.x, disc.center.y])
-        .collect();
-    fields.matrix("disc_center", centers, discs, 2)?;
-    fields.vector(
-        "disc_radius",
-        drawn
-            .discs
-            .iter()
-            .map(|disc| disc.shape.inner_radius())
-            .collect(),
-    )?;
-    fields.vector("disc_seen", drawn.seen)?;
-    fields.value("min_clearance", row.course.min_clearance)?;
-    let contact_time = row.course.contact_time.unwrap_or(f64::NAN);
-    fields.value("contact_time", contact_time)?;
-    Ok(fields.finish())
-}
-
-/// Columns of a run.
-#[derive(Default)]
-struct Record {
-    time: Vec<f64>,
-    position: Vec<f64>,
-    heading: Vec<f64>,
-    velocity: Vec<f64>,
-    yaw_rate: Vec<f64>,
-    readings: Vec<f64>,
-    action: Vec<&'static str>,
-}
-
-impl Record {
-    fn push(&mut self, moment: &Moment<'_>) {
-        self.time.push(moment.time);
-        self.position.extend(<[f64; 2]>::from(moment.pose.position));
-        self.heading.push(moment.pose.angle());
-        self.velocity.extend(<[f64; 2]>::from(moment.velocity));
-        self.yaw_rate.push(moment.yaw_rate);
-        self.readings.extend(moment.readings);
-        self.action.push(action_word(moment.action));
-    }
-
-    fn fill(self, fields: &Fields<'_>) -> PyResult<()> {
-        let rows = self.time.len();
-        let sensors = self.readings.len() / rows.max(1);
-        fields.vector("time", self.time)?;
-        fields.matrix("position", self.position, rows, 2)?;
-        fields.vector("heading", self.heading)?;
-        fields.matrix("velocity", self.velocity, rows, 2)?;
-        fields.vector("yaw_rate", self.yaw_rate)?;
-        fields.matrix("readings", self.readings, rows, sensors)?;
-        fields.words("action", self.action.into_iter())
-    }
 }

@@ -138,9 +138,19 @@ impl<P: Parts> Episode<P> {
     /// As [`Self::period`].
     #[inline]
     pub(crate) fn run(mut self, interrupted: Interrupted<'_>) -> Result<Self> {
+        self.finish(interrupted)?;
+        Ok(self)
+    }
+
+    /// Goes on to the end under the law.
+    ///
+    /// # Errors
+    /// As [`Self::period`].
+    #[inline]
+    pub(crate) fn finish(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         while !self.finished() {
             self.period(P::Request::default(), interrupted)?;
         }
-        Ok(self)
+        Ok(())
     }
 }

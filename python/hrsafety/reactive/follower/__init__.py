@@ -10,8 +10,9 @@ from hrsafety.reactive.follower.collisions import (
 from hrsafety.reactive.follower.experiments import FollowerExperiment, LawComparison, compare_experiments, experiment
 from hrsafety.reactive.follower.impedance import VirtualImpedance
 from hrsafety.reactive.follower.layouts import FollowerLayouts
-from hrsafety.reactive.follower.runs import FixDeviations, Follower, FollowerRun, fix_deviations, follow
+from hrsafety.reactive.follower.runs import FixDeviations, Follower, FollowerRun, fix_deviations
 from hrsafety.reactive.follower.scenes import FollowerScene, MovingObstacle, SoundLeader
+from hrsafety.reactive.follower.steps import FollowerSteps, follow
 
 __all__ = [
     "FixDeviations",
@@ -20,6 +21,7 @@ __all__ = [
     "FollowerLayouts",
     "FollowerRun",
     "FollowerScene",
+    "FollowerSteps",
     "LawComparison",
     "MovingObstacle",
     "SoundLeader",

@@ -1,19 +1,18 @@
-"""The robot that follows a sound: its parameters, and one recorded run."""
+"""The robot that follows a sound: its parameters, and what is recorded of a run."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, checked_seed, flag, instance, numbers
+from hrsafety._arguments import Array, Parameters, flag, instance, numbers
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.sensing.vision import Vision
-from hrsafety.reactive.follower.impedance import VirtualImpedance
 from hrsafety.reactive.follower.scenes import FollowerScene
 from hrsafety.reactive.sonar.echoes import Sonar
 from hrsafety.tables import Columns, Table, each, plane
@@ -23,7 +22,6 @@ __all__ = [
     "Follower",
     "FollowerRun",
     "fix_deviations",
-    "follow",
 ]
 
 _DRIVE = ("mass", "body_radius", "wheel_base", "wheel_speed", "heading_gain", "least_speed")
@@ -240,65 +238,6 @@ class FollowerRun(Table):
     def __len__(self) -> int:
         """Return the number of rows."""
         return len(self.time)
-
-
-def follow(
-    scene: FollowerScene, *, law: VirtualImpedance | None = None, follower: Follower | None = None, seed: int = 0
-) -> FollowerRun:
-    """Run the follower through a scene until its end or the first touch, and record everything.
-
-    Parameters
-    ----------
-    scene : FollowerScene
-        Leader, obstacles and length; `FollowerLayouts.scene` draws those of the experiments.
-    law : VirtualImpedance or None
-        Repulsion; `VirtualImpedance` when ``None``.
-    follower : Follower or None
-        The robot; `Follower` when ``None``.
-    seed : int
-        Seed of the scatter of bursts and readings.
-
-    Returns
-    -------
-    FollowerRun
-        The run.
-
-    Raises
-    ------
-    InvalidParameterError
-        If an argument is of the wrong kind or out of range.
-    SimulationError
-        If the state becomes non-finite.
-
-    Examples
-    --------
-    >>> from hrsafety import reactive
-    >>> scene = reactive.FollowerScene(
-    ...     leader=reactive.SoundLeader(start=(1.2, 0.0), end=(3.0, 0.0)),
-    ...     obstacles=[reactive.Box(center=(1.5, 1.2), size=(0.5, 0.5))], duration=10.0,
-    ... )
-    >>> run = reactive.follow(scene)
-    >>> run.collided, len(run)
-    (False, 401)
-    """
-    instance("scene", scene, FollowerScene)
-    law = VirtualImpedance() if law is None else instance("law", law, VirtualImpedance)
-    robot = Follower() if follower is None else instance("follower", follower, Follower)
-    leader = scene.leader
-    found: dict[str, Any] = _hrsafety.follower_record(
-        robot._native,
-        law._native,
-        [each._native for each in scene.movers],
-        leader_start=leader.start,
-        leader_end=leader.start if leader.end is None else leader.end,
-        leader_speed=leader.speed,
-        leader_size=leader.size,
-        duration=scene.duration,
-        seed=checked_seed("seed", seed),
-    )
-    for name in ("end_time", "least_clearance"):
-        del found[name]
-    return FollowerRun(**found, scene=scene, follower=robot)
 
 
 @displayed

@@ -16,9 +16,9 @@ from hrsafety.reactive.skirt.runs import (
     SkirtScene,
     SkirtShares,
     SkirtTest,
-    skirt_run,
     skirt_test,
 )
+from hrsafety.reactive.skirt.steps import SkirtSteps, skirt_run
 from hrsafety.reactive.skirt.study import SmallestSkirt, smallest_skirt
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     "SkirtShares",
     "SkirtSpacing",
     "SkirtState",
+    "SkirtSteps",
     "SkirtTest",
     "SmallestSkirt",
     "TriOmniKinematics",

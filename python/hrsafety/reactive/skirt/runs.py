@@ -20,7 +20,6 @@ from hrsafety._arguments import (
     instance,
     not_negative,
     pair,
-    word,
 )
 from hrsafety._bounds import MOST_LAYOUTS, MOST_OBSTACLES, MOST_THREADS
 from hrsafety._display import displayed
@@ -29,7 +28,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt.ring import MOTION_DIRECTIONS, UltrasonicSkirt
 from hrsafety.tables import Columns, Table, each, plane
 
-__all__ = ["SkirtMotion", "SkirtRun", "SkirtScene", "SkirtShares", "SkirtTest", "skirt_run", "skirt_test"]
+__all__ = ["SkirtMotion", "SkirtRun", "SkirtScene", "SkirtShares", "SkirtTest", "limited", "native_parts", "skirt_test"]
 
 # More would only exhaust the system before it says no.
 CLOSELY = 0.1
@@ -88,7 +87,7 @@ class SkirtScene(Parameters):
         )
         self._set(
             _native=_hrsafety.SkirtScene(
-                obstacles=_limited("obstacles", self.obstacles, MOST_OBSTACLES),
+                obstacles=limited("obstacles", self.obstacles, MOST_OBSTACLES),
                 disc_radius=self.disc_radius,
                 course_distance=self.course_distance,
                 **self._as_numbers("course_offset", "half_size", "start_clearance", "spacing", "unseen_share"),
@@ -292,11 +291,11 @@ def skirt_test(
     (True, True)
     """
     columns = _hrsafety.skirt_test(
-        *_parts(skirt, scene, motion),
-        layouts=_limited("layouts", layouts, MOST_LAYOUTS),
-        repeats=_limited("repeats", repeats, MOST_LAYOUTS),
+        *native_parts(skirt, scene, motion),
+        layouts=limited("layouts", layouts, MOST_LAYOUTS),
+        repeats=limited("repeats", repeats, MOST_LAYOUTS),
         seed=checked_seed("seed", seed),
-        threads=None if threads is None else _limited("threads", threads, MOST_THREADS),
+        threads=None if threads is None else limited("threads", threads, MOST_THREADS),
         progress=callback("progress", progress),
     )
     index = np.arange(len(columns["min_clearance"]))
@@ -370,73 +369,17 @@ class SkirtRun(Table):
         return found | each("reading_{}", self.readings, "m") | {"action": self.action}
 
 
-def skirt_run(
-    skirt: UltrasonicSkirt | None = None,
-    *,
-    direction: str = "N",
-    layout: int = 0,
-    repeat: int = 0,
-    scene: SkirtScene | None = None,
-    motion: SkirtMotion | None = None,
-    repeats: int = 5,
-    seed: int = 0,
-) -> SkirtRun:
-    """Run one of the tests of `skirt_test` again and keep every step.
-
-    Parameters
-    ----------
-    skirt : UltrasonicSkirt or None
-        The skirt; the published one when ``None``.
-    direction : str
-        Direction of escape, a word of `MOTION_DIRECTIONS`.
-    layout, repeat : int
-        Row of the test.
-    scene : SkirtScene or None
-        How discs are laid out.
-    motion : SkirtMotion or None
-        How the robot moves.
-    repeats, seed : int
-        As in the call of `skirt_test`.
-
-    Returns
-    -------
-    SkirtRun
-        Motion, readings and decisions; the same bits as in the batch.
-
-    Raises
-    ------
-    InvalidParameterError
-        If an argument is out of range, or the discs leave no room for each other.
-
-    Examples
-    --------
-    >>> from hrsafety import reactive
-    >>> run = reactive.skirt_run(direction="SE", layout=3)
-    >>> bool(run.min_clearance == reactive.skirt_test(layouts=4).min_clearance[3 * 40 + 35])
-    True
-    """
-    names = tuple(MOTION_DIRECTIONS)
-    place = names.index(word("direction", direction, names))
-    times = _limited("repeats", repeats, MOST_LAYOUTS)
-    if count("repeat", repeat, least=0) >= times:
-        raise InvalidParameterError("repeat", f"be an integer from 0 to {times - 1}", repeat)
-    index = (_limited("layout", layout, MOST_LAYOUTS, least=0) * len(names) + place) * times + repeat
-    parts = _parts(skirt, scene, motion)
-    fields = _hrsafety.skirt_run(*parts, index=index, repeats=times, seed=checked_seed("seed", seed))
-    course = MOTION_DIRECTIONS[direction] + np.pi
-    return SkirtRun(skirt=skirt if skirt is not None else UltrasonicSkirt(), course=course, **fields)
-
-
-def _parts(
+def native_parts(
     skirt: UltrasonicSkirt | None, scene: SkirtScene | None, motion: SkirtMotion | None
 ) -> tuple[_hrsafety.UltrasonicSkirt, _hrsafety.SkirtScene, _hrsafety.SkirtMotion]:
+    """Return the native forms of skirt, scene and motion, or say which is none."""
     ring = UltrasonicSkirt() if skirt is None else instance("skirt", skirt, UltrasonicSkirt)
     place = SkirtScene() if scene is None else instance("scene", scene, SkirtScene)
     way = SkirtMotion() if motion is None else instance("motion", motion, SkirtMotion)
     return ring._native, place._native, way._native
 
 
-def _limited(name: str, value: int, most: int, *, least: int = 1) -> int:
+def limited(name: str, value: int, most: int, *, least: int = 1) -> int:
     """Return a count that the core can take, or say that it is none."""
     if count(name, value, least=least) > most:
         raise InvalidParameterError(name, f"be at most {most}", value)

@@ -1,17 +1,13 @@
-//! Runs of the follower: one recorded, or many in one crossing.
+//! Layouts of the follower, and its runs through many of them.
 
 use numeric::parallel::Work;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::lanes::Vector2;
-use vff_core::run::follower::{
-    Follower as Robot, FollowerOutcome, FollowerRecord, FollowerScene, Layouts, Leader, Setting,
-    record, run_batch, touching_layouts,
-};
+use vff_core::run::follower::{FollowerOutcome, Layouts, Setting, run_batch, touching_layouts};
 use vff_core::world::obstacle::Obstacle;
 use vff_core::world::shape::Shape;
 
-use super::{Follower, Mover, VirtualImpedance, word};
+use super::{Follower, VirtualImpedance, word};
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::watch::{Report, watched};
@@ -92,85 +88,6 @@ fn boxes(fields: &Fields<'_>, obstacles: &[Obstacle]) -> PyResult<()> {
     fields.matrix("velocity", velocities, count, 2)?;
     fields.vector("start", starts)?;
     fields.vector("stop", stops)
-}
-
-/// One run, sample by sample.
-#[pyfunction]
-#[pyo3(signature = (follower, law, obstacles, *, leader_start, leader_end, leader_speed,
-    leader_size, duration, seed))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
-pub fn follower_record<'py>(
-    py: Python<'py>,
-    follower: &Follower,
-    law: &VirtualImpedance,
-    obstacles: Vec<PyRef<'py, Mover>>,
-    leader_start: [f64; 2],
-    leader_end: [f64; 2],
-    leader_speed: f64,
-    leader_size: Option<[f64; 2]>,
-    duration: f64,
-    seed: u64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let mut leader =
-        Leader::going(leader_start, leader_end, leader_speed).map_err(CoreError::from)?;
-    leader.shape = leader_size.map(Shape::upright);
-    let obstacles: Vec<Obstacle> = obstacles.iter().map(|mover| mover.0.clone()).collect();
-    let scene = FollowerScene {
-        leader,
-        obstacles,
-        duration,
-    };
-    let robot = Robot::new(&follower.with(law)).map_err(CoreError::from)?;
-    let (outcome, recording) = watched(py, Report::none(), |control| {
-        record(&robot, &scene, seed, &|| control.interrupted())
-    })?;
-    let fields = Fields::new(py);
-    samples(&fields, recording, robot.sensors(), scene.obstacles.len())?;
-    summary(&fields, &outcome)?;
-    Ok(fields.finish())
-}
-
-/// Samples of a run.
-fn samples(
-    fields: &Fields<'_>,
-    recording: FollowerRecord,
-    sensors: usize,
-    obstacles: usize,
-) -> PyResult<()> {
-    let count = recording.time.len();
-    let flat = |rows: &[Vector2<f64>]| -> Vec<f64> {
-        rows.iter().flat_map(|row| [row.x, row.y]).collect()
-    };
-    let pairs = [
-        ("position", &recording.position),
-        ("virtual_velocity", &recording.virtual_velocity),
-        ("target", &recording.target),
-        ("source", &recording.source),
-        ("attraction", &recording.attraction),
-        ("repulsion", &recording.repulsion),
-    ];
-    for (name, rows) in pairs {
-        fields.matrix(name, flat(rows), count, 2)?;
-    }
-    fields.matrix("wheel_speed", recording.wheel_speed.concat(), count, 2)?;
-    fields.cube("shift", flat(&recording.shifts), [count, obstacles, 2])?;
-    fields.vector("time", recording.time)?;
-    fields.vector("heading", recording.heading)?;
-    fields.matrix("readings", recording.readings, count, sensors)?;
-    fields.matrix("clearance", recording.clearance, count, obstacles)
-}
-
-/// End of a run.
-fn summary(fields: &Fields<'_>, outcome: &FollowerOutcome) -> PyResult<()> {
-    let contact = outcome.contact;
-    fields.value("contact_obstacle", contact.map(|touch| touch.obstacle))?;
-    fields.value("contact_bearing", contact.map(|touch| touch.bearing))?;
-    fields.value("end_time", outcome.end_time)?;
-    fields.value("source_distance", outcome.source_distance)?;
-    fields.value("least_clearance", outcome.least_clearance)?;
-    fields.value("path_length", outcome.path_length)?;
-    fields.value("turning", outcome.turning)
 }
 
 /// The first seeds in whose layouts the robot without repulsion touches an obstacle.

@@ -1,6 +1,8 @@
 //! Follows a sound: attraction to a point before its source, repulsion by echoes or by what a camera
 //! sees.
 
+use std::ops::Deref;
+
 use nalgebra::Vector2;
 
 use crate::laws::impedance::attraction::Attraction;
@@ -60,18 +62,18 @@ pub(crate) struct FollowingLaw {
     pub reach: f64,
 }
 
-/// The law at work.
+/// The law at work; `L` refers to what does not change of it, or shares it.
 #[derive(Clone, Debug)]
-pub(crate) struct Following<'a> {
-    law: &'a FollowingLaw,
+pub(crate) struct Following<L> {
+    law: L,
     banks: [Bank; BANKS],
     /// Where the robot wants to be, in m.
     target: Vector2<f64>,
 }
 
-impl<'a> Following<'a> {
+impl<L: Deref<Target = FollowingLaw>> Following<L> {
     /// At the start.
-    pub fn new(law: &'a FollowingLaw) -> Self {
+    pub fn new(law: L) -> Self {
         Self {
             law,
             banks: [Bank::default(); BANKS],
@@ -87,7 +89,7 @@ impl<'a> Following<'a> {
     /// Repulsive force of bodies in N: from the surface of the robot to the nearest point of each
     /// within reach.
     fn of_bodies(&self, percept: &Percept<'_>) -> Vector2<f64> {
-        let (robot, law) = (percept.pose.position, self.law);
+        let (robot, law) = (percept.pose.position, &*self.law);
         let present = percept.bodies.iter().filter(|body| body.state.present);
         law.repulsion.force_of_points(present.filter_map(|body| {
             let known = PlacedShape {
@@ -107,7 +109,7 @@ impl<'a> Following<'a> {
     /// Repulsive force of all banks in N.
     #[inline]
     fn of_echoes(&mut self, percept: &Percept<'_>) -> Vector2<f64> {
-        let law = self.law;
+        let law = &*self.law;
         let mut sum = Vector2::zeros();
         let readings = percept.readings.as_chunks::<BANK>().0;
         for ((bank, mounted), own) in self.banks.iter_mut().zip(&law.banks).zip(readings) {
@@ -119,7 +121,7 @@ impl<'a> Following<'a> {
     }
 }
 
-impl Reflex for Following<'_> {
+impl<L: Deref<Target = FollowingLaw>> Reflex for Following<L> {
     type Answer = Forces;
 
     #[inline]

@@ -1,5 +1,8 @@
 //! One run of the follower.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result};
@@ -83,12 +86,19 @@ impl SampleObserver for () {
     fn sample(&mut self, _sample: &Sample<'_>) {}
 }
 
+impl<O: SampleObserver> SampleObserver for &mut O {
+    #[inline]
+    fn sample(&mut self, sample: &Sample<'_>) {
+        (**self).sample(sample);
+    }
+}
+
 /// A follower ready to run.
 #[derive(Clone, Debug)]
 pub struct Follower {
     settings: Settings,
     array: SonarArray,
-    law: FollowingLaw,
+    law: Arc<FollowingLaw>,
     /// No sensor can see anything that is farther from the center, in m.
     horizon: f64,
 }
@@ -120,7 +130,7 @@ impl Follower {
             reach,
         };
         Ok(Self {
-            law,
+            law: Arc::new(law),
             horizon: reach + offset,
             array,
             settings,
@@ -150,23 +160,35 @@ impl Follower {
         observer: &mut impl SampleObserver,
         interrupted: Interrupted<'_>,
     ) -> Result<FollowerOutcome> {
-        let mut ended = self.episode(scene, seed, observer)?.run(interrupted)?;
+        let episode = self.episode(&*self.law, scene, seed, observer)?;
+        let mut ended = episode.run(interrupted)?;
         // What it would do next stands in the last row.
         let time = ended.stepped();
-        ended.parts.decide(time, (), interrupted)?;
+        ended.parts.decide(time, None, interrupted)?;
         Ok(ended.parts.outcome())
     }
 
-    /// A run at its start.
+    /// What does not change of its law.
+    pub(crate) fn law(&self) -> &Arc<FollowingLaw> {
+        &self.law
+    }
+
+    /// A run at its start; it refers to law and scene, or shares them.
     ///
     /// # Errors
     /// The duration is out of range.
-    pub(crate) fn episode<'a, O: SampleObserver>(
-        &'a self,
-        scene: &'a FollowerScene,
+    pub(crate) fn episode<L, S, O>(
+        &self,
+        law: L,
+        scene: S,
         seed: u64,
-        observer: &'a mut O,
-    ) -> Result<Episode<FollowerParts<'a, O>>> {
+        observer: O,
+    ) -> Result<Episode<FollowerParts<L, S, O>>>
+    where
+        L: Deref<Target = FollowingLaw>,
+        S: Deref<Target = FollowerScene>,
+        O: SampleObserver,
+    {
         let settings = &self.settings;
         let step = settings.step;
         let clock = Clock {
@@ -187,8 +209,8 @@ impl Follower {
         let drive = VirtualVelocity::new(settings.drive, settings.velocity, step);
         let parts = FollowerParts {
             place: Place {
+                around: Surroundings::of(&scene, self.horizon),
                 scene,
-                around: Surroundings::of(scene, self.horizon),
                 bodies: bodies.clone(),
                 source: Vector2::zeros(),
                 pose: drive.frame(),
@@ -200,7 +222,7 @@ impl Follower {
                 camera: camera.transpose()?,
                 seen: bodies,
             },
-            law: Following::new(&self.law),
+            law: Following::new(law),
             drive,
             body_radius: settings.drive.body_radius,
             outcome: FollowerOutcome {
@@ -235,8 +257,8 @@ fn body_of(obstacle: &Obstacle) -> Body {
 }
 
 /// Where the robot is, and what is around it.
-struct Place<'a> {
-    scene: &'a FollowerScene,
+struct Place<S> {
+    scene: S,
     around: Surroundings,
     /// Obstacles for a camera.
     bodies: Vec<Body>,
@@ -247,13 +269,13 @@ struct Place<'a> {
     velocity: Vector2<f64>,
 }
 
-impl Place<'_> {
+impl<S: Deref<Target = FollowerScene>> Place<S> {
     /// Brings obstacles and source to a time in s, of a run with a least squared distance so far in
     /// m^2.
     #[inline]
     fn look(&mut self, time: f64, least_before: f64) {
         let around = &mut self.around;
-        self.source = around.look(self.scene, time, &self.pose, least_before);
+        self.source = around.look(&self.scene, time, &self.pose, least_before);
         for (body, shape) in self.bodies.iter_mut().zip(&self.around.shapes) {
             body.state.position = shape.center.into();
         }
@@ -282,30 +304,53 @@ struct Senses {
 }
 
 /// What a run of the follower consists of.
-pub(crate) struct FollowerParts<'a, O> {
-    place: Place<'a>,
+pub(crate) struct FollowerParts<L, S, O> {
+    place: Place<S>,
     senses: Senses,
-    law: Following<'a>,
+    law: Following<L>,
     drive: VirtualVelocity,
     body_radius: f64,
-    /// Its least clearance is the squared distance from the center here.
+    /// Its least clearance is the squared distance from the center here; the distance from the source
+    /// is that of the end alone.
     outcome: FollowerOutcome,
     ended: bool,
-    observer: &'a mut O,
+    pub(crate) observer: O,
 }
 
-impl<O> FollowerParts<'_, O> {
-    /// How the run ended.
-    fn outcome(&self) -> FollowerOutcome {
+impl<L, S, O> FollowerParts<L, S, O> {
+    /// How the run ended, or stands.
+    pub(crate) fn outcome(&self) -> FollowerOutcome {
+        let to_source = self.place.source - self.place.pose.position;
         FollowerOutcome {
+            source_distance: to_source.dot(&to_source).sqrt(),
             least_clearance: self.outcome.least_clearance.sqrt() - self.body_radius,
             ..self.outcome
         }
     }
+
+    /// What the law decides by.
+    #[inline]
+    pub(crate) fn percept(&self) -> Percept<'_> {
+        let (place, senses) = (&self.place, &self.senses);
+        Percept {
+            pose: place.pose,
+            velocity: place.velocity,
+            wanted: self.drive.velocity(),
+            readings: senses.sonar.readings(),
+            heard: senses.ear.heard(),
+            bodies: &senses.seen,
+        }
+    }
 }
 
-impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
-    type Request = ();
+impl<L, S, O> Parts for FollowerParts<L, S, O>
+where
+    L: Deref<Target = FollowingLaw>,
+    S: Deref<Target = FollowerScene>,
+    O: SampleObserver,
+{
+    /// Force in N on the virtual mass in place of the law's.
+    type Request = Option<Vector2<f64>>;
     const ATTENTION: usize = 1024;
 
     #[inline]
@@ -314,8 +359,14 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
     }
 
     #[inline]
-    fn decide(&mut self, time: f64, (): (), _: Interrupted<'_>) -> Result<bool> {
+    fn decide(
+        &mut self,
+        time: f64,
+        request: Option<Vector2<f64>>,
+        _: Interrupted<'_>,
+    ) -> Result<bool> {
         let (place, senses) = (&self.place, &self.senses);
+        // Its filters need every sample, whoever decides.
         let forces = self.law.answer(&Percept {
             pose: place.pose,
             velocity: place.velocity,
@@ -324,7 +375,8 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
             heard: senses.ear.heard(),
             bodies: &senses.seen,
         });
-        self.drive.hold(&(forces.attraction + forces.repulsion));
+        let force = request.unwrap_or(forces.attraction + forces.repulsion);
+        self.drive.hold(&force);
         self.observer.sample(&Sample {
             time,
             pose: &place.pose,
@@ -357,10 +409,8 @@ impl<O: SampleObserver> Parts for FollowerParts<'_, O> {
         let heeded = self.outcome.least_clearance.max(touch);
         self.place.look(time, heeded);
         let (place, outcome) = (&self.place, &mut self.outcome);
-        let to_source = place.source - place.pose.position;
         outcome.end_time = time;
         outcome.least_clearance = outcome.least_clearance.min(place.around.least);
-        outcome.source_distance = to_source.dot(&to_source).sqrt();
         if place.around.least < touch {
             outcome.contact = Some(place.around.contact(&place.pose));
             self.ended = true;

@@ -11,7 +11,7 @@ mod surroundings;
 pub use batch::{run_batch, touching_layouts};
 pub use episode::{Follower, FollowerOutcome};
 pub use layouts::{Layouts, Setting};
-pub use record::{FollowerRecord, record};
+pub use record::{FollowerRecord, FollowerSteps};
 pub use scene::{FollowerScene, Leader};
 pub use settings::{Sensors, Settings};
 pub use surroundings::Touch;

@@ -1,9 +1,17 @@
-//! One run with everything recorded.
+//! One run with everything recorded, period by period.
+
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use crate::error::Result;
-use crate::run::follower::episode::{Follower, FollowerOutcome, Sample, SampleObserver};
+use crate::error::{Failure, Result};
+use crate::laws::impedance::following::FollowingLaw;
+use crate::laws::reflex::Percept;
+use crate::run::Interrupted;
+use crate::run::episode::{Episode, Parts};
+use crate::run::follower::episode::{
+    Follower, FollowerOutcome, FollowerParts, Sample, SampleObserver,
+};
 use crate::run::follower::scene::FollowerScene;
 
 /// Samples of a run: one row each.
@@ -64,23 +72,90 @@ impl SampleObserver for Writer {
     }
 }
 
-/// Runs a follower through a scene and keeps every sample.
-///
-/// # Errors
-/// As [`Follower::run`].
-pub fn record(
-    follower: &Follower,
-    scene: &FollowerScene,
-    seed: u64,
-    interrupted: &(dyn Fn() -> bool + Sync),
-) -> Result<(FollowerOutcome, FollowerRecord)> {
-    let obstacles = scene.obstacles.iter();
-    let firsts = obstacles.map(|obstacle| obstacle.at(0.0, &mut 0).center);
-    let mut recorder = Writer {
-        recording: FollowerRecord::default(),
-        first: firsts.collect(),
-        body_radius: follower.settings().drive.body_radius,
-    };
-    let outcome = follower.run(scene, seed, &mut recorder, interrupted)?;
-    Ok((outcome, recorder.recording))
+/// A run of the follower that is stepped from outside and keeps every sample.
+pub struct FollowerSteps(Episode<FollowerParts<Arc<FollowingLaw>, Arc<FollowerScene>, Writer>>);
+
+impl FollowerSteps {
+    /// A run at its start.
+    ///
+    /// # Errors
+    /// The duration is out of range.
+    pub fn new(follower: &Follower, scene: FollowerScene, seed: u64) -> Result<Self> {
+        let obstacles = scene.obstacles.iter();
+        let firsts = obstacles.map(|obstacle| obstacle.at(0.0, &mut 0).center);
+        let writer = Writer {
+            recording: FollowerRecord::default(),
+            first: firsts.collect(),
+            body_radius: follower.settings().drive.body_radius,
+        };
+        let law = Arc::clone(follower.law());
+        let episode = follower.episode(law, Arc::new(scene), seed, writer)?;
+        Ok(Self(episode))
+    }
+
+    /// One control period under the law, or under a force in N on the virtual mass. The end has a
+    /// sample, too, with what the law would do next.
+    ///
+    /// # Errors
+    /// The force or the state is not finite, or the caller asked to stop.
+    pub fn period(
+        &mut self,
+        force: Option<Vector2<f64>>,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
+        if self.0.finished() {
+            return Ok(());
+        }
+        if force.is_some_and(|force| !force.iter().all(|part| part.is_finite())) {
+            let (run, time) = (0, self.time());
+            return Err(Failure::NonFinite { run, time });
+        }
+        self.0.period(force, interrupted)?;
+        if self.0.finished() {
+            self.last_sample(interrupted)?;
+        }
+        Ok(())
+    }
+
+    /// What the law would do next stands in the last sample.
+    fn last_sample(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
+        let time = self.0.stepped();
+        self.0.parts.decide(time, None, interrupted).map(|_| ())
+    }
+
+    /// Goes on to the end under the law.
+    ///
+    /// # Errors
+    /// As [`Self::period`].
+    pub fn run(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
+        if self.0.finished() {
+            return Ok(());
+        }
+        self.0.finish(interrupted)?;
+        self.last_sample(interrupted)
+    }
+
+    /// Whether the run has ended.
+    #[must_use]
+    pub fn finished(&self) -> bool {
+        self.0.finished()
+    }
+
+    /// Time of the control periods so far, in s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.0.stepped()
+    }
+
+    /// What the law decides by now.
+    #[must_use]
+    pub fn percept(&self) -> Percept<'_> {
+        self.0.parts.percept()
+    }
+
+    /// The run so far.
+    #[must_use]
+    pub fn recorded(&self) -> (FollowerOutcome, &FollowerRecord) {
+        (self.0.parts.outcome(), &self.0.parts.observer.recording)
+    }
 }

@@ -3,7 +3,7 @@
 use crate::error::{Failure, Given, Result};
 use crate::laws::escape::Direction;
 use crate::run::Interrupted;
-use crate::run::skirt::robot::{Course, Moment, Skirt, Travel, run, steps_of};
+use crate::run::skirt::robot::{Course, Skirt, Travel, run, steps_of};
 use crate::run::skirt::scene::{DiscScene, DiscSceneOptions};
 
 use numeric::parallel::{Work, each_run};
@@ -94,7 +94,7 @@ impl TestPlan {
         Ok((course, scene, Stream::new(self.seed, stream + 1)))
     }
 
-    /// Runs one test; `watch` sees every step.
+    /// Runs one test.
     ///
     /// # Errors
     /// There is no room for the discs, the state became non-finite, or the caller asked to stop.
@@ -102,18 +102,15 @@ impl TestPlan {
         &self,
         skirt: &Skirt,
         index: usize,
-        watch: impl FnMut(&Moment<'_>),
         interrupted: Interrupted<'_>,
-    ) -> Result<(TestRow, DiscScene)> {
+    ) -> Result<TestRow> {
         let (course, scene, noise) = self.test(skirt, index)?;
-        let start = (course, noise);
-        let course = run(skirt, &self.motion, &scene, start, watch, interrupted)?;
+        let course = run(skirt, &self.motion, &scene, (course, noise), interrupted)?;
         let nearest_seen = scene.seen.get(course.nearest).copied().unwrap_or(true);
-        let row = TestRow {
+        Ok(TestRow {
             course,
             nearest_seen,
-        };
-        Ok((row, scene))
+        })
     }
 }
 
@@ -124,7 +121,6 @@ impl TestPlan {
 pub fn test_batch(skirt: &Skirt, plan: &TestPlan, work: Work<'_>) -> Result<Vec<TestRow>> {
     let plan = plan.checked(skirt)?;
     each_run(plan.runs(), work, |index| {
-        plan.run(skirt, index, |_| (), work.interrupted)
-            .map(|(row, _)| row)
+        plan.run(skirt, index, work.interrupted)
     })
 }

@@ -2,10 +2,12 @@
 //! corrected. x points east, y north, angles are counterclockwise from x.
 
 pub mod batch;
+pub mod record;
 pub mod robot;
 pub mod scene;
 
 pub use batch::{TestPlan, TestRow, test_batch};
+pub use record::{SkirtRecord, SkirtSteps};
 pub use robot::{Course, Skirt, SkirtOptions, Travel};
 pub use scene::{DiscScene, DiscSceneOptions};
 

@@ -1,5 +1,8 @@
 //! A robot with a skirt of sensors that fire in turn, among discs.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result, positive};
@@ -46,7 +49,7 @@ pub struct Skirt {
     options: SkirtOptions,
     thresholds: Vec<f64>,
     array: SonarArray,
-    decider: Decider,
+    decider: Arc<Decider>,
 }
 
 impl Skirt {
@@ -72,8 +75,10 @@ impl Skirt {
         let array = SonarArray::new(mounts.collect(), beam, ranging, Firing::InTurn)?;
         let published = Ring::beside_wheels(PUBLISHED_SENSORS, PUBLISHED_WHEEL_GAP)?;
         let is_published = ring.bearings() == published;
+        let policy = options.policy;
+        let decider = Decider::new(ring.bearings(), &thresholds, is_published, policy);
         Ok(Self {
-            decider: Decider::new(ring.bearings(), &thresholds, is_published, options.policy),
+            decider: Arc::new(decider),
             ring,
             options,
             thresholds,
@@ -101,7 +106,7 @@ impl Skirt {
 
     /// Pattern and action for readings.
     #[must_use]
-    pub fn decider(&self) -> &Decider {
+    pub fn decider(&self) -> &Arc<Decider> {
         &self.decider
     }
 }
@@ -161,31 +166,47 @@ pub struct Moment<'a> {
     pub action: Action,
 }
 
+/// Receives moments.
+pub trait MomentObserver {
+    /// Takes the state after a firing period.
+    fn moment(&mut self, moment: &Moment<'_>);
+}
+
+impl MomentObserver for () {
+    #[inline]
+    fn moment(&mut self, _moment: &Moment<'_>) {}
+}
+
 /// Runs the robot from the origin on a course at an angle in rad until it touches a disc or the
-/// time is over; `watch` sees every step.
+/// time is over.
 ///
 /// # Errors
 /// The state became non-finite, or the caller asked to stop.
-pub fn run(
+pub(crate) fn run(
     skirt: &Skirt,
     motion: &Travel,
     scene: &DiscScene,
-    (course, noise): (f64, Stream),
-    watch: impl FnMut(&Moment<'_>),
+    start: (f64, Stream),
     interrupted: Interrupted<'_>,
 ) -> Result<Course> {
-    let ended = episode(skirt, motion, scene, (course, noise), watch)?.run(interrupted)?;
-    Ok(ended.parts.found)
+    let episode = episode(skirt, &*skirt.decider, motion, scene, start, ())?;
+    Ok(episode.run(interrupted)?.parts.found)
 }
 
-/// A run at its start.
-fn episode<'a, W: FnMut(&Moment<'_>)>(
-    skirt: &'a Skirt,
+/// A run at its start; it refers to law and scene, or shares them.
+pub(crate) fn episode<D, S, W>(
+    skirt: &Skirt,
+    law: D,
     motion: &Travel,
-    scene: &'a DiscScene,
+    scene: S,
     (course, noise): (f64, Stream),
     watch: W,
-) -> Result<Episode<SkirtParts<'a, W>>> {
+) -> Result<Episode<SkirtParts<D, S, W>>>
+where
+    D: Deref<Target = Decider>,
+    S: Deref<Target = DiscScene>,
+    W: MomentObserver,
+{
     let period = skirt.options.firing_period;
     let clock = Clock {
         step: period,
@@ -206,7 +227,7 @@ fn episode<'a, W: FnMut(&Moment<'_>)>(
             .collect(),
         scene,
         sonar: Sonar::new(&skirt.array, noise, skirt.options.most_range),
-        law: &skirt.decider,
+        law,
         action: Action::Keep,
         drive: LimitedOmni::new(limits, course, period),
         robot: Moved {
@@ -240,12 +261,12 @@ pub fn steps_of(duration: f64, period: f64) -> usize {
 }
 
 /// What a run within a ring of sensors consists of.
-struct SkirtParts<'a, W> {
-    scene: &'a DiscScene,
+pub(crate) struct SkirtParts<D, S, W> {
+    scene: S,
     /// Discs that the sensors can see.
     outlines: Vec<PlacedShape>,
     sonar: Sonar,
-    law: &'a Decider,
+    law: D,
     /// What was decided last.
     action: Action,
     drive: LimitedOmni,
@@ -253,12 +274,26 @@ struct SkirtParts<'a, W> {
     chassis_radius: f64,
     /// Clearance now, in m.
     clearance: f64,
-    found: Course,
+    /// What it came to so far.
+    pub(crate) found: Course,
     ended: bool,
-    watch: W,
+    pub(crate) watch: W,
 }
 
-impl<W> SkirtParts<'_, W> {
+impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
+    /// What the law decides by.
+    #[inline]
+    pub(crate) fn percept(&self) -> Percept<'_> {
+        Percept {
+            pose: self.robot.frame,
+            velocity: self.robot.velocity,
+            wanted: self.robot.velocity,
+            readings: self.sonar.readings(),
+            heard: None,
+            bodies: &[],
+        }
+    }
+
     /// Accounts for where the robot is.
     #[inline]
     fn account(&mut self) {
@@ -294,8 +329,14 @@ fn order_of(action: Action) -> Order {
     }
 }
 
-impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
-    type Request = ();
+impl<D, S, W> Parts for SkirtParts<D, S, W>
+where
+    D: Deref<Target = Decider>,
+    S: Deref<Target = DiscScene>,
+    W: MomentObserver,
+{
+    /// What to do in place of the law's decision.
+    type Request = Option<Action>;
     const ATTENTION: usize = 1024;
 
     #[inline]
@@ -304,15 +345,8 @@ impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
     }
 
     #[inline]
-    fn decide(&mut self, _time: f64, (): (), _: Interrupted<'_>) -> Result<bool> {
-        self.action = self.law.answer(&Percept {
-            pose: self.robot.frame,
-            velocity: self.robot.velocity,
-            wanted: self.robot.velocity,
-            readings: self.sonar.readings(),
-            heard: None,
-            bodies: &[],
-        });
+    fn decide(&mut self, _time: f64, request: Option<Action>, _: Interrupted<'_>) -> Result<bool> {
+        self.action = request.unwrap_or_else(|| (&*self.law).answer(&self.percept()));
         self.drive.hold(&order_of(self.action));
         Ok(true)
     }
@@ -321,7 +355,7 @@ impl<W: FnMut(&Moment<'_>)> Parts for SkirtParts<'_, W> {
     fn travel(&mut self, clock: &Clock, step: usize) {
         self.robot = self.drive.step();
         let time = clock.time(step + 1);
-        (self.watch)(&Moment {
+        self.watch.moment(&Moment {
             time,
             pose: self.robot.frame,
             velocity: self.robot.velocity,

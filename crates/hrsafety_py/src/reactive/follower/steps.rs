@@ -1,0 +1,164 @@
+//! A run of the follower that Python steps, or lets go on to its end.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numeric::error::Failure;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::lanes::Vector2;
+use vff_core::run::follower::{
+    Follower as Robot, FollowerOutcome, FollowerRecord, FollowerScene, FollowerSteps as Steps,
+    Leader,
+};
+use vff_core::world::obstacle::Obstacle;
+use vff_core::world::shape::Shape;
+
+use super::{Follower, Mover, VirtualImpedance};
+use crate::arrays::Fields;
+use crate::episode::busy;
+use crate::errors::CoreError;
+use crate::keywords::Keywords;
+use crate::reactive::percept_fields;
+use crate::watch::{Report, here};
+
+/// A run under way.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct FollowerSteps {
+    steps: Mutex<Steps>,
+    sensors: usize,
+    obstacles: usize,
+}
+
+impl FollowerSteps {
+    /// The run, unless another thread is at work on it.
+    fn idle(&self) -> PyResult<MutexGuard<'_, Steps>> {
+        self.steps.try_lock().map_err(|_| busy())
+    }
+}
+
+#[pymethods]
+impl FollowerSteps {
+    #[new]
+    #[pyo3(signature = (follower, law, obstacles, *, seed, **given))]
+    #[allow(clippy::needless_pass_by_value)] // references to Python objects
+    fn new(
+        follower: &Follower,
+        law: &VirtualImpedance,
+        obstacles: Vec<PyRef<'_, Mover>>,
+        seed: u64,
+        given: Option<Keywords<'_>>,
+    ) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let (start, end) = (given.take("leader_start")?, given.take("leader_end")?);
+        let leader = Leader::going(start, end, given.take("leader_speed")?);
+        let mut leader = leader.map_err(CoreError::from)?;
+        let size: Option<[f64; 2]> = given.take("leader_size")?;
+        leader.shape = size.map(Shape::upright);
+        let obstacles: Vec<Obstacle> = obstacles.iter().map(|mover| mover.0.clone()).collect();
+        let count = obstacles.len();
+        let scene = FollowerScene {
+            leader,
+            obstacles,
+            duration: given.take("duration")?,
+        };
+        given.done()?;
+        let robot = Robot::new(&follower.with(law)).map_err(CoreError::from)?;
+        let steps = Steps::new(&robot, scene, seed).map_err(CoreError::from)?;
+        Ok(Self {
+            steps: Mutex::new(steps),
+            sensors: robot.sensors(),
+            obstacles: count,
+        })
+    }
+
+    /// Fields of what the law decides by.
+    fn percept<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let steps = self.idle()?;
+        percept_fields(py, steps.time(), &steps.percept())
+    }
+
+    /// One control period under the law or a force in N.
+    #[pyo3(signature = (*, force))]
+    fn step(&self, py: Python<'_>, force: Option<[f64; 2]>) -> PyResult<()> {
+        let moved = here(py, Report::none(), |control| {
+            let Ok(mut steps) = self.steps.try_lock() else {
+                return Ok(false);
+            };
+            steps.period(force.map(Vector2::from), &|| control.interrupted())?;
+            Ok::<_, Failure>(true)
+        })?;
+        if moved { Ok(()) } else { Err(busy()) }
+    }
+
+    /// Goes on to the end under the law.
+    fn run(&self, py: Python<'_>) -> PyResult<()> {
+        here(py, Report::none(), |control| {
+            let mut steps = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
+            steps.run(&|| control.interrupted())
+        })
+    }
+
+    /// Time of the control periods so far in s.
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.idle()?.time())
+    }
+
+    /// Whether the run has ended.
+    #[getter]
+    fn finished(&self) -> PyResult<bool> {
+        Ok(self.idle()?.finished())
+    }
+
+    /// Fields of the run so far.
+    fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let steps = self.idle()?;
+        let (outcome, rows) = steps.recorded();
+        let fields = Fields::new(py);
+        samples(&fields, rows, self.sensors, self.obstacles)?;
+        summary(&fields, &outcome)?;
+        Ok(fields.finish())
+    }
+}
+
+/// Samples of a run.
+fn samples(
+    fields: &Fields<'_>,
+    recording: &FollowerRecord,
+    sensors: usize,
+    obstacles: usize,
+) -> PyResult<()> {
+    let count = recording.time.len();
+    let flat = |rows: &[Vector2<f64>]| -> Vec<f64> {
+        rows.iter().flat_map(|row| [row.x, row.y]).collect()
+    };
+    let pairs = [
+        ("position", &recording.position),
+        ("virtual_velocity", &recording.virtual_velocity),
+        ("target", &recording.target),
+        ("source", &recording.source),
+        ("attraction", &recording.attraction),
+        ("repulsion", &recording.repulsion),
+    ];
+    for (name, rows) in pairs {
+        fields.matrix(name, flat(rows), count, 2)?;
+    }
+    fields.matrix("wheel_speed", recording.wheel_speed.concat(), count, 2)?;
+    fields.cube("shift", flat(&recording.shifts), [count, obstacles, 2])?;
+    fields.vector("time", recording.time.clone())?;
+    fields.vector("heading", recording.heading.clone())?;
+    fields.matrix("readings", recording.readings.clone(), count, sensors)?;
+    fields.matrix("clearance", recording.clearance.clone(), count, obstacles)
+}
+
+/// End of a run.
+fn summary(fields: &Fields<'_>, outcome: &FollowerOutcome) -> PyResult<()> {
+    let contact = outcome.contact;
+    fields.value("contact_obstacle", contact.map(|touch| touch.obstacle))?;
+    fields.value("contact_bearing", contact.map(|touch| touch.bearing))?;
+    fields.value("end_time", outcome.end_time)?;
+    fields.value("source_distance", outcome.source_distance)?;
+    fields.value("least_clearance", outcome.least_clearance)?;
+    fields.value("path_length", outcome.path_length)?;
+    fields.value("turning", outcome.turning)
+}

@@ -1,0 +1,139 @@
+//! A test of the skirt that Python steps, or lets go on to its end.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use numeric::error::{Failure, Given};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::lanes::Vector2;
+use vff_core::run::skirt::{Action, Direction, SkirtRecord, SkirtSteps as Steps, TestPlan};
+
+use crate::arrays::Fields;
+use crate::episode::busy;
+use crate::errors::CoreResult;
+use crate::reactive::percept_fields;
+use crate::reactive::skirt::{SkirtMotion, SkirtScene, UltrasonicSkirt, action_word};
+use crate::watch::{Report, here};
+
+/// A test under way.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct SkirtSteps(Mutex<Steps>);
+
+impl SkirtSteps {
+    /// The test, unless another thread is at work on it.
+    fn idle(&self) -> PyResult<MutexGuard<'_, Steps>> {
+        self.0.try_lock().map_err(|_| busy())
+    }
+}
+
+/// Action of a word.
+fn action_of(given: &str) -> CoreResult<Action> {
+    let moves = Direction::ALL.into_iter().map(Action::Move);
+    let mut known = [Action::Keep, Action::Spin].into_iter().chain(moves);
+    known
+        .find(|action| action_word(*action) == given)
+        .ok_or_else(|| {
+            let rule = "be \"keep\", \"spin\" or a motion direction";
+            Failure::invalid("action", rule, Given::Word(given.into())).into()
+        })
+}
+
+#[pymethods]
+impl SkirtSteps {
+    #[new]
+    #[pyo3(signature = (skirt, scene, motion, *, index, repeats, seed))]
+    fn new(
+        skirt: &UltrasonicSkirt,
+        scene: &SkirtScene,
+        motion: &SkirtMotion,
+        index: usize,
+        repeats: usize,
+        seed: u64,
+    ) -> CoreResult<Self> {
+        let plan = TestPlan {
+            layouts: 1,
+            repeats,
+            scene: scene.0,
+            motion: motion.0,
+            seed,
+        };
+        Ok(Self(Mutex::new(Steps::new(&skirt.0, &plan, index)?)))
+    }
+
+    /// Fields of what the skirt decides by.
+    fn percept<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let steps = self.idle()?;
+        percept_fields(py, steps.time(), &steps.percept())
+    }
+
+    /// One firing period under the skirt's decision or an action.
+    #[pyo3(signature = (*, action))]
+    fn step(&self, py: Python<'_>, action: Option<&str>) -> PyResult<()> {
+        let action = action.map(action_of).transpose()?;
+        let moved = here(py, Report::none(), |control| {
+            let Ok(mut steps) = self.0.try_lock() else {
+                return Ok(false);
+            };
+            steps.period(action, &|| control.interrupted())?;
+            Ok::<_, Failure>(true)
+        })?;
+        if moved { Ok(()) } else { Err(busy()) }
+    }
+
+    /// Goes on to the end under the skirt's decisions.
+    fn run(&self, py: Python<'_>) -> PyResult<()> {
+        here(py, Report::none(), |control| {
+            let mut steps = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            steps.run(&|| control.interrupted())
+        })
+    }
+
+    /// Time of the firings so far in s.
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.idle()?.time())
+    }
+
+    /// Whether the test has ended.
+    #[getter]
+    fn finished(&self) -> PyResult<bool> {
+        Ok(self.idle()?.finished())
+    }
+
+    /// Fields of the test so far.
+    fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let steps = self.idle()?;
+        let (course, rows) = steps.recorded();
+        let fields = Fields::new(py);
+        firings(&fields, rows, steps.percept().readings.len())?;
+        let (discs, seen) = (&steps.scene().discs, &steps.scene().seen);
+        let centers = discs.iter().map(|disc| disc.center);
+        fields.matrix("disc_center", flat(centers), discs.len(), 2)?;
+        let radii = discs.iter().map(|disc| disc.shape.inner_radius());
+        fields.vector("disc_radius", radii.collect())?;
+        fields.vector("disc_seen", seen.clone())?;
+        fields.value("min_clearance", course.min_clearance)?;
+        fields.value("contact_time", course.contact_time.unwrap_or(f64::NAN))?;
+        Ok(fields.finish())
+    }
+}
+
+/// Rows of a test.
+fn firings(fields: &Fields<'_>, rows: &SkirtRecord, sensors: usize) -> PyResult<()> {
+    let count = rows.time.len();
+    fields.vector("time", rows.time.clone())?;
+    fields.matrix("position", flat(rows.position.iter().copied()), count, 2)?;
+    fields.vector("heading", rows.heading.clone())?;
+    fields.matrix("velocity", flat(rows.velocity.iter().copied()), count, 2)?;
+    fields.vector("yaw_rate", rows.yaw_rate.clone())?;
+    fields.matrix("readings", rows.readings.clone(), count, sensors)?;
+    fields.words(
+        "action",
+        rows.action.iter().map(|action| action_word(*action)),
+    )
+}
+
+/// Vectors one after the other.
+fn flat(vectors: impl Iterator<Item = Vector2<f64>>) -> Vec<f64> {
+    vectors.flat_map(<[f64; 2]>::from).collect()
+}
