@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, count, instance, number, numbers, pair, positive, sequence
+from hrsafety._arguments import Array, Pair, count, instance, number, numbers, pair, positive, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown, SimulationError
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
@@ -27,6 +27,8 @@ __all__ = ["Command", "Controller", "Sighting"]
 MOST_PEOPLE = 10_000
 FAR = 1e6
 """Where the scenario has those who were not seen yet, in m."""
+NEAREST = 1e-9
+"""Range in m of a beam that reads 0: a point at the lidar itself has no direction, and no law would see it."""
 ROUNDING = 1e-9
 """Of a number of periods."""
 
@@ -75,6 +77,9 @@ class Command:
         Whether the robot is within the arrival tolerance of the goal.
     oldest : float
         Age of the oldest measurement of somebody that counts, in s.
+    faster : tuple of hashable
+        Names of those who were measured to be faster than the shield reckons with; what it guarantees does not
+        hold for them.
     before : (float, float)
         Velocity at the update, in m/s.
     period, max_acceleration : float
@@ -90,6 +95,7 @@ class Command:
     timing: Literal["regular", "late", "out_of_order", "lost"]
     arrived: bool
     oldest: float
+    faster: tuple[Hashable, ...]
     before: Pair
     period: float
     max_acceleration: float
@@ -184,7 +190,7 @@ class Controller:
     'lost'
     """
 
-    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_names", "_native", "_rules")
+    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_names", "_native", "_person_speed", "_rules")
 
     def __init__(
         self,
@@ -211,6 +217,7 @@ class Controller:
             Human(start=(FAR + 10.0 * index, FAR), velocity=(speed, 0.0), radius=size, max_speed=speed)
             for index in range(self._capacity)
         ]
+        self._person_speed = speed
         self._rules: dict[str, Any] = {
             "robot": instance("robot", robot, HolonomicRobot, DifferentialDriveRobot),
             "goal": pair("goal", goal),
@@ -229,6 +236,16 @@ class Controller:
         scenario = Scenario(start=start, **self._rules)
         lidar = None if self._lidar is None else self._lidar._lidar
         return _hrsafety.Controller(scenario._native, self._law._native, lidar)
+
+    def _faster(self, seen: list[tuple[int, Pair, Pair, float]]) -> tuple[Hashable, ...]:
+        """Return who was measured to be faster than the shield reckons with."""
+        shield = self._law.shield if isinstance(self._law, SafeNavigation) else None
+        if shield is None:
+            return ()
+        most = self._person_speed if shield.person_speed is None else shield.person_speed
+        most += shield.velocity_error or 0.0
+        fast = {index for index, _, velocity, _ in seen if math.hypot(*velocity) > most}
+        return tuple(name for name, index in self._names.items() if index in fast)
 
     @property
     def people(self) -> tuple[Hashable, ...]:
@@ -266,7 +283,8 @@ class Controller:
         gone : iterable
             Names of those who are known to have left.
         scan : array_like of shape (beams,), or None
-            Ranges of the lidar in m; infinite where nothing was hit.
+            Ranges of the lidar in m; infinite where nothing was hit, which some drivers report as 0: here 0 is
+            something that touches the lidar, and the robot stands.
 
         Returns
         -------
@@ -293,25 +311,22 @@ class Controller:
         angle = 0.0 if heading is None else number("heading", heading)
         if self._native is None:
             if robot is None:
-                return self._told(_NOTHING, (0.0, 0.0))
+                return self._told(_NOTHING, (0.0, 0.0), ())
             self._native = self._made(robot[0])
         seen = [] if people is None else self._seen(people, now)
-        ranges = None if scan is None else np.ascontiguousarray(numbers("scan", scan))
-        if ranges is not None and ranges.ndim != 1:
-            raise ShapeError("scan", "(beams,)", ranges.shape)
-        left = [self._names[name] for name in gone if name in self._names]
+        ranges = None if scan is None else _ranges(scan)
+        left = self._left(gone, people)
         fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
         if fields["timing"] == "out_of_order" and self._last is not None:
-            return self._told(fields, self._last.before)
+            return self._told(fields, self._last.before, self._last.faster)
         before = self._last.velocity if robot is None and self._last is not None else (0.0, 0.0)
-        self._last = self._told(fields, before if robot is None else robot[1])
+        self._last = self._told(fields, before if robot is None else robot[1], self._faster(seen))
         return self._last
 
-    def _told(self, fields: Mapping[str, Any], before: Pair) -> Command:
-        robot = self._rules["robot"]
-        return Command(
-            before=before, period=self._rules["control_period"], max_acceleration=robot.max_acceleration, **fields
-        )
+    def _told(self, fields: Mapping[str, Any], before: Pair, faster: tuple[Hashable, ...]) -> Command:
+        rules, robot = self._rules, self._rules["robot"]
+        limits = {"period": rules["control_period"], "max_acceleration": robot.max_acceleration}
+        return Command(before=before, faster=faster, **limits, **fields)
 
     def _seen(
         self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike, now: float
@@ -322,25 +337,34 @@ class Controller:
             if rows.size and (rows.ndim != 2 or rows.shape[1] not in (4, 5)):
                 raise ShapeError("people", "(n, 4) or (n, 5)", rows.shape)
             people = dict(enumerate(rows.reshape(-1, max(1, rows.shape[-1])).tolist() if rows.size else []))
-        found = []
-        for name, given in people.items():
-            if len(given) not in (4, 5):
-                raise ShapeError(f"people[{name!r}]", "(4,) or (5,)", (len(given),))
-            x, y, vx, vy = (number(f"people[{name!r}]", value) for value in given[:4])
-            instant = given[4] if len(given) == 5 else None
-            when = now if instant is None else number(f"people[{name!r}].time", instant)
-            found.append((self._place(name), (x, y), (vx, vy), when))
-        return found
+        told = {name: _sighting(name, given, now) for name, given in people.items()}
+        return [(self._place(name, told), *sighting) for name, sighting in told.items()]
 
-    def _place(self, name: Hashable) -> int:
-        """Return the place of somebody in the core, a free one for who is new."""
+    def _left(self, gone: Iterable[Hashable], seen: Mapping[Hashable, object] | npt.ArrayLike | None) -> list[int]:
+        """Return the places of those who left; nobody can have left who is measured in the same update."""
+        if isinstance(gone, str) or not isinstance(gone, Iterable):
+            raise InvalidParameterError("gone", "be names in a list, a tuple or a set", gone)
+        names = list(gone)
+        for name in names:
+            if not isinstance(name, Hashable):
+                raise InvalidParameterError("gone", "hold names as they stand in people", name)
+            if isinstance(seen, Mapping) and name in seen:
+                raise InvalidParameterError("gone", "name nobody who is measured in the same update", name)
+        return [self._names[name] for name in names if name in self._names]
+
+    def _place(self, name: Hashable, told: Mapping[Hashable, object]) -> int:
+        """Return the place of somebody in the core, a free one for who is new.
+
+        Who is told of in the same update keeps his place, though the core does not know of him yet.
+        """
         if name in self._names:
             return self._names[name]
         taken = set(self._names.values())
         free = next((index for index in range(self._capacity) if index not in taken), None)
         if free is None:
             present = [] if self._native is None else self._native.present()
-            left = next((known for known, index in self._names.items() if not present[index]), None)
+            absent = (known for known, index in self._names.items() if not present[index] and known not in told)
+            left = next(absent, None)
             if left is None:
                 rule = f"name at most {self._capacity} who are there at once"
                 who = Shown(f"one more, {name!r}")
@@ -370,6 +394,26 @@ _NOTHING: Mapping[str, Any] = {
     "oldest": 0.0,
 }
 """What a robot is told that does not know yet where it is."""
+
+
+def _ranges(scan: npt.ArrayLike) -> Array:
+    """Return ranges of a lidar; what is at the lidar itself still lies along its beam."""
+    ranges = np.ascontiguousarray(numbers("scan", scan))
+    if ranges.ndim != 1:
+        raise ShapeError("scan", "(beams,)", ranges.shape)
+    return np.where((ranges >= 0.0) & (ranges < NEAREST), NEAREST, ranges)
+
+
+def _sighting(name: Hashable, given: Sequence[float | None], now: float) -> tuple[Pair, Pair, float]:
+    """Return place, velocity and instant of somebody who was measured."""
+    label = f"people[{name!r}]"
+    if isinstance(given, (str, Mapping)) or not (hasattr(given, "__len__") and hasattr(given, "__getitem__")):
+        raise InvalidParameterError(label, "be a Sighting or (x, y, vx, vy), with the instant as a fifth number", given)
+    if len(given) not in (4, 5):
+        raise ShapeError(label, "(4,) or (5,)", (len(given),))
+    x, y, vx, vy = (number(label, value) for value in given[:4])
+    instant = given[4] if len(given) == 5 else None
+    return (x, y), (vx, vy), now if instant is None else number(f"{label}.time", instant)
 
 
 def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:

@@ -233,9 +233,48 @@ def test_places_of_those_who_left_are_given_to_others() -> None:
     assert set(controller.people) == {"b", "c"}
 
 
+def test_nobody_takes_the_place_of_somebody_told_of_in_the_same_update() -> None:
+    crowd = {name: (3.0 + name, 0.0, 0.0, 0.0) for name in range(3)}
+    full = Controller(FIELD, ROBOT, (20.0, 0.0), people=2)
+    with pytest.raises(InvalidParameterError, match="people=3"):
+        still(full, 0.0, people=crowd)
+    with pytest.raises(InvalidParameterError, match="people=3"):
+        still(full, 0.1, people=np.array(list(crowd.values())))
+    roomy = Controller(FIELD, ROBOT, (20.0, 0.0), people=3)
+    still(roomy, 0.0, people=crowd)
+    assert set(roomy.people) == {0, 1, 2}
+
+
+@pytest.mark.parametrize("reading", [0.0, 1e-300])
+def test_what_touches_the_lidar_stops_the_robot(reading: float) -> None:
+    lidar = nav.Lidar(beams=36)
+    ahead = np.where(np.abs(lidar.bearings) < 0.3, reading, math.inf)
+    for law in (FIELD, SafeNavigation(FIELD, shield=Shield())):
+        controller = Controller(law, ROBOT, (20.0, 0.0), start=(0.0, 0.0), lidar=lidar)
+        assert still(controller, 0.0, scan=np.full(36, math.inf)).velocity[0] > 0.1
+        assert still(controller, 0.06, scan=ahead).velocity == pytest.approx((0.0, 0.0))
+
+
+def test_who_is_faster_than_the_shield_reckons_with_is_named() -> None:
+    people = {"walks": (6.0, 2.0, 0.0, 1.5), "runs": (6.0, 0.0, 0.0, -1.7)}
+    assert still(shielded(), 0.0, people=people).faster == ("runs",)
+    assert still(Controller(FIELD, ROBOT, (20.0, 0.0)), 0.0, people=people).faster == ()
+    known = Shield(velocity_error=0.15, person_acceleration=1.0)
+    tolerant = Controller(SafeNavigation(FIELD, shield=known), ROBOT, (20.0, 0.0))
+    assert still(tolerant, 0.0, people=people).faster == ()
+    of_scene = Controller(SafeNavigation(FIELD, shield=Shield(person_speed=None)), ROBOT, (20.0, 0.0), person_speed=1.0)
+    assert still(of_scene, 0.0, people=people).faster == ("walks", "runs")
+
+
 @pytest.mark.parametrize(
     ("told", "message"),
     [
+        ({"people": {"a": 3.0}}, r"people\['a'\] must be a Sighting"),
+        ({"people": {"a": {"x": 1.0, "y": 2.0, "vx": 0.0, "vy": 0.0}}}, r"people\['a'\] must be a Sighting"),
+        ({"gone": "Ada"}, "gone must be names"),
+        ({"gone": 5}, "gone must be names"),
+        ({"gone": [["a"]]}, "gone must hold names"),
+        ({"gone": ["a"], "people": {"a": (3.0, 0.0, 0.0, 0.0)}}, "nobody who is measured in the same update"),
         ({"people": {"a": (math.nan, 0.0, 0.0, 0.0)}}, "finite"),
         ({"people": {"a": (1.0, 0.0, 0.0, 0.0, 9.0)}}, "later than the update"),
         ({"scan": [1.0, 2.0]}, "lidar"),
