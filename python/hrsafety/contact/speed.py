@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, number, positive
+from hrsafety._arguments import Array, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
@@ -128,7 +128,7 @@ def allowed_speed(
     robot_damping, robot_stiffness, body_damping, body_stiffness, stop, horizon
         As for `simulate`.
     human_speed : float
-        Speed of the person towards the robot in m/s.
+        Speed of the person towards the robot in m/s, not negative: nobody has to keep walking away.
     tolerance : float
         Relative tolerance of simulations.
 
@@ -167,9 +167,7 @@ def allowed_speed(
         horizon=horizon,
     )
     values |= limits_of(limits)
-    walking = number("human_speed", human_speed)
-    if not math.isfinite(walking):
-        raise InvalidParameterError("human_speed", "be finite", human_speed)
+    walking = not_negative("human_speed", human_speed)
     found = _hrsafety.contact_speed(shared, in_order(values))
     speed = known(found["speed"])
     missing = missing_limits(values, bare=pad is None)

@@ -148,13 +148,22 @@ def test_a_covering_outside_its_model() -> None:
 
 def test_numbers_in_other_units() -> None:
     limits = {"force": 280.0, "pressure": 380.0}
-    found = contact.allowed_speed(robot_mass=16.35, body_mass=0.6, region=75.0, limits=limits, area=1.0001)
+    found = contact.allowed_speed(robot_mass=16.35, body_mass=0.6, region=75.0, limits=limits, area=1.0)
     assert [each.subject for each in found.warnings] == ["stiffness", "area", "pressure_limit"]
     thick = contact.Covering(material=contact.Linear(modulus=0.3), thickness=20.0, area=4e-3)
     hit = contact.simulate(robot_mass=8.0, closing_speed=0.3, covering=thick, region=25e3)
     assert {each.subject for each in hit.warnings} >= {"modulus", "thickness"}
     fine = contact.simulate(robot_mass=8.0, closing_speed=0.3, covering=PAD, region=25e3)
     assert fine.warnings == ()
+
+
+@pytest.mark.parametrize("speed", [-1.0, float("nan"), float("inf")])
+def test_a_person_who_walks_away_raises_no_speed(speed: float) -> None:
+    given = {"robot_mass": 8.0, "region": 25e3, "limits": {"force": 140.0}}
+    with pytest.raises(InvalidParameterError, match="human_speed must be finite and not negative"):
+        contact.allowed_speed(**given, human_speed=speed)
+    still, met = (contact.allowed_speed(**given, human_speed=each) for each in (0.0, 0.1))
+    assert met.robot_speed == pytest.approx(still.robot_speed - 0.1)
 
 
 def test_limits_that_are_not_checked() -> None:
