@@ -20,6 +20,7 @@ Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
 Kind = TypeVar("Kind")
 Each = TypeVar("Each")
+Scalar = TypeVar("Scalar", np.float64, np.uint64)
 Call = TypeVar("Call", bound=Callable[..., object])
 
 
@@ -253,6 +254,13 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
     # The cores read whole floats at their places in memory: other arrays are copied.
     whole = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
     return whole if whole.flags.aligned else whole.copy()
+
+
+def own(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
+    """Return a copy that nobody changes: what was checked stays, though the arrays of the user are filled again."""
+    kept = np.array(array, order="C")
+    kept.flags.writeable = False
+    return kept
 
 
 def empty(name: str, value: object, rule: str = "be an array of numbers") -> bool:

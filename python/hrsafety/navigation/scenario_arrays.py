@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_seed, flag, instance, number, numbers, points
+from hrsafety._arguments import Array, checked_seed, flag, instance, number, numbers, own, points
 from hrsafety._bounds import MOST_BODIES, MOST_TABLE_ROWS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle
@@ -116,8 +116,9 @@ class Scenarios(Sequence[Scenario]):
             If the arrays do not fit together.
         """
         rows = _row_count(start=start, goal=goal, obstacle_position=obstacle_position)
-        ends = _ends("start", start, rows), _ends("goal", goal, rows)
-        bodies = _bodies(obstacle_position, obstacle_velocity, obstacle_radius, rows)
+        ends = own(_ends("start", start, rows)), own(_ends("goal", goal, rows))
+        places, speeds, radii = _bodies(obstacle_position, obstacle_velocity, obstacle_radius, rows)
+        bodies = own(places), own(speeds), own(radii)
         rules = {
             "control_period": number("control_period", control_period),
             "time_limit": number("time_limit", time_limit),
@@ -126,7 +127,7 @@ class Scenarios(Sequence[Scenario]):
             "rest_time": number("rest_time", rest_time),
         }
         driven = checked_robot(robot)
-        seeds = _seeds(seed, rows)
+        seeds = own(_seeds(seed, rows))
         of_run = (
             rules["control_period"],
             rules["time_limit"],

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, number, numbers, vector
+from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.tables import Columns, Table
 
@@ -63,8 +63,8 @@ class StoppingData(Parameters):
             full = (*values.shape, *(1,) * (3 - values.ndim))
             if full != shape:
                 raise ShapeError(name, str(shape), values.shape)
-            self._set(**{name: values.reshape(shape)})
-        self._set(speed=axes[0], load=axes[1], extension=axes[2])
+            self._set(**{name: own(values.reshape(shape))})
+        self._set(speed=own(axes[0]), load=own(axes[1]), extension=own(axes[2]))
         self.curve(float(axes[1][0]), float(axes[2][0]))
 
     def curve(self, load: float | None = None, extension: float | None = None) -> _hrsafety.StoppingCurve:

@@ -17,6 +17,7 @@ from hrsafety._arguments import (
     followed,
     instance,
     number,
+    own,
     positive,
     sequence,
     vector,
@@ -67,7 +68,7 @@ class OpenLoopTest:
         for name, samples in (("time", time), ("angle", angle)):
             if not np.isfinite(samples).all():
                 raise InvalidParameterError(name, "be finite", float(samples[~np.isfinite(samples)][0]))
-        for name, value in (("command", command), ("time", time), ("angle", angle)):
+        for name, value in (("command", command), ("time", own(time)), ("angle", own(angle))):
             object.__setattr__(self, name, value)
 
 

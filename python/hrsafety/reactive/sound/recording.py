@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety._arguments import Array, count, numbers, positive, sequence
+from hrsafety._arguments import Array, count, numbers, own, positive, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["SoundRecording", "read_recording"]
@@ -58,7 +58,7 @@ class SoundRecording:
         shares = tuple(count("clipped", each, least=0) for each in sequence("clipped", "be three counts", self.clipped))
         if len(shares) != 3:
             raise InvalidParameterError("clipped", "be three numbers", self.clipped)
-        object.__setattr__(self, "samples", array)
+        object.__setattr__(self, "samples", own(array))
         object.__setattr__(self, "sample_rate", positive("sample_rate", self.sample_rate))
         object.__setattr__(self, "clipped", shares)
 
