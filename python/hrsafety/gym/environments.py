@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ from gymnasium import spaces
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, number, numbers, positive, thread_count, word
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.gym.worlds import Task
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
@@ -89,6 +89,11 @@ class Environments:
         self.scores = np.full((self.count, len(METRICS)), np.nan)
         self.seen = np.zeros((self.count, 2), dtype=np.int64)
         self._make_arrays()
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse for those that hold these: episodes under way are not copied."""
+        rule = "an environment cannot be copied or pickled; make another with the same arguments and reset it"
+        raise SimulationError(rule)
 
     def _make_arrays(self) -> None:
         """Make the arrays that are returned."""

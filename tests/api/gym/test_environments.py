@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium
@@ -14,7 +17,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from api.trees import same
 from hrsafety import gym
 from hrsafety import navigation as nav
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 
 CIRCLE = "hrsafety/CircleCrossing-v0"
 OPTIONS: list[dict[str, Any]] = [
@@ -216,6 +219,14 @@ def test_a_mask_is_needed_where_episodes_have_ended() -> None:
     for mask in (np.zeros(2, dtype=bool), np.ones(3, dtype=bool), [True, False]):
         with pytest.raises(InvalidParameterError, match="reset_mask must"):
             envs.reset(options={"reset_mask": mask})
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, pickle.dumps])
+def test_episodes_under_way_are_not_copied(copied: Callable[[object], object]) -> None:
+    one = one_person()
+    for env in (one, gym.CrowdVectorEnv(one._all.task, num_envs=2)):
+        with pytest.raises(SimulationError, match="cannot be copied or pickled"):
+            copied(env)
 
 
 @pytest.mark.parametrize("name", gym.IDS)
