@@ -79,14 +79,14 @@ def number(name: str, value: object) -> float:
         return value
     if isinstance(value, (bool, np.bool_, str, bytes)):
         raise InvalidParameterError(name, "be a number", value)
-    _check_mask(name, value)
+    refuse_masked(name, value)
     try:
         return float(value)  # type: ignore[arg-type]  # the failure is the check
     except (TypeError, ValueError, OverflowError):
         raise InvalidParameterError(name, "be a number", value) from None
 
 
-def _check_mask(name: str, value: object) -> None:
+def refuse_masked(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
     # Importing them takes longer than checking all arguments of a program; whoever has one has imported them.
     masked_arrays = sys.modules.get("numpy.ma")
@@ -241,10 +241,10 @@ def sequence(name: str, rule: str, value: object) -> list[Any]:
 
 def numbers(name: str, value: object, rule: str = "be a number or an array of numbers") -> Array:
     """Return ``value`` as a contiguous array; words, None and complex numbers are refused."""
-    _check_mask(name, value)
+    refuse_masked(name, value)
     if isinstance(value, (list, tuple)):
         for each in value:
-            _check_mask(name, each)
+            refuse_masked(name, each)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, count, number, numbers, sequence, word
+from hrsafety._arguments import Array, count, number, numbers, refuse_masked, sequence, word
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["Axis", "Column"]
@@ -115,6 +115,7 @@ class Column:
         ShapeError
             If there are more or fewer.
         """
+        refuse_masked(self.name, values)
         array = np.asarray(values)
         if array.shape != (rows,):
             raise ShapeError(self.name, f"({rows},)", array.shape)

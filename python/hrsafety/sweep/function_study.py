@@ -95,11 +95,12 @@ class FunctionStudy(Study):
 
     def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:  # noqa: ARG002  # a function knows no threads
         """Return the columns for some rows, see `Study.compute`."""
-        found = self.function(**rows, **self.parameters)
+        # Copies: what a function does to its arguments must not change the rows that are kept.
+        found = self.function(**{name: values.copy() for name, values in rows.items()}, **self.parameters)
         if not isinstance(found, Mapping):
             kind = type(found).__name__
             raise InvalidParameterError("result of the function", "be a mapping of names to arrays", kind)
         names = [column.name for column in self.results]
         if set(found) != set(names):
             raise InvalidParameterError("result of the function", f"have the names {', '.join(names)}", sorted(found))
-        return {name: np.asarray(found[name]) for name in names}
+        return {name: np.asanyarray(found[name]) for name in names}

@@ -387,3 +387,21 @@ def test_any_law_is_swept_over_its_own_gains() -> None:
         assert arrival == nav.simulate(scenarios.configuration("c1"), law).arrival_time
     with pytest.raises(InvalidParameterError, match="gain_ratio"):
         sweep.run(sweep.Grid([sweep.Axis(name="gain_ratio", values=[0.1])]), study)
+
+
+def test_a_function_changes_no_rows_and_masks_no_results() -> None:
+    design = sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=5)])
+
+    def doubling(x: np.ndarray) -> dict[str, np.ndarray]:
+        x *= 2.0
+        return {"y": x}
+
+    found = sweep.run(design, sweep.FunctionStudy(function=doubling, results=["y"]))
+    assert found["x"].tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
+    assert found["y"].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+
+    def hiding(x: np.ndarray) -> dict[str, np.ndarray]:
+        return {"y": np.ma.masked_greater(x, 0.5)}
+
+    with pytest.raises(InvalidParameterError, match="y must have no masked values, got 2 masked of 5"):
+        sweep.run(design, sweep.FunctionStudy(function=hiding, results=["y"]))
