@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import copy
 import pickle
 import warnings
 from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
 
 import gymnasium
@@ -221,7 +221,7 @@ def test_a_mask_is_needed_where_episodes_have_ended() -> None:
             envs.reset(options={"reset_mask": mask})
 
 
-@pytest.mark.parametrize("copied", [copy.deepcopy, pickle.dumps])
+@pytest.mark.parametrize("copied", [deepcopy, pickle.dumps])
 def test_episodes_under_way_are_not_copied(copied: Callable[[object], object]) -> None:
     one = one_person()
     for env in (one, gym.CrowdVectorEnv(one._all.task, num_envs=2)):
