@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, finite, not_negative, pair, positive
+from hrsafety._arguments import Array, Pair, finite, instance, not_negative, pair, positive, sequence
 from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import Doubts
@@ -33,6 +33,11 @@ KNEE_HEIGHT = 0.35
 """Lowest knee that a cover may meet, in m: below that of nearly every adult, a choice of this project."""
 LOWEST = MappingProxyType({"thigh_knee": KNEE_HEIGHT})
 """Height from which a region counts; what is not here counts from the floor on."""
+
+
+_READ = ("region", "contact", "permitted", "force", "pressure", "spring_constant", "body_mass")
+"""What is read of a limit of contact."""
+_OF_RUN = ("time", "position", "velocity", "heading", "obstacle_position")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -232,8 +237,20 @@ def contact_speed_limit(
     >>> round(contact.contact_speed_limit(base, None, (0.2, 0.0), (1.0, 0.0), [leg])[0].speed, 4)
     0.5207
     """
+    instance("base", base, HolonomicBase, DifferentialBase)
     mass = base.effective_mass(point, normal)
-    return tuple(_region_speed(mass, covering, each, area) for each in regions)
+    return tuple(_region_speed(mass, covering, each, area) for each in _limits_of(regions))
+
+
+def _limits_of(regions: Sequence[Any]) -> list[Any]:
+    """Return limits of contact, each with all that is read of it."""
+    found = sequence("regions", "be a sequence of limits", regions)
+    for index, each in enumerate(found):
+        for name in _READ:
+            if not hasattr(each, name):
+                remedy = 'for example standards.limits().contact("lower_leg", "quasi_static")'
+                raise InvalidParameterError(f"regions[{index}]", f"be a limit of contact with {name}", each, remedy)
+    return found
 
 
 def _region_speed(
@@ -359,7 +376,10 @@ def contact_margins(
     >>> bool(found.touching.any()), found.region
     (False, 'lower_leg')
     """
-    regions = _within_reach(regions, cover_height)
+    instance("base", base, HolonomicBase, DifferentialBase)
+    if not all(hasattr(trajectory, name) for name in _OF_RUN):
+        raise InvalidParameterError("trajectory", f"be a run with {', '.join(_OF_RUN)}", trajectory)
+    regions = _within_reach(_limits_of(regions), cover_height)
     if not len(regions):
         raise InvalidParameterError("regions", "name at least one limit that the robot reaches", len(regions))
     reach = positive("robot_radius", robot_radius)

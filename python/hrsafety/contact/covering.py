@@ -299,7 +299,7 @@ def covering_of(given: Covering | Mapping[str, object] | None) -> Covering | Non
     """Return the covering that is described, ``None`` if bare."""
     if given is None or isinstance(given, Covering):
         return given
-    return Covering(**_known("covering", given, [each.name for each in fields(Covering)]))  # type: ignore[arg-type]  # the class checks its numbers
+    return Covering(**_known("covering", given, [each.name for each in fields(Covering)], ("material", "thickness")))  # type: ignore[arg-type]  # the class checks its numbers
 
 
 def region_of(given: Region | Mapping[str, object] | float | None) -> Region | None:
@@ -307,14 +307,17 @@ def region_of(given: Region | Mapping[str, object] | float | None) -> Region | N
     if given is None or isinstance(given, Region):
         return given
     if isinstance(given, Mapping):
-        return Region(**_known("region", given, ["k", "k3", "n"])) if given else None  # type: ignore[arg-type]  # likewise
+        return Region(**_known("region", given, ["k", "k3", "n"], ("k",))) if given else None  # type: ignore[arg-type]  # likewise
     return Region(k=number("region", given))
 
 
-def _known(name: str, given: object, names: list[str]) -> dict[str, object]:
+def _known(name: str, given: object, names: list[str], needed: tuple[str, ...]) -> dict[str, object]:
     if not isinstance(given, Mapping):
         raise InvalidParameterError(name, f"be a {name} or a mapping", given)
     for key in given:
         if key not in names:
             raise InvalidParameterError(name, f"have no keys but {', '.join(names)}", key, meant(key, names))
+    missing = [key for key in needed if key not in given]
+    if missing:
+        raise InvalidParameterError(f"{name}.{missing[0]}", "be given", None)
     return dict(given)

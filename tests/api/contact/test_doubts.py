@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hrsafety import contact
+from hrsafety import contact, standards
 from hrsafety.errors import InvalidParameterError
 
 PAD = contact.Covering(material=contact.Linear(modulus=2e5), thickness=0.02, area=4e-3)
@@ -279,3 +280,31 @@ def test_a_low_robot_meets_no_knee() -> None:
         margins(STANDING, regions[1:], cover_height=0.3)
     with pytest.raises(InvalidParameterError, match="cover_height"):
         margins(STANDING, regions, cover_height=0.0)
+
+
+BASE = contact.HolonomicBase(mass=20.0, inertia=0.8)
+LEG = standards.limits().contact("lower_leg", "quasi_static")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: contact.contact_speed_limit(20.0, None, (0.2, 0.0), (1.0, 0.0), [LEG]), "base must be a"),
+        (
+            lambda: contact.contact_speed_limit(BASE, None, (0.2, 0.0), (1.0, 0.0), [3.0]),
+            r"regions\[0\] must be a limit",
+        ),
+        (lambda: contact.contact_speed_limit(BASE, None, (0.2, 0.0), (1.0, 0.0), LEG), "regions must be a sequence"),
+        (
+            lambda: contact.contact_margins(
+                3.0, base=BASE, covering=None, regions=[LEG], robot_radius=0.2, person_radius=0.3
+            ),
+            "trajectory must be a run",
+        ),
+        (lambda: contact.allowed_speed(robot_mass=8.0, limits={}, covering={}), "covering.material must be given"),
+        (lambda: contact.allowed_speed(robot_mass=8.0, limits={}, region={"k3": 1e5}), "region.k must be given"),
+    ],
+)
+def test_what_is_missing_or_of_another_kind_is_named(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(InvalidParameterError, match=message):
+        call()

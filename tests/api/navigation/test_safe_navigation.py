@@ -138,6 +138,8 @@ def test_states_that_a_shield_refuses() -> None:
         shield.decide((0.1, 0.0), velocity=(0.0, 0.0), people=[(1.0, 2.0, 3.0)])
     with pytest.raises(InvalidParameterError, match="velocity must be finite"):
         shield.decide((0.1, 0.0), velocity=(math.nan, 0.0), people=[])
+    with pytest.raises(InvalidParameterError, match="velocity must be finite and shorter"):
+        shield.decide((0.1, 0.0), velocity=(0.1, 1e308), people=[])
     with pytest.raises(InvalidParameterError, match="control_period"):
         shield.decide((0.1, 0.0), velocity=(0.0, 0.0), people=[], control_period=0.0)
     with pytest.raises(InvalidParameterError, match="person_speed"):

@@ -22,7 +22,7 @@ def _column(name: str, given: npt.ArrayLike | None, count: int, default: float) 
         return np.full(count, default)
     found = numbers(name, given, "be an array of numbers")
     if found.ndim == 0:
-        return np.full(count, float(found))
+        found = np.full(count, float(found))
     if found.shape != (count,):
         raise ShapeError(name, f"({count},)", found.shape)
     _all_finite(name, found)

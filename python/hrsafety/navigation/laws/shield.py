@@ -16,6 +16,10 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 __all__ = ["Shield", "ShieldDecision", "speed_bound"]
 
 
+_HUGE = 1e150
+"""Vectors that are longer have no square."""
+
+
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ShieldDecision:
@@ -240,8 +244,8 @@ def _vector(name: str, value: npt.ArrayLike) -> tuple[float, float]:
     array = numbers(name, value, "be two numbers (x, y)")
     if array.shape != (2,):
         raise ShapeError(name, "(2,)", array.shape)
-    if not np.isfinite(array).all():
-        raise InvalidParameterError(name, "be finite", array.tolist())
+    if not math.hypot(*array) < _HUGE:
+        raise InvalidParameterError(name, f"be finite and shorter than {_HUGE:g}", array.tolist())
     return _pair(array)
 
 
