@@ -27,10 +27,10 @@ _INTEGER_COLUMNS = frozenset({"frame", "ped_id"})
 def load_pedestrians(path: str | PathLike[str]) -> Recording:
     r"""Read a table of recorded people.
 
-    The file is comma-separated UTF-8 text with the columns ``frame`` (integer video frame),
-    ``t_s`` (s), ``ped_id`` (integer), ``x_m`` and ``y_m`` (m) in any order and no others. Rows
-    are sorted by frame, then by id; all rows of a frame carry the same time, and time grows
-    from frame to frame.
+    The file is comma-separated UTF-8 text with the columns ``frame`` (integer video frame, which
+    may be left out), ``t_s`` (s), ``ped_id`` (integer), ``x_m`` and ``y_m`` (m) in any order and
+    no others. Rows are sorted by time, then by id; all rows of a frame carry the same time, and
+    time grows from frame to frame.
 
     Parameters
     ----------
@@ -57,10 +57,10 @@ def load_pedestrians(path: str | PathLike[str]) -> Recording:
     ...     datasets.load_pedestrians(table).duration
     0.4
     """
-    rows = _read(Path(path), PEDESTRIAN_COLUMNS, _check_pedestrian_rows)
+    rows = _read(Path(path), PEDESTRIAN_COLUMNS, _check_pedestrian_rows, optional=1)
     table = np.array(rows, dtype=np.float64)
     return Recording(
-        time_s=table[:, 1], person=np.array([row[2] for row in rows], dtype=np.int64), position=table[:, 3:]
+        time_s=table[:, -4], person=np.array([row[-3] for row in rows], dtype=np.int64), position=table[:, -2:]
     )
 
 
@@ -107,7 +107,15 @@ OrderCheck = Callable[[str, Row, Row], None]
 
 
 def _check_pedestrian_rows(line: str, before: Row, row: Row) -> None:
-    """Check the order of two rows (frame, t_s, ped_id, x_m, y_m)."""
+    """Check the order of two rows (frame, t_s, ped_id, x_m, y_m); the frame may be missing."""
+    if len(row) < len(PEDESTRIAN_COLUMNS):
+        if row[0] < before[0]:
+            remedy = "sort the rows by t_s, then by ped_id"
+            raise InvalidParameterError(
+                f"{line}, column t_s", f"not be before {before[0]} of the row above", row[0], remedy
+            )
+        # Each instant is a frame.
+        before, row = (before[0], *before), (row[0], *row)
     if row[0] < before[0]:
         raise InvalidParameterError(
             f"{line}, column frame", f"not be before frame {before[0]} of the row above", row[0]
@@ -131,14 +139,17 @@ def _check_track_rows(line: str, before: Row, row: Row) -> None:
         raise InvalidParameterError(f"{line}, column t_s", f"be later than {before[0]}, the time before", row[0])
 
 
-def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck) -> list[Row]:
-    """Return the rows of a table, values in the order of ``columns``."""
+def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck, *, optional: int = 0) -> list[Row]:
+    """Return the rows of a table, values in the order of ``columns``, of which the first may be missing."""
     readable("path", path)
     rows: list[Row] = []
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file, strict=True)
-            order = _header(path, next(reader, []), columns)
+            header = next(reader, [])
+            if columns[0] not in map(str.strip, header) and len(header) == len(columns) - optional:
+                columns = columns[optional:]
+            order = _header(path, header, columns)
             for fields in reader:
                 line = f"{path.name}, line {reader.line_num}"
                 row = _row(line, fields, columns, order)
@@ -172,6 +183,10 @@ def _header(path: Path, header: list[str], columns: tuple[str, ...]) -> list[int
     if all(map(_is_number, names)):
         remedy = f"write {','.join(columns)} above it"
         raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", Shown("numbers"), remedy)
+    missing = [name for name in columns if name not in names]
+    if len(missing) > 1 and not any(_renaming(name, names, columns) for name in missing):
+        found = Shown(f"the columns {_listed(names)}")
+        raise InvalidParameterError(where, f"name the columns {', '.join(columns)}", found, _written(missing, columns))
     for name in columns:
         if names.count(name) != 1:
             found = Shown(f"the columns {_listed(names)}" if name not in names else f"{names.count(name)} of them")
@@ -197,6 +212,12 @@ def _listed(names: list[str]) -> str:
     """Return the names that a header has, of a wide one the first few."""
     listed = ", ".join(_short(name.strip()) or "(blank)" for name in names[:12])
     return listed if len(names) <= 12 else f"{listed} and {len(names) - 12} more"
+
+
+def _written(missing: list[str], columns: tuple[str, ...]) -> str:
+    """Return what to do about columns by other names."""
+    remedy = f"rename those that hold {', '.join(missing)}, in s and m"
+    return f"{remedy}, or hand arrays to datasets.Recording" if "ped_id" in columns else remedy
 
 
 def _renaming(name: str, names: list[str], columns: tuple[str, ...]) -> str | None:

@@ -246,7 +246,7 @@ BAD_COMMANDS = {
         "path must name a readable file, got 'nowhere.csv'; no such file in",
     ),
     "not a scenario": (["simulate", "PEOPLE"], "must be a TOML file"),
-    "not people": (["simulate", "--people", "SCENE"], "line 1 must have one column frame"),
+    "not people": (["simulate", "--people", "SCENE"], "line 1 must name the columns frame, t_s, ped_id, x_m, y_m"),
     "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains must be 4 numbers: attractive_gain"),
     "mode of another law": (["simulate", "SCENE", "--law", "masoud", "--stabilizing", "off"], "--stabilizing must"),
     "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: must be a number, got 'x'"),

@@ -183,6 +183,17 @@ def test_people_who_do_not_move_have_no_main_flow(recording: Recording) -> None:
         recording.main_flow()
 
 
+def test_frames_may_be_left_out(tmp_path: Path) -> None:
+    rows = [(0, 0.0, 7, 0.0, 1.0), (0, 0.0, 9, 3.0, 1.0), (10, 0.4, 7, 0.5, 1.0)]
+    framed, plain = tmp_path / "framed.csv", tmp_path / "plain.csv"
+    framed.write_text("\n".join(["frame,t_s,ped_id,x_m,y_m", *(",".join(map(str, row)) for row in rows)]))
+    plain.write_text("\n".join(["y_m,t_s,x_m,ped_id", *(f"{y},{t},{x},{who}" for _, t, who, x, y in rows)]))
+    one, other = (datasets.load_pedestrians(path) for path in (framed, plain))
+    assert np.array_equal(one.time_s, other.time_s)
+    assert np.array_equal(one.person, other.person)
+    assert np.array_equal(one.position, other.position)
+
+
 HEADER = "frame,t_s,ped_id,x_m,y_m\n"
 BAD_FILES = {
     "empty": ("", "line 1 must name the columns"),

@@ -72,6 +72,14 @@ def test_a_scenario_file_is_told_what_was_meant(text: str, message: str, tmp_pat
         ("frame,t_s,ped_id,x_m,y_m\n0,0,5,1,0,5,0,5\n", "have 5 fields, got 8; decimals need a point"),
         ("frame,t_s,ped_id,x_m,y_m\n10.0,0,1,0,0\n", "column frame must be an integer, got '10.0'; write 10"),
         ("0,0.0,1,0,0\n", "got numbers; write frame,t_s,ped_id,x_m,y_m above it"),
+        ("0.0,1,0,0\n", "got numbers; write t_s,ped_id,x_m,y_m above it"),
+        (
+            "time,person,x,y\n",
+            "name the columns t_s, ped_id, x_m, y_m, got the columns time, person, x, y; "
+            "rename those that hold t_s, ped_id, x_m, y_m, in s and m, or hand arrays to datasets.Recording",
+        ),
+        ("t_s,ped_id,x_m,y_m\n1,1,0,0\n0,1,0,0\n", "not be before 1.0 of the row above, got 0.0; sort the rows by t_s"),
+        ("t_s,ped_id,x_m,y_m\n1,1,0,0\n1,1,0,0\n", "have one row for each instant"),
     ],
 )
 def test_a_table_is_told_its_delimiter_columns_and_numbers(text: str, message: str, tmp_path: Path) -> None:
