@@ -38,7 +38,8 @@ _SIMULATE_EXAMPLE = """examples:
   hrsafety simulate my_first_crossing.toml --law velocity-obstacle
   hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
 
-A people file has the columns t_s, ped_id, x_m, y_m and may have frame. The robot crosses the main flow of people, who walk as recorded; start times are those with most traffic on its way.
+A people file has the columns t_s, ped_id, x_m, y_m and may have frame. The robot crosses the main flow of people,
+who walk as recorded; start times are those with most traffic on its way.
 """
 _FOAM_EXAMPLE = """example:
   hrsafety foam examples/foam_design.toml --out puma
