@@ -30,6 +30,8 @@ LONGEST_SHOWN = 200
 
 # A number at the end of a cut text, which may be half of one.
 _HALF = re.compile(r"(?<![\w.])[+-]?[\d.][\d.e+-]*$")
+# Numbers of NumPy are shown as numbers.
+_OF_NUMPY = re.compile(r"\bnp\.(?:float|u?int)\d+\(([^()]*)\)")
 
 
 class HrsafetyError(Exception):
@@ -84,7 +86,7 @@ def _words(value: object) -> str:
     """Return a value as it is printed, cut when long; Python refuses to print integers of thousands of digits."""
     if isinstance(value, int) and abs(value) >= 10**40:
         return f"an integer of {value.bit_length()} bits"
-    shown = repr(value)
+    shown = repr(value) if isinstance(value, str) else _OF_NUMPY.sub(r"\1", repr(value))
     if len(shown) <= LONGEST_SHOWN:
         return shown
     return f"{_HALF.sub('', shown[:LONGEST_SHOWN])}..."

@@ -282,7 +282,9 @@ def _check_order(time: Array, person: npt.NDArray[Any]) -> None:
     backward = np.flatnonzero(np.diff(time) < 0.0)
     if len(backward):
         row = int(backward[0]) + 1
-        raise InvalidParameterError(f"time_s[{row}]", f"not be before time_s[{row - 1}] = {time[row - 1]}", time[row])
+        rule = f"not be before time_s[{row - 1}] = {time[row - 1]}"
+        remedy = "sort the rows by time: np.lexsort((person, time_s)) gives their order"
+        raise InvalidParameterError(f"time_s[{row}]", rule, float(time[row]), remedy)
     order = np.lexsort((time, person))
     same = (np.diff(person[order]) == 0) & (np.diff(time[order]) <= 0.0)
     if same.any():

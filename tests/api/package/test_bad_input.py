@@ -281,3 +281,9 @@ def test_bad_motion_is_refused_by_name(build: Callable[..., Any], segments: Any)
     with pytest.raises((InvalidParameterError, ShapeError)) as caught:
         build((0.6, 0.0), segments)
     assert names(caught.value).startswith("segments")
+
+
+def test_numbers_of_numpy_are_shown_as_numbers() -> None:
+    cases = ((np.float64(1.5), "1.5"), ([np.float32(0.5), np.int8(3)], "[0.5, 3]"), ("np.int8(3)", "'np.int8(3)'"))
+    for value, shown in cases:
+        assert str(InvalidParameterError("radius", "be a number", value)) == f"radius must be a number, got {shown}"
