@@ -11,6 +11,7 @@ import pytest
 
 from hrsafety import InvalidParameterError, datasets, scenarios
 from hrsafety import navigation as nav
+from hrsafety.navigation.crowd.predictions import Windows
 
 INTERVAL = 0.4
 
@@ -33,11 +34,25 @@ WALK = recording_of({1: (0, straight(0.0)), 2: (4, straight(4.0, -1.0)), 5: (9, 
 def test_windows_are_those_of_people_who_are_there_all_through_them() -> None:
     # 20 instants each, every 4: of 40 instants from 0 on, and of 40 from 4 on; the third is there for 12 only.
     assert nav.crowd.prediction_errors("straight", WALK).windows == 6 + 6
-    found = [nav.crowd.prediction_errors("straight", WALK, part=part).windows for part in ("first", "second")]
-    assert sum(found) == 12
-    assert found[0] == 1 + 2 + 2
+    assert nav.crowd.prediction_errors("straight", WALK, part="first").windows == 1 + 2 + 2
     short = nav.crowd.prediction_errors("straight", WALK, seen=1.6, foretold=1.6, every=0.4)
     assert short.windows == 33 + 33 + 5
+
+
+def test_no_window_is_partly_in_both_halves() -> None:
+    # Windows start at 0, 4, ... 60; those of the first half, up to 28, end at 47.
+    given: dict[str, Any] = {"recording": recording_of({1: (0, straight(0.0, instants=80))})}
+    windows = Windows.of(**given, seen=3.2, foretold=4.8, every=1.6)
+    halves = [list(windows.part(part).scored) for part in ("first", "second")]
+    assert halves == [[7 + start for start in range(0, 32, 4)], [7 + start for start in (48, 52, 56, 60)]]
+    covered = [{last + k for last in half for k in range(-7, 13)} for half in halves]
+    assert covered[0].isdisjoint(covered[1])
+    assert nav.crowd.prediction_errors("straight", **given, part="second").windows == 4
+    # Windows that follow each other without overlap all belong to a half.
+    apart = Windows.of(**given, seen=3.2, foretold=4.8, every=8.0)
+    assert sum(len(apart.part(part).scored) for part in ("first", "second")) == len(apart.scored) == 4
+    with pytest.raises(InvalidParameterError, match="recording must hold a window that shares no instant"):
+        nav.crowd.prediction_errors("straight", WALK, part="second")
 
 
 @pytest.mark.parametrize("model", ["constant_velocity", "straight"])
@@ -47,15 +62,15 @@ def test_people_who_walk_straight_are_foretold_exactly(model: Any) -> None:
 
 
 def test_constant_velocity_does_not_know_the_goal_and_errors_are_distances() -> None:
-    turns = straight(0.0)
-    turns[20:, 1] = turns[20:, 0] - turns[20, 0]
-    turns[20:, 0] = turns[20, 0]
+    turns = straight(0.0, instants=60)
+    turns[44:, 1] = turns[44:, 0] - turns[44, 0]
+    turns[44:, 0] = turns[44, 0]
     found = nav.crowd.prediction_errors("constant_velocity", recording_of({1: (0, turns)}), part="second")
-    # Windows from instants 12, 16 and 20 on, seen up to 19, 23 and 27: the first foretells the turn wrongly.
+    # Windows from instants 36 and 40 on, seen up to 43 and 47: the first foretells the turn wrongly.
     ahead = np.arange(1, 13)
-    apart = np.hypot(*(np.column_stack([0.48 * ahead, np.zeros(12)]) - (turns[20:32] - turns[19])).T)
-    assert found.final == pytest.approx(apart[-1] / 3)
-    assert found.average == pytest.approx(apart.mean() / 3)
+    apart = np.hypot(*(np.column_stack([0.48 * ahead, np.zeros(12)]) - (turns[44:56] - turns[43])).T)
+    assert found.final == pytest.approx(apart[-1] / 2)
+    assert found.average == pytest.approx(apart.mean() / 2)
     knows = nav.crowd.prediction_errors("straight", recording_of({1: (0, turns)}), part="second")
     assert knows.final < found.final
 
@@ -83,10 +98,8 @@ def test_a_fit_comes_near_the_parameter_that_made_the_recording() -> None:
     assert found.fitted.average < 0.6 * found.start_fitted.average
     # Desired speeds are those that were seen, so the fit is not exact; the model starts at 0.54 s.
     assert 0.9 < found.values["relaxation_time"] < 2.4
-    assert (
-        found.held_out.windows + found.fitted.windows
-        == nav.crowd.prediction_errors("straight", recorded, seen=0.8, foretold=3.2).windows
-    )
+    # Windows start at 0, 4, ... 36; those of the first half end at 25.
+    assert (found.fitted.windows, found.held_out.windows) == (3 * 5, 3 * 3)
     assert found.model == replace(found.start, relaxation_time=found.values["relaxation_time"])
     assert found.columns()["windows_of"].tolist() == ["fit", "held out", "fit", "held out"]
     again = nav.crowd.fit_people(nav.crowd.Moussaid(), recorded, ["relaxation_time"], threads=1, **given)
@@ -96,7 +109,7 @@ def test_a_fit_comes_near_the_parameter_that_made_the_recording() -> None:
 
 def test_a_fit_tells_its_progress_and_keeps_to_bounds() -> None:
     told: list[tuple[int, int]] = []
-    met = recording_of({1: (0, straight(0.0)), 2: (0, straight(0.3, 1.0))})
+    met = recording_of({1: (0, straight(0.0, instants=60)), 2: (0, straight(0.3, 1.0, 60))})
     found = nav.crowd.fit_people(
         nav.crowd.SocialForce2000(),
         met,
@@ -110,6 +123,7 @@ def test_a_fit_tells_its_progress_and_keeps_to_bounds() -> None:
     assert told[-1] == (25, 25)
 
 
+LONG = recording_of({1: (0, straight(0.0, instants=60)), 2: (4, straight(4.0, -1.0, 60))})
 GAP = recording_of({1: (0, straight(0.0, instants=20)), 2: (0, straight(1.0, instants=60))})
 HOLED = datasets.Recording(
     time_s=np.delete(GAP.time_s, 30), person=np.delete(GAP.person, 30), position=np.delete(GAP.position, 30, axis=0)
@@ -132,7 +146,7 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
 
 @pytest.mark.parametrize(("change", "words"), MISTAKES.values(), ids=MISTAKES)
 def test_mistakes_are_named(change: dict[str, Any], words: str) -> None:
-    given = {"model": nav.crowd.SocialForce2000(), "recording": WALK, "names": ["strength"], "evaluations": 20}
+    given = {"model": nav.crowd.SocialForce2000(), "recording": LONG, "names": ["strength"], "evaluations": 20}
     with pytest.raises(InvalidParameterError, match=words):
         nav.crowd.fit_people(**given | change)
 

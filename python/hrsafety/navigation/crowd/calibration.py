@@ -96,8 +96,8 @@ def fit_people(
 
     The mean error over all instants that are foretold (`prediction_errors`) is minimized in the first half
     of the windows by differential evolution over the logarithms of the parameters; the other half is held
-    out. The last windows of the first half reach into the other one where ``every`` is less than
-    ``seen + foretold``, and people may be in both: another recording is the stricter test.
+    out, without the windows that share an instant with one of the first half. People may be in both halves:
+    another recording is the stricter test.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def fit_people(
     --------
     >>> import numpy as np
     >>> from hrsafety import datasets, navigation as nav
-    >>> time, person = np.repeat(0.4 * np.arange(30), 2), np.tile([1, 2], 30)
+    >>> time, person = np.repeat(0.4 * np.arange(60), 2), np.tile([1, 2], 60)
     >>> place = np.column_stack([1.2 * time, 0.8 * person])
     >>> walk = datasets.Recording(time_s=time, person=person, position=place)
     >>> found = nav.crowd.fit_people(nav.crowd.SocialForce2000(), walk, ["strength"], evaluations=20)

@@ -106,10 +106,20 @@ class Windows:
         return cls(tracks, scored, interval, steps["seen"], steps["foretold"])
 
     def part(self, part: Part) -> Windows:
-        """Return those of the first or the second half of the instants, or all."""
-        chosen = sorted(self.scored)
-        half = len(chosen) // 2
-        chosen = {"first": chosen[:half], "second": chosen[half:], "all": chosen}[part]
+        """Return those of the first or the second half of the instants, or all.
+
+        Windows of the second half that share an instant with one of the first half are in neither: what is fitted in
+        one half is not held out in the other.
+        """
+        every = sorted(self.scored)
+        half = len(every) // 2
+        apart = every[half - 1] + self.foretold + self.seen
+        later = [instant for instant in every[half:] if instant >= apart]
+        chosen = {"first": every[:half], "second": later, "all": every}[part]
+        if not chosen:
+            rule = "hold a window that shares no instant with those of its first half"
+            advice = "take a longer one, shorten seen and foretold, or take all windows"
+            raise InvalidParameterError("recording", rule, Shown("none"), advice)
         kept = {instant: self.scored[instant] for instant in chosen}
         return Windows(self.tracks, kept, self.interval, self.seen, self.foretold)
 
@@ -278,8 +288,8 @@ def prediction_errors(
     recording : Recording
         People at equal instants; any object with ``time_s``, ``person`` and ``position``.
     part : {"first", "second", "all"}
-        Which half of the instants with windows. Windows at the seam of the halves overlap where ``every`` is
-        less than ``seen + foretold``.
+        Which half of the instants with windows. Windows of the second half that share an instant with one of the
+        first half are left out: no window is partly in both.
     seen, foretold, every : float
         Duration that is seen, that is foretold, and between two windows, in s: multiples of the interval of
         the recording.
@@ -296,7 +306,7 @@ def prediction_errors(
     Raises
     ------
     InvalidParameterError
-        If the recording has gaps or no two windows, or a value is out of range.
+        If the recording has gaps or no two windows, or none in the half, or a value is out of range.
 
     Examples
     --------
