@@ -11,6 +11,8 @@ use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
 /// Largest exponent of a law: beyond it stresses are no numbers any more.
 const MOST_EXPONENT: f64 = 100.0;
+/// Largest whole exponent that is a product.
+const MOST_PRODUCTS: u32 = 8;
 /// Strains at which a law is asked whether it falls.
 const LOOKS: usize = 2000;
 /// Exponents as near to 1 as this, but not 1, lose digits in the closed form.
@@ -196,6 +198,22 @@ impl Material {
         }
     }
 
+    /// Power of the strain with which the stress starts.
+    #[must_use]
+    pub fn first_exponent(&self) -> f64 {
+        match self {
+            Self::Rusch { a, p, q, .. } => {
+                if *a > 0.0 {
+                    *p
+                } else {
+                    *q
+                }
+            }
+            Self::Avalle { b, n, .. } if *b > 0.0 => n.min(1.0),
+            _ => 1.0,
+        }
+    }
+
     /// Whether the law ends at its bound, rather than to rise without limit before it.
     #[must_use]
     pub fn is_measured(&self) -> bool {
@@ -233,12 +251,13 @@ impl Material {
             } => {
                 let left = 1.0 - strain;
                 let falling = if *m == 0.0 { 1.0 } else { left.powf(*m) };
-                let decay = (-modulus / plateau * strain * falling).exp();
+                // 1 - exp loses every digit at small strains.
+                let risen = -(-modulus / plateau * strain * falling).exp_m1();
                 let inner = modulus * falling * (1.0 - m * strain / left);
                 let [dense, slope] = power(*b, *n, strain / left);
                 [
-                    plateau * (1.0 - decay) + dense,
-                    inner * decay + slope / (left * left),
+                    plateau * risen + dense,
+                    inner * (1.0 - risen) + slope / (left * left),
                 ]
             }
             Self::Table(table) => table.stress(strain),
@@ -320,9 +339,37 @@ impl Material {
     }
 }
 
-/// `x^exponent`; an exponent of 1, the usual one of a densification, takes no time.
+/// `x^exponent`, without logarithms where the exponent is a whole number or a half more than one, up to 8.
 fn raised(x: f64, exponent: f64) -> f64 {
-    if exponent == 1.0 { x } else { x.powf(exponent) }
+    if exponent == 1.0 {
+        return x;
+    }
+    // Saturates; what is too large is no product.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let whole = exponent as u32;
+    let rest = exponent - f64::from(whole);
+    if whole > MOST_PRODUCTS || !(rest == 0.0 || rest == 0.5) {
+        return x.powf(exponent);
+    }
+    let product = product(x, whole);
+    if rest == 0.0 {
+        product
+    } else {
+        product * x.sqrt()
+    }
+}
+
+/// `x^count` by squares.
+fn product(x: f64, count: u32) -> f64 {
+    let (mut result, mut square, mut left) = (1.0, x, count);
+    while left > 0 {
+        if left % 2 == 1 {
+            result *= square;
+        }
+        square *= square;
+        left /= 2;
+    }
+    result
 }
 
 /// `factor x^exponent` and its slope.
@@ -333,7 +380,7 @@ pub(super) fn power(factor: f64, exponent: f64, x: f64) -> [f64; 2] {
     if exponent == 1.0 {
         return [factor * x, factor];
     }
-    let value = factor * x.powf(exponent);
+    let value = factor * raised(x, exponent);
     if x == 0.0 {
         let slope = if exponent < 1.0 { f64::INFINITY } else { 0.0 };
         return [value, slope];
