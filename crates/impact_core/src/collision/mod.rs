@@ -11,8 +11,10 @@
 //! f = F(eps) R U + C_c eps'                                on a rigid region
 //! ```
 
+mod curve;
 mod events;
 mod injury;
+mod loading;
 mod mechanics;
 mod outcome;
 #[cfg(test)]

@@ -55,7 +55,7 @@ pub fn simulate(
     match exact {
         Some(found) if !moving => found,
         exact => {
-            let outcome = Run::<3>::new(collision, wanted).finish(wanted, interrupted);
+            let outcome = moved(collision, wanted, interrupted);
             match exact {
                 // The motion was asked for as well: its loads are those without it, bit for bit.
                 Some(found) if outcome.status == Status::Released => Outcome {
@@ -68,6 +68,11 @@ pub fn simulate(
             }
         }
     }
+}
+
+/// Loads of a collision of free bodies from its motion in time.
+pub fn moved(collision: &Collision<'_>, wanted: Wanted, interrupted: Interrupted<'_>) -> Outcome {
+    Run::<3>::new(collision, wanted).finish(wanted, interrupted)
 }
 
 /// Whether `d = 0` stays where it is although the bodies close in.

@@ -1,8 +1,10 @@
-//! Collisions of free bodies in which nothing is lost: loads from the stored energy, times by quadrature.
+//! Collisions of free bodies without damper: loads from the stored energy, times by quadrature.
 //!
-//! At any compression `mu eps'^2/2 = W(D) - W(d)`, with `W` of covering and region together, so the time to the
-//! largest one is the integral of `deps/eps'`, and the way back takes as long.
+//! Where forces do not depend on the rate, `mu eps'^2/2 = W(D) - W(d)` at any compression, with `W` of covering and
+//! region together, so the time to the largest one is the integral of `deps/eps'`. That holds on the way back of
+//! every covering, with the work that unloading returns, and on the way in of one without rate.
 
+use super::loading::{Top, Turn, first_exponent, smooth_power, turn_of};
 use super::outcome::{Outcome, Status};
 use super::statics::rest_of;
 use super::{Collision, Region};
@@ -24,8 +26,6 @@ const NODES: [[f64; 3]; 7] = [
 const MIDDLE: [f64; 2] = [0.20948214108472782, 0.4179591836734694];
 /// Halvings of a piece before the motion itself is solved.
 const HALVINGS: u32 = 4;
-/// Power of the substitution where a covering starts infinitely stiff.
-const START: i32 = 4;
 
 /// Integral over an interval, and the error of the smaller rule.
 fn kronrod(low: f64, high: f64, function: &impl Fn(f64) -> f64) -> [f64; 2] {
@@ -68,6 +68,8 @@ fn integral(
 struct Column<'a> {
     pad: Option<&'a Pad>,
     region: Region,
+    /// Work `w` of the law at the largest strain, where unloading returns less.
+    largest_work: Option<f64>,
 }
 
 impl Column<'_> {
@@ -76,21 +78,44 @@ impl Column<'_> {
         let Some(pad) = self.pad else {
             return [self.region.stored(compression), 1.0];
         };
-        let [force, slope] = pad.force(compression);
+        if let Some(largest) = self.largest_work {
+            return self.returned(pad, largest, compression);
+        }
         if self.region == Region::Rigid {
             return [pad.work(compression), 1.0];
         }
-        let deflection = self.region.deflection(force);
-        let yielding = self.region.force(deflection)[1];
-        let work = pad.work(compression) + self.region.stored(deflection);
-        let more = if slope == 0.0 { 0.0 } else { slope / yielding };
-        [work, 1.0 + more]
+        self.with_region(pad.work(compression), pad.force(compression))
     }
 
-    /// Whether the compression starts like a power of the time below 1.
-    fn starts_steep(&self) -> bool {
-        self.pad
-            .is_some_and(|pad| pad.force(0.0)[1].is_infinite() || self.region.force(0.0)[1] == 0.0)
+    /// What a flat covering that has not bottomed out returns: `U` is a function of its work alone,
+    /// `int s U de = H w + (1-H) w (w/w_max)^s/(s+1)`.
+    fn returned(&self, pad: &Pad, largest: f64, compression: f64) -> [f64; 2] {
+        let unloading = pad.covering.unloading;
+        let strain = compression / pad.covering.thickness;
+        let whole = pad.work(compression);
+        let [factor, change] = pad.unloading_factor(strain, largest);
+        // U = H + (1-H) (w/w_max)^s.
+        let more = factor - unloading.retained;
+        let work = whole * (unloading.retained + more / (unloading.exponent + 1.0));
+        if self.region == Region::Rigid {
+            return [work, 1.0];
+        }
+        let [force, slope] = pad.force(compression);
+        let slope = slope * factor + force * change / pad.covering.thickness;
+        self.with_region(work, [force * factor, slope])
+    }
+
+    fn with_region(&self, work: f64, [force, slope]: [f64; 2]) -> [f64; 2] {
+        let deflection = self.region.deflection(force);
+        let yielding = self.region.force(deflection)[1];
+        let more = if slope == 0.0 { 0.0 } else { slope / yielding };
+        [work + self.region.stored(deflection), 1.0 + more]
+    }
+
+    /// Power of the substitution in which the compression starts smoothly.
+    fn power(&self) -> i32 {
+        let exponent = self.pad.map_or(1.0, |pad| first_exponent(pad, self.region));
+        smooth_power(exponent)
     }
 
     /// Time to a largest compression.
@@ -108,7 +133,7 @@ impl Column<'_> {
         marks.push(largest);
         let goal = (size, tolerance);
         let first = marks[0];
-        let power = if self.starts_steep() { START } else { 1 };
+        let power = self.power();
         let mut time = integral([0.0, 1.0], goal, HALVINGS, &|x| {
             f64::from(power) * first * x.powi(power - 1) * late(first * x.powi(power))
         })?;
@@ -125,58 +150,117 @@ impl Column<'_> {
     }
 }
 
-/// Loads of a collision of free bodies without rate, damper and loss in unloading that ends before its horizon.
-#[must_use]
-pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
+/// Whether the law and the way back of a covering have a closed form.
+fn returns_known(pad: &Pad, compression: f64) -> bool {
+    let lossless = pad.covering.unloading.retained == 1.0;
+    let flat = matches!(pad.covering.shape, Shape::Flat { .. });
+    lossless || (flat && compression <= pad.bottom())
+}
+
+/// Where the compression turns: from the energy, or from the motion where the rate counts.
+fn turned(collision: &Collision<'_>) -> Option<Turn> {
     let (pad, region) = (collision.pad, collision.region);
-    if let Some(Pad { covering, .. }) = pad
-        && (covering.damping > 0.0 || !covering.rate.is_none() || covering.unloading.retained < 1.0)
-    {
-        return None;
+    let column = Column {
+        pad,
+        region,
+        largest_work: None,
+    };
+    if pad.is_some_and(|pad| !pad.covering.rate.is_none()) {
+        return turn_of(collision);
     }
     let (mass, speed) = (collision.reduced_mass(), collision.closing_speed);
     let rest = rest_of(pad, region, 0.5 * mass * speed * speed);
-    let largest = if pad.is_some() {
+    let compression = if pad.is_some() {
         rest.compression
     } else {
         rest.deflection
     };
     let total = rest.compression + rest.deflection;
-    let bounded = pad.is_none_or(|pad| largest < pad.bound() * (1.0 - 1e-9));
-    if !(largest > 0.0 && total.is_finite() && bounded) {
+    let bounded = pad.is_none_or(|pad| compression < pad.bound() * (1.0 - 1e-9));
+    if !(compression > 0.0 && total.is_finite() && bounded) {
         return None;
     }
-    let column = Column { pad, region };
-    let time = column.time(largest, mass, total / speed, collision.tolerance)?;
-    if 2.0 * time >= collision.horizon {
+    let time = column.time(compression, mass, total / speed, collision.tolerance)?;
+    let top = |value: f64| Top { value, time };
+    Some(Turn {
+        compression,
+        time,
+        force: top(rest.force),
+        pressure: top(pad.map_or(f64::NAN, |pad| {
+            pad.covering
+                .material
+                .stress(compression / pad.covering.thickness)[0]
+        })),
+        evaluations: 0,
+    })
+}
+
+/// Loads of a collision of free bodies without damper that ends before its horizon.
+#[must_use]
+pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
+    let (pad, region) = (collision.pad, collision.region);
+    if pad.is_some_and(|pad| pad.covering.damping > 0.0) {
+        return None;
+    }
+    let turn = turned(collision)?;
+    let lossy = pad.is_some_and(|pad| pad.covering.unloading.retained < 1.0);
+    let rated = pad.is_some_and(|pad| !pad.covering.rate.is_none());
+    if pad.is_some_and(|pad| !returns_known(pad, turn.compression)) {
+        return None;
+    }
+    let (mass, speed) = (collision.reduced_mass(), collision.closing_speed);
+    let at_turn = pad.map_or(turn.force.value, |pad| pad.force(turn.compression)[0]);
+    let deflection = region.deflection(at_turn);
+    let total = if pad.is_some() {
+        turn.compression + deflection
+    } else {
+        deflection
+    };
+    let (mut back, mut rebound) = (turn.time, speed);
+    if lossy || rated {
+        let column = Column {
+            pad,
+            region,
+            largest_work: pad.filter(|_| lossy).map(|pad| {
+                let strain = turn.compression / pad.covering.thickness;
+                pad.covering.material.work(strain)
+            }),
+        };
+        let size = total / speed;
+        back = column.time(turn.compression, mass, size, collision.tolerance)?;
+        rebound = (2.0 * column.at(turn.compression)[0] / mass).sqrt();
+    }
+    let release_time = turn.time + back;
+    if release_time >= collision.horizon {
         return None;
     }
     let share = 1.0 / collision.body.mass;
     let free = |value: f64| if share > 0.0 { value } else { f64::NAN };
     let mut outcome = Outcome {
-        release_time: 2.0 * time,
-        peak_force: rest.force,
-        peak_force_time: time,
+        release_time,
+        peak_force: turn.force.value,
+        peak_force_time: turn.force.time,
         peak_total_compression: total,
-        peak_body_deflection: rest.deflection,
-        rebound_speed: speed,
-        peak_body_acceleration: free(rest.force * share),
-        body_speed_end: free(2.0 * mass * share * speed),
+        peak_body_deflection: region.deflection(turn.force.value),
+        rebound_speed: rebound,
+        peak_body_acceleration: free(turn.force.value * share),
+        body_speed_end: free(mass * share * (speed + rebound)),
         end_force: 0.0,
+        evaluations: turn.evaluations,
         ..Outcome::nothing(Status::Released)
     };
     if let Some(pad) = pad {
-        let strain = largest / pad.covering.thickness;
-        outcome.peak_covering_compression = largest;
+        let strain = turn.compression / pad.covering.thickness;
+        outcome.peak_covering_compression = turn.compression;
         outcome.peak_strain = strain;
-        outcome.bottomed = largest > pad.bottom();
+        outcome.bottomed = turn.compression > pad.bottom();
         if let Shape::Flat { area } = pad.covering.shape {
-            outcome.peak_pressure = rest.force / area;
-            if pad.force(largest)[1] == 0.0 {
+            outcome.peak_pressure = turn.force.value / area;
+            if !rated && pad.force(turn.compression)[1] == 0.0 {
                 outcome.peak_force_time = f64::NAN;
             }
         } else {
-            outcome.peak_pressure = pad.covering.material.stress(strain)[0];
+            outcome.peak_pressure = turn.pressure.value;
         }
     }
     Some(outcome)

@@ -1,6 +1,7 @@
 use serde_json::Value;
 
 use super::reading::{collision, pad};
+use super::run::moved;
 use super::stored::stored;
 use super::{Body, Collision, Outcome, Region, Status, Wanted, simulate};
 use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Rate, Shape, Unloading};
@@ -262,4 +263,140 @@ fn loads_from_stored_energy_are_those_of_the_motion() {
         }
     }
     assert!(2 * exact > all, "{exact} of {all}");
+}
+
+/// Loads that both ways to solve a collision give, by name.
+fn loads_of(outcome: &Outcome) -> [(&'static str, f64); 8] {
+    [
+        ("release", outcome.release_time),
+        ("force", outcome.peak_force),
+        ("total", outcome.peak_total_compression),
+        ("deflection", outcome.peak_body_deflection),
+        ("compression", outcome.peak_covering_compression),
+        ("pressure", outcome.peak_pressure),
+        ("rebound", outcome.rebound_speed),
+        ("end", outcome.body_speed_end),
+    ]
+}
+
+#[test]
+fn loads_with_rate_and_loss_are_those_of_the_motion_in_time() {
+    let regions = [
+        Region::Rigid,
+        Region::Spring {
+            stiffness: 25e3,
+            cubic: 0.0,
+        },
+        Region::Spring {
+            stiffness: 25e3,
+            cubic: 1e8,
+        },
+        Region::Power {
+            stiffness: 1e6,
+            exponent: 1.5,
+        },
+    ];
+    let behaviors = [
+        ([0.05, 0.02, 0.1], [1.0, 1.0]),
+        ([0.3, 0.1, 10.0], [0.5, 1.5]),
+        ([0.0, 0.0, 1.0], [0.4, 2.0]),
+        ([0.0, 0.4, 0.01], [1.0, 1.0]),
+    ];
+    let (mut exact, mut all) = (0, 0);
+    for covering in coverings() {
+        for (rate, unloading) in behaviors {
+            let covering = Covering {
+                rate: Rate {
+                    base: rate[0],
+                    slope: rate[1],
+                    reference: rate[2],
+                },
+                unloading: Unloading {
+                    retained: unloading[0],
+                    exponent: unloading[1],
+                },
+                ..covering.clone()
+            };
+            let pad = covering.prepared().unwrap();
+            for region in regions {
+                for closing_speed in [0.05, 0.4, 1.5] {
+                    let collision = Collision {
+                        robot: Body::free(8.0),
+                        body: Body::free(40.0),
+                        region,
+                        pad: Some(&pad),
+                        closing_speed,
+                        stop: None,
+                        horizon: 2.0,
+                        tolerance: 1e-10,
+                    };
+                    all += 1;
+                    let Some(found) = stored(&collision) else {
+                        continue;
+                    };
+                    exact += 1;
+                    let solved = moved(&collision, Wanted::default(), &|| false);
+                    let what = (region, closing_speed, &pad.covering);
+                    assert_eq!(found.bottomed, solved.bottomed, "{what:?}");
+                    for ((name, value), (_, other)) in
+                        loads_of(&found).into_iter().zip(loads_of(&solved))
+                    {
+                        let error = (value - other).abs();
+                        let close = error <= 2e-7 * other.abs();
+                        assert!(close, "{name}: {value} {other} {what:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(2 * exact > all, "{exact} of {all}");
+}
+
+#[test]
+fn loads_with_rate_converge_with_the_tolerance() {
+    let pads: Vec<_> = coverings()
+        .into_iter()
+        .filter(|covering| !matches!(covering.shape, Shape::Cylinder { .. }))
+        .map(|covering| {
+            let rate = Rate {
+                base: 0.05,
+                slope: 0.02,
+                reference: 0.1,
+            };
+            Covering { rate, ..covering }.prepared().unwrap()
+        })
+        .collect();
+    for pad in &pads {
+        for region in [
+            Region::Rigid,
+            Region::Spring {
+                stiffness: 25e3,
+                cubic: 0.0,
+            },
+        ] {
+            let of = |tolerance| {
+                let collision = Collision {
+                    robot: Body::free(8.0),
+                    body: Body::free(40.0),
+                    region,
+                    pad: Some(pad),
+                    closing_speed: 0.4,
+                    stop: None,
+                    horizon: 2.0,
+                    tolerance,
+                };
+                stored(&collision).unwrap_or_else(|| panic!("{tolerance:e} {collision:?}"))
+            };
+            let best = of(1e-12);
+            for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
+                for ((name, value), (_, exact)) in
+                    loads_of(&of(tolerance)).into_iter().zip(loads_of(&best))
+                {
+                    let error = (value - exact).abs() / exact.abs().max(1e-300);
+                    let close = error <= 3.0 * tolerance || value == exact;
+                    assert!(close, "{name} {tolerance:e}: {error:e} {:?}", pad.covering);
+                }
+            }
+        }
+    }
 }

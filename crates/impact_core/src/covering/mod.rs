@@ -230,6 +230,17 @@ impl Pad {
         self.covering.material.bound() * self.covering.thickness
     }
 
+    /// Power of the compression with which the force starts.
+    #[must_use]
+    pub fn first_exponent(&self) -> f64 {
+        let of_law = self.covering.material.first_exponent();
+        match self.covering.shape {
+            Shape::Flat { .. } => of_law,
+            Shape::Cylinder { .. } => of_law + 0.5,
+            Shape::Curved { .. } => of_law + 1.0,
+        }
+    }
+
     /// Compression at which the backing begins, infinite if there is none.
     #[must_use]
     pub fn bottom(&self) -> f64 {

@@ -1,0 +1,103 @@
+//! Largest loads between two points of a curve.
+
+use super::variable::Variable;
+use super::{Loading, Point};
+
+/// Most steps towards a top.
+const MOST_TRIALS: usize = 12;
+
+/// A value with its time.
+#[derive(Clone, Copy, Debug)]
+pub struct Top {
+    /// The value.
+    pub value: f64,
+    /// When, in s.
+    pub time: f64,
+}
+
+/// Below every value.
+pub const NO_TOP: Top = Top {
+    value: f64::NEG_INFINITY,
+    time: 0.0,
+};
+
+impl Top {
+    fn offer(&mut self, value: f64, time: f64) {
+        if value > self.value {
+            *self = Self { value, time };
+        }
+    }
+}
+
+impl Loading<'_> {
+    /// Offers the load at the end of a step, and what peaks within it.
+    pub fn offer(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Top) {
+        top.offer(to.loads[load][0], to.state[1]);
+        if !(from.loads[load][1] > 0.0 && to.loads[load][1] < 0.0) {
+            return;
+        }
+        let (mut low, mut high) = (*from, *to);
+        let near = 0.1 * self.collision.tolerance.cbrt() * (to.at - from.at);
+        let mut last: Option<Point> = None;
+        for _ in 0..MOST_TRIALS {
+            let width = high.at - low.at;
+            // A load may start infinitely steep.
+            let share = if low.at == 0.0 {
+                0.5
+            } else {
+                top_of_cubic(low.loads[load], high.loads[load], width)
+            };
+            let at = low.at + share * width;
+            if let Some(tried) = last
+                && (at - tried.at).abs() <= near
+            {
+                let more = at - tried.at;
+                let [value, rate] = tried.loads[load];
+                let time = tried.state[1] + tried.rates[1] * more;
+                top.offer(value + 0.5 * rate * more, time);
+                return;
+            }
+            let (state, _) = self.walk(variable, from, at - from.at);
+            let found = self.point(variable, at, state);
+            top.offer(found.loads[load][0], found.state[1]);
+            if found.loads[load][1] > 0.0 {
+                low = found;
+            } else {
+                high = found;
+            }
+            last = Some(found);
+        }
+    }
+}
+
+/// Where the cubic through two values with their rates, rising first and falling last, is largest: a share of the
+/// width.
+fn top_of_cubic(first: [f64; 2], last: [f64; 2], width: f64) -> f64 {
+    let (rise, fall) = (first[1] * width, last[1] * width);
+    let gain = last[0] - first[0];
+    let a = 3.0 * (rise + fall) - 6.0 * gain;
+    let b = 6.0 * gain - 4.0 * rise - 2.0 * fall;
+    let share = 2.0 * rise / ((b * b - 4.0 * a * rise).sqrt() - b);
+    if share > 0.0 && share < 1.0 {
+        share
+    } else {
+        0.5
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::top_of_cubic;
+
+    #[test]
+    fn tops_of_cubics_are_exact() {
+        // x (x - 1) (x - 3), which peaks where 3 x^2 - 8 x + 3 = 0.
+        let of = |x: f64| [x * (x - 1.0) * (x - 3.0), 3.0 * x * x - 8.0 * x + 3.0];
+        let share = top_of_cubic(of(0.1), of(0.9), 0.8);
+        let exact = (4.0 - 7.0_f64.sqrt()) / 3.0;
+        assert!((0.1 + 0.8 * share - exact).abs() < 1e-14);
+        // A parabola.
+        let of = |x: f64| [-x * x, -2.0 * x];
+        assert!((top_of_cubic(of(-0.3), of(0.7), 1.0) - 0.3).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,188 @@
+//! What the plane of `d` and `eps'` is integrated over.
+
+use crate::covering::Pad;
+
+/// Largest power of a substitution.
+const MOST_POWER: i32 = 16;
+/// Powers that are tried for a whole product with an exponent.
+const FEW: i32 = 8;
+/// Share of a variable that stands for none: rates have a limit there that is no number at zero itself.
+const NOWHERE: f64 = 1e-16;
+
+/// A variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Variable {
+    /// `x` of `d = first x^power`; the state is `(eps'/v)^2` and the time.
+    Depth {
+        /// `d` at `x = 1`, in m.
+        first: f64,
+        /// The power.
+        power: i32,
+    },
+    /// `w` of `eps' = unit (y^2^doublings - 1)`, `y = 1 + range (1 - w^2)`; the state is `d` and the time.
+    Pace {
+        /// Speed, in m/s.
+        unit: f64,
+        /// Squarings of `y`.
+        doublings: u32,
+        /// What `y` falls by.
+        range: f64,
+    },
+}
+
+/// `d` itself.
+pub const DEPTH: Variable = Variable::Depth {
+    first: 1.0,
+    power: 1,
+};
+
+impl Variable {
+    /// The variable from the touch on, in which a force that starts with an exponent is smooth.
+    #[must_use]
+    pub fn from_touch(size: f64, exponent: f64) -> Self {
+        Self::Depth {
+            first: size,
+            power: smooth_power(exponent),
+        }
+    }
+
+    /// The variable towards the turn. Over `eps'` the rate factor `(1 + eps'/(T e0))^n` is singular at `-T e0`, which
+    /// may be near the turn, and `d` starts like a root of `v - eps'`; over `w` both are far.
+    #[must_use]
+    pub fn to_turn(pad: &Pad, speed: f64) -> Self {
+        let unit = pad.covering.thickness * pad.covering.rate.reference;
+        let ratio = speed / unit;
+        let doublings = match ratio {
+            ..2.0 => {
+                return Self::Pace {
+                    unit: speed,
+                    doublings: 0,
+                    range: 1.0,
+                };
+            }
+            2.0..30.0 => 1,
+            30.0..1000.0 => 2,
+            _ => 3,
+        };
+        Self::Pace {
+            unit,
+            doublings,
+            range: rooted(1.0 + ratio, doublings) - 1.0,
+        }
+    }
+
+    /// Where `d` and `eps'` have some values.
+    #[must_use]
+    pub fn at(self, depth: f64, speed: f64) -> f64 {
+        match self {
+            Self::Depth { first, power } => root_of(depth / first, power),
+            Self::Pace {
+                unit,
+                doublings,
+                range,
+            } => {
+                let y = rooted(1.0 + speed / unit, doublings);
+                let square = (range + 1.0 - y) / range;
+                if square > 0.0 { square.sqrt() } else { 0.0 }
+            }
+        }
+    }
+}
+
+/// Power of `d = first x^power` in which a force that starts with an exponent is smooth.
+#[must_use]
+pub fn smooth_power(exponent: f64) -> i32 {
+    let whole = (1..=FEW).find(|power| {
+        let product = f64::from(*power) * exponent;
+        product > 0.5 && (product - product.round()).abs() < 1e-9
+    });
+    // Where there is none, the force starts with two derivatives at least.
+    whole.unwrap_or_else(|| {
+        let more = (2..MOST_POWER).find(|power| f64::from(*power) * exponent >= 2.0);
+        more.unwrap_or(MOST_POWER)
+    })
+}
+
+/// `d` and its rate over `x`.
+#[inline]
+#[must_use]
+pub fn deepened(first: f64, power: i32, x: f64) -> [f64; 2] {
+    let x = x.max(NOWHERE);
+    if power == 1 {
+        return [first * x, first];
+    }
+    let before = first * (2..power).fold(x, |value, _| value * x);
+    [before * x, f64::from(power) * before]
+}
+
+/// `eps'` and its rate over `w`.
+#[inline]
+#[must_use]
+pub fn slowed([unit, range]: [f64; 2], doublings: u32, at: f64) -> [f64; 2] {
+    let mut power = 1.0 + range * (1.0 - at * at);
+    let mut rate = -2.0 * range * at * unit;
+    for _ in 0..doublings {
+        rate *= 2.0 * power;
+        power *= power;
+    }
+    [unit * (power - 1.0), rate]
+}
+
+/// `value^(1/power)`.
+fn root_of(value: f64, power: i32) -> f64 {
+    match power {
+        1 => value,
+        2 => value.sqrt(),
+        power => value.powf(1.0 / f64::from(power)),
+    }
+}
+
+fn rooted(value: f64, halvings: u32) -> f64 {
+    (0..halvings).fold(value, |root, _| root.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_a_start_become_whole_or_smooth() {
+        for (exponent, power) in [
+            (1.0, 1),
+            (0.5, 2),
+            (1.5, 2),
+            (0.4, 5),
+            (2.0 / 3.0, 3),
+            (0.43, 5),
+            (1.43, 2),
+            (1e-9, 16),
+        ] {
+            assert_eq!(smooth_power(exponent), power, "{exponent}");
+        }
+    }
+
+    #[test]
+    fn rates_are_those_of_the_values() {
+        let h = 1e-6;
+        for (power, x) in [(1, 0.3), (2, 0.4), (5, 0.7)] {
+            let [ahead, behind] = [x + h, x - h].map(|x| deepened(0.02, power, x)[0]);
+            let rate = deepened(0.02, power, x)[1];
+            assert!((rate * 2.0 * h / (ahead - behind) - 1.0).abs() < 1e-8);
+            let depth = deepened(0.02, power, x)[0];
+            let variable = Variable::Depth { first: 0.02, power };
+            assert!((variable.at(depth, 0.0) - x).abs() < 1e-14);
+        }
+        for doublings in 0..4 {
+            let variable = Variable::Pace {
+                unit: 0.01,
+                doublings,
+                range: 0.8,
+            };
+            let of = |at| slowed([0.01, 0.8], doublings, at);
+            let rate = (of(0.6 + h)[0] - of(0.6 - h)[0]) / (2.0 * h);
+            assert!((of(0.6)[1] / rate - 1.0).abs() < 1e-8);
+            assert!((variable.at(0.0, of(0.6)[0]) - 0.6).abs() < 1e-13);
+            assert_eq!(of(1.0)[0], 0.0);
+        }
+    }
+}
