@@ -250,14 +250,30 @@ impl Pad {
     /// Force `F(d)` and its slope.
     #[must_use]
     pub fn force(&self, compression: f64) -> [f64; 2] {
+        let thickness = self.covering.thickness;
+        self.columns(compression, compression / thickness, |slope| {
+            slope / thickness
+        })
+    }
+
+    /// The same with `1/T` at hand.
+    #[inline]
+    #[must_use]
+    pub fn force_by(&self, compression: f64, reciprocal: f64) -> [f64; 2] {
+        self.columns(compression, compression * reciprocal, |slope| {
+            slope * reciprocal
+        })
+    }
+
+    /// Force and its slope at a compression that is some strain, from the slope over the strain.
+    #[inline]
+    fn columns(&self, compression: f64, strain: f64, slope_of: impl Fn(f64) -> f64) -> [f64; 2] {
         let Covering {
             material,
-            thickness,
             shape,
             bottoming,
             ..
         } = &self.covering;
-        let strain = compression / thickness;
         let [value, slope] = match (shape, &self.halves) {
             (Shape::Cylinder { .. }, Some(halves)) if strain >= 0.0 => {
                 halves.force(material, strain)
@@ -266,7 +282,7 @@ impl Pad {
             _ if strain >= 0.0 => [material.work(strain), material.stress(strain)[0]],
             _ => [0.0; 2],
         };
-        let (mut value, mut slope) = (self.scale * value, self.scale * slope / thickness);
+        let (mut value, mut slope) = (self.scale * value, slope_of(self.scale * slope));
         if compression > self.bottom {
             value += bottoming.stiffness * (compression - self.bottom);
             slope += bottoming.stiffness;

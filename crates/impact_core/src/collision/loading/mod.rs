@@ -31,7 +31,7 @@ const MOST_EVALUATIONS: usize = 20_000;
 /// Share of the kinetic energy at which the variable changes.
 const EARLY: f64 = 0.83;
 /// Share of the energy that the first step takes, if the law is a power.
-const FIRST: f64 = 0.15;
+const FIRST: f64 = 0.05;
 /// Share of the energy below which the compression is a poor variable, unless a kink is near.
 const LATE: f64 = 0.1;
 /// Share of the present energy that has to be left at a kink, to first order, to go there.
@@ -40,6 +40,9 @@ const LEFT: f64 = 0.2;
 const CAUTION: f64 = 0.4;
 /// How much less the estimate of the first step, which has no step before it, is trusted.
 const DOUBT: f64 = 10.0;
+/// Shares of what is left of a variable: the first step towards the turn, and the longest over the compression.
+const FIRST_TO_TURN: f64 = 0.3;
+const LONGEST: f64 = 0.33;
 /// Shortest step over its variable.
 const SHORTEST: f64 = 1e-13;
 /// How far a side of a kink is from it, relatively.
@@ -72,6 +75,31 @@ struct Forces {
     inertia: f64,
 }
 
+/// A place of the plane, seen over a variable.
+#[derive(Clone, Copy)]
+struct Place {
+    depth: f64,
+    speed: f64,
+    /// Rates of both.
+    change: [f64; 2],
+    /// Rates of the state.
+    rates: [f64; 2],
+    forces: Forces,
+}
+
+/// Reciprocals of sizes.
+#[derive(Clone, Copy)]
+struct Scales {
+    /// `1/T`.
+    per_thickness: f64,
+    /// `1/(T e0)`.
+    per_unit: f64,
+    /// `1/v^2`.
+    per_energy: f64,
+    /// `1/k` of a linear region.
+    yielding: f64,
+}
+
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
 struct Point {
@@ -92,6 +120,7 @@ struct Loading<'a> {
     collision: &'a Collision<'a>,
     pad: &'a Pad,
     mass: f64,
+    scales: Scales,
     curved: bool,
     kinks: Vec<f64>,
     /// The next one.
@@ -104,6 +133,8 @@ struct Loading<'a> {
     exponent: f64,
     /// How the end is integrated over.
     to_turn: Variable,
+    /// How much shorter first steps are than at a tolerance of 1e-6.
+    finer: f64,
     evaluations: Cell<usize>,
 }
 
@@ -129,12 +160,21 @@ impl Loading<'_> {
     fn forces(&self, depth: f64, speed: f64) -> Forces {
         // A kink belongs to the piece that is passed.
         let inside = depth.max(self.piece[0]).min(self.piece[1]);
-        let [at_rest, slope] = self.pad.force(inside);
-        let thickness = self.pad.covering.thickness;
-        let [factor, of_speed, of_strain] = self.pad.rate_factor(speed, inside / thickness);
+        let Scales {
+            per_thickness,
+            per_unit,
+            ..
+        } = self.scales;
+        let [at_rest, slope] = self.pad.force_by(inside, per_thickness);
+        let rate = self.pad.covering.rate;
+        let inner = 1.0 + speed * per_unit;
+        let exponent = rate.base + rate.slope * (inside * per_thickness);
+        let logarithm = inner.ln();
+        let factor = (exponent * logarithm).exp();
         let force = at_rest * factor;
-        let over_depth = slope * factor + at_rest * of_strain / thickness;
-        let over_speed = at_rest * of_speed;
+        let over_depth = factor * (slope + at_rest * rate.slope * logarithm * per_thickness);
+        let over_speed = force * exponent * per_unit / inner;
+        let inertia = self.mass * speed;
         let yielding = match self.collision.region {
             Region::Rigid => {
                 return Forces {
@@ -142,13 +182,10 @@ impl Loading<'_> {
                     over_depth,
                     over_speed,
                     share: 1.0,
-                    inertia: self.mass * speed,
+                    inertia,
                 };
             }
-            Region::Spring {
-                stiffness,
-                cubic: 0.0,
-            } => 1.0 / stiffness,
+            Region::Spring { cubic: 0.0, .. } => self.scales.yielding,
             other => 1.0 / other.force(other.deflection(force))[1],
         };
         Forces {
@@ -156,26 +193,28 @@ impl Loading<'_> {
             over_depth,
             over_speed,
             share: 1.0 + yielding * over_depth,
-            inertia: self.mass * speed + force * yielding * over_speed,
+            inertia: inertia + force * yielding * over_speed,
         }
     }
 
-    /// Rate of `(eps'/v)^2` over `d`.
-    fn fall(&self, forces: &Forces, speed: f64) -> f64 {
-        let closing = self.collision.closing_speed;
-        -2.0 * speed * forces.force * forces.share / (forces.inertia * closing * closing)
-    }
-
-    /// Rates of the state over a variable.
+    /// Place of the plane, its change over a variable, the forces there and the rates of the state.
     #[inline]
-    fn rates(&self, variable: Variable, at: f64, state: [f64; 2]) -> [f64; 2] {
+    fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> Place {
         match variable {
             Variable::Depth { first, power } => {
                 let [depth, change] = deepened(first, power, at);
                 let speed = self.collision.closing_speed * state[0].sqrt();
                 let forces = self.forces(depth, speed);
-                let later = self.mass * forces.share / forces.inertia;
-                [change * self.fall(&forces, speed), change * later]
+                let ratio = change * forces.share / forces.inertia;
+                let slower = ratio * forces.force;
+                let lost = -2.0 * self.scales.per_energy * speed * slower;
+                Place {
+                    depth,
+                    speed,
+                    change: [change, -slower],
+                    rates: [lost, self.mass * ratio],
+                    forces,
+                }
             }
             Variable::Pace {
                 unit,
@@ -185,43 +224,39 @@ impl Loading<'_> {
                 let [speed, change] = slowed([unit, range], doublings, at);
                 let forces = self.forces(state[0], speed);
                 let ratio = -change / forces.force;
-                [ratio * forces.inertia / forces.share, ratio * self.mass]
+                let deeper = ratio * forces.inertia / forces.share;
+                Place {
+                    depth: state[0],
+                    speed,
+                    change: [deeper, change],
+                    rates: [deeper, ratio * self.mass],
+                    forces,
+                }
             }
         }
     }
 
     fn point(&self, variable: Variable, at: f64, state: [f64; 2]) -> Point {
-        let closing = self.collision.closing_speed;
-        let rates = self.rates(variable, at, state);
-        let (depth, speed, change) = match variable {
-            Variable::Depth { first, power } => {
-                let [depth, change] = deepened(first, power, at);
-                let pace = state[0].sqrt();
-                let slower = 0.5 * closing * rates[0] / pace;
-                (depth, closing * pace, [change, slower])
-            }
-            Variable::Pace {
-                unit,
-                doublings,
-                range,
-            } => {
-                let [speed, change] = slowed([unit, range], doublings, at);
-                (state[0], speed, [rates[0], change])
-            }
-        };
-        let forces = self.forces(depth, speed);
+        let Place {
+            depth,
+            speed,
+            change,
+            rates,
+            forces,
+        } = self.place(variable, at, state);
         let rate = forces.over_depth * change[0] + forces.over_speed * change[1];
         let mut loads = [[forces.force, rate], [0.0; 2]];
         if self.curved {
             loads[1] = self.pressure(depth, speed, change);
         }
+        let slower = speed * forces.force * forces.share / forces.inertia;
         Point {
             at,
             state,
             rates,
             depth,
             speed,
-            fall: self.fall(&forces, speed),
+            fall: -2.0 * self.scales.per_energy * slower,
             loads,
         }
     }
@@ -248,7 +283,7 @@ impl Loading<'_> {
             Variable::Depth { .. } => [1.0, time],
             Variable::Pace { .. } => [from.depth, time],
         };
-        let rates = |at: f64, state: [f64; 2]| self.rates(variable, at, state);
+        let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
         step(rates, (from.at, from.state, from.rates), length, scales)
     }
 
@@ -304,15 +339,15 @@ impl Loading<'_> {
         } = *now;
         let new = length.is_infinite();
         let (end, most) = match variable {
-            Variable::Pace { .. } if new => (1.0, 0.45 * (1.0 - point.at)),
+            Variable::Pace { .. } if new => (1.0, self.finer * FIRST_TO_TURN * (1.0 - point.at)),
             Variable::Pace { .. } => (1.0, f64::INFINITY),
             Variable::Depth { power, .. } => {
                 let [end, whole] = [self.kink, self.size].map(|depth| variable.at(depth, 0.0));
                 let first = FIRST.powf(1.0 / ((1.0 + self.exponent) * f64::from(power)));
                 let most = match point.at {
                     _ if to_kink => f64::INFINITY,
-                    0.0 => whole * first,
-                    at => 0.42 * (whole - at),
+                    0.0 => self.finer * whole * first,
+                    at => LONGEST * (whole - at),
                 };
                 (end, most)
             }
@@ -339,7 +374,7 @@ impl Loading<'_> {
         if excess.is_nan() || (self.deepens(now) && state[0].is_nan()) {
             return Err(0.5);
         }
-        let factor = (0.9 * excess.max(1e-12).powf(-0.125)).clamp(0.2, 6.0);
+        let factor = (0.85 / eighth_root(excess.max(1e-12))).clamp(0.2, 6.0);
         if excess > 1.0 {
             return Err(factor.min(0.9));
         }
@@ -442,6 +477,10 @@ impl Loading<'_> {
     }
 }
 
+fn eighth_root(value: f64) -> f64 {
+    value.sqrt().sqrt().sqrt()
+}
+
 /// Power with which the force of covering and region rises at the touch.
 #[must_use]
 pub fn first_exponent(pad: &Pad, region: Region) -> f64 {
@@ -467,6 +506,15 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
         collision,
         pad,
         mass,
+        scales: Scales {
+            per_thickness: 1.0 / pad.covering.thickness,
+            per_unit: 1.0 / (pad.covering.thickness * pad.covering.rate.reference),
+            per_energy: 1.0 / (speed * speed),
+            yielding: match collision.region {
+                Region::Spring { stiffness, .. } => 1.0 / stiffness,
+                Region::Rigid | Region::Power { .. } => 0.0,
+            },
+        },
         curved: !matches!(pad.covering.shape, Shape::Flat { .. }),
         kinks: pad.kinks(),
         kink: f64::INFINITY,
@@ -474,6 +522,7 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
         size,
         exponent: first_exponent(pad, collision.region),
         to_turn: Variable::to_turn(pad, speed),
+        finer: eighth_root(collision.tolerance / 1e-6).min(1.0),
         evaluations: Cell::new(0),
     };
     loading.enter(0.0);

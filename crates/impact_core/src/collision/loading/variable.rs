@@ -96,9 +96,9 @@ pub fn smooth_power(exponent: f64) -> i32 {
         let product = f64::from(*power) * exponent;
         product > 0.5 && (product - product.round()).abs() < 1e-9
     });
-    // Where there is none, the force starts with two derivatives at least.
+    // Where there is none, the force starts with three derivatives at least.
     whole.unwrap_or_else(|| {
-        let more = (2..MOST_POWER).find(|power| f64::from(*power) * exponent >= 2.0);
+        let more = (2..MOST_POWER).find(|power| f64::from(*power) * exponent >= 3.0);
         more.unwrap_or(MOST_POWER)
     })
 }
@@ -153,8 +153,8 @@ mod tests {
             (1.5, 2),
             (0.4, 5),
             (2.0 / 3.0, 3),
-            (0.43, 5),
-            (1.43, 2),
+            (0.43, 7),
+            (1.43, 3),
             (1e-9, 16),
         ] {
             assert_eq!(smooth_power(exponent), power, "{exponent}");
