@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import numpy.typing as npt
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import barn
-from hrsafety.benchmarks.entries import Entry
-from hrsafety.benchmarks.protocol import Case, Suite, rows_of
+from hrsafety.benchmarks.drawn import DRAWN, among, crowd, drifting, first_of
+from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.reacting import REACTING
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
@@ -23,10 +22,6 @@ __all__ = ["SUITES"]
 
 CHUNK = 50
 """Episodes that are run, and kept, together."""
-DRAWN = 2000
-"""Episodes of S4 and S5 that one draw gives."""
-LAW_SPEED, ROBOT_SPEED = 1.0, 1.5
-"""In S4 and S5: largest speed of the law, and of the robot with parts around it, in m/s."""
 ERROR = 0.025
 """Error of measured positions in the adversary suite, in m and each axis."""
 LATENCY = 0.1
@@ -35,66 +30,6 @@ PURSUED = 12.0
 """Length of an episode there, in s."""
 PERSON_SPEED = 1.6
 """Largest speed of the person there, in m/s, whatever shields assume."""
-
-
-# ---- discs that drift: S4 and S5 ------------------------------------------------------------
-
-
-def _among_discs(each: Entry) -> Entry:
-    """Return the entry as the protocol has it: the reciprocal law with a horizon of 2 s and no margin."""
-    if isinstance(each.law, nav.OptimalReciprocalCollisionAvoidance):
-        return replace(each, law=each.law.replaced(horizon=2.0, margin=0.0))
-    return each
-
-
-def _drifting(discs: int) -> Callable[[Case, int], tuple[nav.Scenario, nav.Law]]:
-    def scene(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
-        generator = np.random.default_rng(case.seed)
-        shape = (DRAWN, discs)
-        x, y = generator.uniform(2.0, 9.0, shape)[index], generator.uniform(-3.0, 3.0, shape)[index]
-        speed, course = generator.uniform(0.0, 1.0, shape)[index], generator.uniform(-np.pi, np.pi, shape)[index]
-        velocity = np.stack([speed * np.cos(course), speed * np.sin(course)], axis=1)
-        parts = bool(case.entry.parts)
-        robot = nav.HolonomicRobot(radius=0.3, max_speed=ROBOT_SPEED if parts else LAW_SPEED, max_acceleration=10.0)
-        obstacles = tuple(
-            nav.MovingDisc(center=(float(x[k]), float(y[k])), velocity=tuple(velocity[k].tolist()), radius=0.3)
-            for k in range(discs)
-        )
-        place = nav.Scenario(
-            start=(0.0, 0.0),
-            goal=(10.0, 0.0),
-            obstacles=obstacles,
-            robot=robot,
-            control_period=0.1,
-            time_limit=15.0,
-            rest_time=15.0,
-            arrival_tolerance=0.3,
-        )
-        law = _among_discs(case.entry).built(person_speed=case.person_speed, preferred_speed=LAW_SPEED)
-        return place, law
-
-    return scene
-
-
-def _many(scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]]) -> Callable[[Case], Iterator[Row]]:
-    """Run scenes that end at the first contact, side by side."""
-
-    def run(case: Case) -> Iterator[Row]:
-        pairs = [scene(case, index) for index in case.cases]
-        table = nav.simulate_many(
-            [place for place, _ in pairs], pairs[0][1], stop_on_contact=True, threads=case.threads
-        )
-        yield from rows_of(table, case.cases)
-
-    return run
-
-
-# ---- crowds ---------------------------------------------------------------------------------
-
-
-def _crowd(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
-    place = scenarios.random_traffic(12, seed=case.seed + index)
-    return place, case.entry.built(person_speed=case.person_speed)
 
 
 # ---- recorded people ------------------------------------------------------------------------
@@ -215,8 +150,8 @@ SUITES: dict[str, Suite] = {
             seed=1,
             most=DRAWN,
             accepted={(_GUARDED[1], 1.0): "99.5 / 0 / 0"},
-            scene=_drifting(3),
-            run=_many(_drifting(3)),
+            scene=first_of(drifting(3)),
+            run=among(drifting(3)),
         ),
         Suite(
             name="s5",
@@ -231,8 +166,8 @@ SUITES: dict[str, Suite] = {
                 (_GUARDED[1], 1.6): "95 / 0.5 / 0",
                 (_GUARDED[3], None): "95 / 0.5 / 0",
             },
-            scene=_drifting(12),
-            run=_many(_drifting(12)),
+            scene=first_of(drifting(12)),
+            run=among(drifting(12)),
         ),
         Suite(
             name="crowd",
@@ -247,8 +182,8 @@ SUITES: dict[str, Suite] = {
                 (_GUARDED[1], 1.6): "99.3 / 0.5 / 0",
                 **{(f"orca+{parts}", None): "- / - / 0" for parts in ("shield", "shield+yielding")},
             },
-            scene=_crowd,
-            run=_many(_crowd),
+            scene=first_of(crowd),
+            run=among(crowd),
         ),
         Suite(
             name="recordings",

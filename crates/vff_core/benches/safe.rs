@@ -1,0 +1,197 @@
+//! Safe navigation: episodes of twelve drifting discs on one thread, and single decisions of shield and
+//! yielding among twelve people.
+
+use std::f64::consts::{PI, TAU};
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use numeric::random::Stream;
+use vff_core::lanes::Vector2;
+use vff_core::laws::VirtualForceField;
+use vff_core::laws::field::gains::Gains;
+use vff_core::laws::field::side::SideRules;
+use vff_core::laws::field::stabilizing::Stabilizing;
+use vff_core::laws::safe::SafeNavigation;
+use vff_core::laws::shield::{Guard, Limits, Person, Shield, Status, View, Walls};
+use vff_core::laws::yielding::{Outlook, Passerby, Yielder, Yielding};
+use vff_core::robots::HolonomicRobot;
+use vff_core::run::metrics::Weights;
+use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Instructions, Options, run_batch};
+use vff_core::world::geometry::RobotState;
+use vff_core::world::motion::Motion;
+use vff_core::world::obstacle::{Limits as Regions, Obstacle};
+use vff_core::world::scenario::{Rules, Scenario};
+
+/// Episodes of one round.
+const EPISODES: usize = 100;
+
+/// Discs of 0.3 m that drift straight on between start and goal, as the protocol S5 has them.
+fn drifting(fastest: f64) -> Vec<Scenario> {
+    let robot = HolonomicRobot {
+        radius: 0.3,
+        max_speed: fastest,
+        max_acceleration: 10.0,
+        ..HolonomicRobot::default()
+    };
+    let rules = Rules {
+        control_period: 0.1,
+        time_limit: 15.0,
+        rest_time: 15.0,
+        arrival_tolerance: 0.3,
+        ..Rules::default()
+    };
+    let mut stream = Stream::new(1, 0);
+    let mut scene = || {
+        let discs = (0..12).map(|_| {
+            let place = [stream.uniform(2.0, 9.0), stream.uniform(-3.0, 3.0)];
+            let (speed, course) = (stream.unit(), stream.uniform(-PI, PI));
+            let velocity = [speed * course.cos(), speed * course.sin()];
+            let motion = Motion::moving(place, velocity, [0.0; 2], None).unwrap();
+            Obstacle::disc(0.3, motion, Regions::default()).unwrap()
+        });
+        let discs = discs.collect();
+        Scenario::new(robot, [0.0, 0.0], [10.0, 0.0], discs, rules).unwrap()
+    };
+    (0..EPISODES).map(|_| scene()).collect()
+}
+
+fn field() -> AnyLaw {
+    let gains = Gains {
+        attractive: 3.0,
+        repulsive: 20.0,
+        detour: 17.0,
+        ratio: 0.25,
+    };
+    let rules = SideRules {
+        pass_behind: true,
+        hysteresis: f64::INFINITY,
+    };
+    VirtualForceField::new(gains, Stabilizing::Off, rules)
+        .unwrap()
+        .into()
+}
+
+fn guarded(yields: bool) -> AnyLaw {
+    SafeNavigation {
+        shield: Some(Shield {
+            person_speed: Some(1.0),
+            ..Shield::default()
+        }),
+        yielding: yields.then(Yielding::default),
+        takeover: yields,
+        preferred_speed: Some(1.0),
+        critical_distance: Some(0.02),
+        ..SafeNavigation::bare(field())
+    }
+    .into()
+}
+
+fn run(scenes: &[Scenario], law: &AnyLaw) -> BatchTable {
+    let third = 1.0 / 3.0;
+    let options = BatchOptions {
+        run: Options {
+            stop_on_contact: true,
+            ..Options::default()
+        },
+        weights: Weights {
+            arrival_time: third,
+            avoidance: third,
+            energy_saving: third,
+        },
+        descent: false,
+        threads: Some(1),
+        width: None,
+        instructions: Instructions::Widest,
+    };
+    run_batch(scenes, law, &law.gains(), &options, &|| false, &|_| ()).unwrap()
+}
+
+fn episodes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("safe/episodes among twelve");
+    group.throughput(Throughput::Elements(EPISODES as u64));
+    for (name, law, fastest) in [
+        ("field", field(), 1.0),
+        ("shield", guarded(false), 1.5),
+        ("shield and yielding", guarded(true), 1.5),
+    ] {
+        let scenes = drifting(fastest);
+        let table = run(&scenes, &law);
+        let bits = |sum: u64, time: &f64| sum.wrapping_mul(31).wrapping_add(time.to_bits());
+        let (times, energies) = (table.arrival_time.iter(), table.energy.iter());
+        println!("{name}: {:x}", times.chain(energies).fold(0, bits));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| run(black_box(&scenes), &law));
+        });
+    }
+    group.finish();
+}
+
+const LIMITS: Limits = Limits {
+    radius: 0.3,
+    max_speed: 1.5,
+    max_acceleration: 10.0,
+    period: 0.1,
+};
+
+/// Twelve people around a robot, at a distance in m.
+fn ring(distance: f64) -> impl Iterator<Item = Vector2<f64>> {
+    (0..12).map(move |index| {
+        let angle = f64::from(index) * TAU / 12.0;
+        Vector2::new(angle.cos(), angle.sin()) * distance
+    })
+}
+
+fn robot() -> RobotState<f64> {
+    RobotState {
+        position: Vector2::zeros(),
+        velocity: Vector2::new(0.3, 0.0),
+    }
+}
+
+fn decisions(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("safe/decision among twelve");
+    let guard = Guard::new(Shield::default(), LIMITS).unwrap();
+    let wanted = Vector2::new(0.4, 0.0);
+    for (name, distance, status) in [
+        ("shield, verified", 6.0, Status::Kept),
+        ("shield, verified near", 2.0, Status::Kept),
+        ("shield, searched", 1.2, Status::Changed),
+        ("shield, nothing verified", 0.9, Status::Braking),
+    ] {
+        let people: Vec<Person> = ring(distance)
+            .map(|place| Person::disc(place.into(), 0.3))
+            .collect();
+        let view = View {
+            robot: robot(),
+            people: &people,
+            walls: Walls::NONE,
+        };
+        println!("{name}: {:?} {status:?}", guard.decide(&view, wanted));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| guard.decide(black_box(&view), wanted));
+        });
+    }
+    let yielder = Yielder::new(Yielding::default(), LIMITS).unwrap();
+    let people: Vec<Passerby> = ring(3.0)
+        .map(|offset| Passerby {
+            offset,
+            velocity: Vector2::new(-0.3 * offset.y, 0.2 * offset.x),
+            touch: 0.6,
+        })
+        .collect();
+    let outlook = Outlook {
+        robot: robot(),
+        wanted,
+        to_goal: Vector2::x(),
+        people: &people,
+        left_out: false,
+        walls: Walls::NONE,
+    };
+    group.bench_function("yielding", |bencher| {
+        bencher.iter(|| yielder.decide(black_box(&outlook), |_| true));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, episodes, decisions);
+criterion_main!(benches);
