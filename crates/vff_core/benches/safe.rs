@@ -155,8 +155,8 @@ fn decisions(criterion: &mut Criterion) {
     for (name, distance, status) in [
         ("shield, verified", 6.0, Status::Kept),
         ("shield, verified near", 2.0, Status::Kept),
-        ("shield, searched", 1.2, Status::Changed),
-        ("shield, nothing verified", 0.9, Status::Braking),
+        ("shield, searched", 1.0, Status::Changed),
+        ("shield, nothing but rest", 0.9, Status::Changed),
     ] {
         let people: Vec<Person> = ring(distance)
             .map(|place| Person::disc(place.into(), 0.3))
@@ -166,7 +166,7 @@ fn decisions(criterion: &mut Criterion) {
             people: &people,
             walls: Walls::NONE,
         };
-        println!("{name}: {:?} {status:?}", guard.decide(&view, wanted));
+        assert_eq!(guard.decide(&view, wanted).status, status, "{name}");
         group.bench_function(name, |bencher| {
             bencher.iter(|| guard.decide(black_box(&view), wanted));
         });

@@ -6,7 +6,7 @@ use crate::laws::guide::{Guidance, LocalGoal, Takeover, TakeoverRule};
 use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
-    Decision, Guard, Limits, Status, TwistGuard, TwistState, TwistView, View,
+    Decision, Guard, Limits, Status, TwistGuard, TwistState, TwistView, Verifier, View,
 };
 use crate::laws::trace::Trace;
 use crate::laws::yielding::{Outlook, Yielder};
@@ -289,8 +289,12 @@ impl SafeLaw {
         let kept = self
             .limits
             .clipped(robot.velocity, self.limits.slowed(wanted));
-        let guard = self.guard.as_ref();
-        let verified = |velocity| guard.is_none_or(|guard: &Guard| guard.verified(&view, velocity));
+        let verifier = self.guard.as_ref().filter(|_| self.yielder.is_some());
+        let mut verifier = verifier.map(|guard| Verifier::new(guard, view));
+        let verified = |velocity| {
+            let verifier = verifier.as_mut();
+            verifier.is_none_or(|verifier| verifier.admits(velocity))
+        };
         if let Some(velocity) = self.give_way(robot, wanted, to_goal, verified) {
             let status = if velocity == kept {
                 Status::Kept

@@ -13,6 +13,7 @@ mod person;
 mod plan;
 mod search;
 mod twist;
+mod verifier;
 mod walls;
 
 pub use bound::speed_bound;
@@ -20,6 +21,7 @@ pub use half_disc::half_disc_distance;
 pub use person::{KnownVelocity, Person};
 pub use plan::{Plan, braking, braking_periods};
 pub use twist::{TwistGuard, TwistLimits, TwistState, TwistView};
+pub use verifier::Verifier;
 pub use walls::Walls;
 
 use crate::error::{Result, not_negative, positive};
@@ -245,25 +247,7 @@ impl Guard {
     /// Whether a command is verified: reachable, behind all people and off all walls.
     #[must_use]
     pub fn verified(&self, view: &View<'_>, command: Vector2<f64>) -> bool {
-        self.limits.reaches(view.robot.velocity, command) && self.safe(view, command)
-    }
-
-    fn safe(&self, view: &View<'_>, command: Vector2<f64>) -> bool {
-        let plan = Plan::new(&view.robot, command, &self.limits);
-        let avoids = |person: &Person| plan.avoids(person, &self.limits, self.shield.grown(person));
-        view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan)
-    }
-
-    /// Whether the whole way keeps its distance from walls, or the present one if that is less.
-    fn off_walls(&self, walls: &Walls<'_>, plan: &Plan) -> bool {
-        if walls.is_empty() {
-            return true;
-        }
-        let radius = self.limits.radius - self.shield.margin;
-        let kept = radius + self.shield.wall_margin;
-        let least = walls.clearance_up_to(plan.position(0.0), kept) - walls::ROUNDING;
-        plan.chords()
-            .all(|([from, to], deviation)| walls.segment_keeps(from, to, least + deviation))
+        Verifier::new(self, *view).admits(command)
     }
 
     /// Least distance between the half disc ahead and everywhere that people can be, over the plan
@@ -300,39 +284,41 @@ impl Guard {
     #[must_use]
     pub fn decide(&self, view: &View<'_>, wanted: Vector2<f64>) -> Decision {
         let wanted = self.clipped(&view.robot, wanted);
-        if self.verified(view, wanted) {
+        let mut verifier = Verifier::new(self, *view);
+        if verifier.admits(wanted) {
             return Decision {
                 velocity: wanted,
                 status: Status::Kept,
             };
         }
         let near: Vec<Person> = self.near(view).copied().collect();
-        let view = &View {
-            people: &near,
-            ..*view
-        };
-        self.project(view, wanted).map_or_else(
-            || Decision {
-                velocity: braking(view.robot.velocity, &self.limits),
-                status: Status::Braking,
-            },
-            |velocity| Decision {
-                velocity,
-                status: Status::Changed,
-            },
-        )
+        self.project(verifier.among(&near), view.robot.velocity, wanted)
+            .map_or_else(
+                || Decision {
+                    velocity: braking(view.robot.velocity, &self.limits),
+                    status: Status::Braking,
+                },
+                |velocity| Decision {
+                    velocity,
+                    status: Status::Changed,
+                },
+            )
     }
 
     /// The verified velocity nearest to one that is reachable but not verified.
-    fn project(&self, view: &View<'_>, wanted: Vector2<f64>) -> Option<Vector2<f64>> {
-        let before = view.robot.velocity;
+    fn project(
+        &self,
+        mut verifier: Verifier<'_>,
+        before: Vector2<f64>,
+        wanted: Vector2<f64>,
+    ) -> Option<Vector2<f64>> {
         let tried = SHARES.iter().map(|share| wanted * *share);
         let tried = tried.chain([before, braking(before, &self.limits)]);
         let mut first: Option<(f64, Vector2<f64>)> = None;
         for velocity in tried {
             let distance = (velocity - wanted).norm();
             let nearer = first.is_none_or(|(least, _)| distance < least);
-            if nearer && self.verified(view, velocity) {
+            if nearer && verifier.admits(velocity) {
                 first = Some((distance, velocity));
             }
         }
@@ -341,7 +327,7 @@ impl Guard {
             wanted,
             farthest,
             first.map(|(_, velocity)| velocity),
-            |velocity| self.verified(view, velocity),
+            |velocity| verifier.admits(velocity),
         )
     }
 }

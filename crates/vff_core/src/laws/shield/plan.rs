@@ -4,12 +4,19 @@ use crate::lanes::Vector2;
 use crate::laws::shield::Limits;
 use crate::laws::shield::person::Person;
 use crate::world::geometry::RobotState;
+use crate::world::shape::Shape;
 
 /// Slower than this is at rest and looks nowhere, in m/s.
 const STILL: f64 = 1e-9;
 
 /// Conservative advancement refuses what comes nearer than this, in m.
 const LEAST: f64 = 1e-4;
+
+/// More than [`LEAST`] by more than rounding, in m.
+const FAR: f64 = 1e-3;
+
+/// More than rounding adds to a distance, in m.
+const SURELY: f64 = 1e-9;
 
 /// Accuracy of a least distance as a share of its largest change: it bounds the steps to find it.
 const FINEST: f64 = 1e-6;
@@ -121,6 +128,22 @@ impl Plan {
         self.speed + person.rate(self.end())
     }
 
+    /// Whether a disc cannot come near even to the circle that the robot can fill: a bound that spares
+    /// most people the steps along the plan, and refuses nobody.
+    fn out_of_reach(&self, person: &Person, radius: f64) -> bool {
+        let end = self.end();
+        let most = radius + self.speed * end + person.reach(end) + FAR;
+        let offset = person.placed.center - self.position;
+        matches!(person.placed.shape, Shape::Disc { .. }) && offset.norm_squared() > most * most
+    }
+
+    /// Whether somebody can be ahead when the robot comes to rest: then [`Self::avoids`] is false, because no
+    /// step of it passes an instant at which `g` is negative.
+    pub(super) fn is_met_at_end(&self, person: &Person, limits: &Limits) -> bool {
+        let radius = limits.radius + person.radius();
+        !self.rests() && self.clearance(person, radius, self.end()) < -SURELY
+    }
+
     /// Whether nobody can be ahead at any time of the plan; `grown`: what is added to the radius
     /// at its end, in m.
     #[inline]
@@ -133,6 +156,9 @@ impl Plan {
         if rate == f64::INFINITY {
             // He can be anywhere at once.
             return false;
+        }
+        if self.out_of_reach(person, radius + grown) {
+            return true;
         }
         let mut time = 0.0;
         loop {

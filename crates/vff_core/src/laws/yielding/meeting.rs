@@ -39,6 +39,65 @@ impl Passerby {
         };
         least.min(at(0.0)).min(at(horizon)) - self.touch
     }
+
+    /// A bound from below of the distance in m, for some time in s, between the surface and a robot of
+    /// some speed in m/s on any course.
+    pub(super) fn gap_within(&self, speed: f64, time: f64) -> f64 {
+        self.offset.norm() - self.touch - (self.velocity.norm() + speed) * time
+    }
+}
+
+/// Those who have a part in prices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crowd<'a> {
+    /// First those who can be met while a velocity is taken up.
+    pub people: &'a [Passerby],
+    /// How many these are.
+    pub early: usize,
+    /// Whether somebody who cannot be met has been left out.
+    pub left_out: bool,
+}
+
+/// Least clearance of several people, from the squares of their distances.
+///
+/// One root for all who touch at the same distance: roots and differences are rounded alike for all of
+/// them and do not change their order.
+pub(super) struct Nearest<R> {
+    clearance: R,
+    square: R,
+    touch: Option<f64>,
+}
+
+impl<R: Real> Nearest<R> {
+    /// Of nobody.
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self {
+            clearance: R::splat(f64::INFINITY),
+            square: R::splat(f64::INFINITY),
+            touch: None,
+        }
+    }
+
+    /// Adds somebody by the square of a distance.
+    #[inline(always)]
+    pub(super) fn add(&mut self, square: R, touch: f64) {
+        if self.touch != Some(touch) {
+            self.clearance = self.clearance();
+            self.square = R::splat(f64::INFINITY);
+            self.touch = Some(touch);
+        }
+        self.square = self.square.min(square);
+    }
+
+    /// The least clearance in m.
+    #[inline(always)]
+    pub(super) fn clearance(&self) -> R {
+        match self.touch {
+            Some(touch) => self.clearance.min(self.square.sqrt() - R::splat(touch)),
+            None => self.clearance,
+        }
+    }
 }
 
 /// First meeting and least clearance of velocities side by side.
@@ -48,6 +107,16 @@ pub(super) struct Meeting<R> {
     pub time: R,
     /// Least clearance within the horizon in m.
     pub clearance: R,
+}
+
+impl<R: Real> Meeting<R> {
+    /// Nobody is met within a horizon in s.
+    pub(super) fn never(horizon: f64) -> Self {
+        Self {
+            time: R::splat(horizon),
+            clearance: R::splat(f64::INFINITY),
+        }
+    }
 }
 
 /// A stretch of constant relative velocity.

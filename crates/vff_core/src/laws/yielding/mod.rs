@@ -10,7 +10,7 @@ use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 use crate::laws::shield::{Limits, Walls};
 use crate::world::geometry::RobotState;
-use meeting::{Meeting, Stretch};
+use meeting::{Crowd, Meeting, Nearest, Stretch};
 
 pub use meeting::Passerby;
 
@@ -34,6 +34,9 @@ const WALL_HORIZON: f64 = 1.0;
 
 /// People of whom those who matter are sorted out before velocities are priced; more are all looked at.
 const SORTED: usize = 64;
+
+/// People after whom it is looked again whether some velocity can still be the cheapest.
+const LOOKED_AT: usize = 2;
 
 /// More than what rounding adds to a distance, in m.
 const SLACK: f64 = 1e-6;
@@ -155,19 +158,13 @@ impl Yielder {
         outlook: &Outlook<'_>,
         mut verified: impl FnMut(Vector2<f64>) -> bool,
     ) -> Option<Vector2<f64>> {
-        let before = outlook.robot.velocity;
-        let wanted = self.limits.clipped(before, outlook.wanted);
+        let wanted = self.limits.clipped(outlook.robot.velocity, outlook.wanted);
         let Yielding {
             horizon, comfort, ..
         } = self.settings;
         let mut room = [Passerby::NOBODY; SORTED];
-        let people = self.near(outlook, &mut room);
-        let outlook = &Outlook {
-            people,
-            left_out: outlook.left_out || people.len() < outlook.people.len(),
-            ..*outlook
-        };
-        let alone = self.meeting::<f64>(outlook, outlook.wanted);
+        let crowd = self.near(outlook, &mut room);
+        let alone = self.meeting::<f64>(outlook, &crowd, outlook.wanted);
         let free = alone.clearance >= comfort && alone.time >= horizon;
         if free && self.wall_time(outlook, outlook.wanted) >= horizon && verified(wanted) {
             return Some(wanted);
@@ -175,34 +172,74 @@ impl Yielder {
         let choice = Choice {
             yielder: self,
             outlook,
+            crowd,
             verified,
         };
         self.processor.dispatch(choice)
     }
 
     /// Those who can be met, or passed with less than the comfortable distance, within the horizon by some
-    /// velocity: nobody else has a part in any price.
-    fn near<'a>(&self, outlook: &Outlook<'a>, room: &'a mut [Passerby; SORTED]) -> &'a [Passerby] {
-        if outlook.people.len() > SORTED {
-            return outlook.people;
+    /// velocity: nobody else has a part in any price. Who is near comes first, so that velocities which
+    /// meet somebody soon are given up early.
+    fn near<'a>(&self, outlook: &Outlook<'a>, room: &'a mut [Passerby; SORTED]) -> Crowd<'a> {
+        let all = outlook.people;
+        if all.len() > SORTED {
+            return Crowd {
+                people: all,
+                early: all.len(),
+                left_out: outlook.left_out,
+            };
         }
-        let velocities = [outlook.robot.velocity, outlook.wanted].map(|velocity| velocity.norm());
-        let fastest = velocities.into_iter().fold(self.limits.max_speed, f64::max);
+        let [before, wanted] =
+            [outlook.robot.velocity, outlook.wanted].map(|velocity| velocity.norm());
+        let fastest = self.limits.max_speed.max(before).max(wanted);
+        let taking_up = (before + fastest) / self.limits.max_acceleration;
         let room_left = self.settings.clearance.max(self.settings.comfort) + SLACK;
-        let mut count = 0;
-        for person in outlook.people {
+        let (mut count, mut early) = (0, 0);
+        for person in all {
             if person.gap_to(fastest, self.settings.horizon) > room_left {
                 continue;
             }
             room[count] = *person;
+            if person.gap_within(fastest, taking_up) <= room_left {
+                room.swap(early, count);
+                early += 1;
+            }
             count += 1;
         }
-        &room[..count]
+        let distance = |person: &Passerby| person.offset.norm_squared();
+        for part in [0..early, early..count] {
+            room[part].sort_unstable_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        Crowd {
+            people: &room[..count],
+            early,
+            left_out: outlook.left_out || count < all.len(),
+        }
     }
 
     /// First meeting and least clearance of a robot that takes up velocities and keeps them.
     #[inline(always)]
-    fn meeting<R: Real>(&self, outlook: &Outlook<'_>, velocity: Vector2<R>) -> Meeting<R> {
+    fn meeting<R: Real>(
+        &self,
+        outlook: &Outlook<'_>,
+        crowd: &Crowd<'_>,
+        velocity: Vector2<R>,
+    ) -> Meeting<R> {
+        let never = |_: R| false;
+        self.meeting_unless(outlook, crowd, velocity, never)
+            .unwrap_or_else(|| Meeting::never(self.settings.horizon))
+    }
+
+    /// The same, or nothing as soon as the first meeting so far makes the answer useless.
+    #[inline(always)]
+    fn meeting_unless<R: Real>(
+        &self,
+        outlook: &Outlook<'_>,
+        crowd: &Crowd<'_>,
+        velocity: Vector2<R>,
+        useless: impl Fn(R) -> bool,
+    ) -> Option<Meeting<R>> {
         let Yielding {
             clearance, horizon, ..
         } = self.settings;
@@ -213,15 +250,13 @@ impl Yielder {
         let ramp = (change.dot(&change).sqrt() * per_second).min(R::splat(horizon));
         let rest = R::splat(horizon) - ramp;
         let mean = (before + velocity) * half;
-        let mut meeting = Meeting {
-            time: R::splat(horizon),
-            clearance: R::splat(f64::INFINITY),
-        };
-        if outlook.left_out {
+        let mut first_time = R::splat(horizon);
+        let mut nearest = Nearest::new();
+        if crowd.left_out {
             // As of somebody who is not met: a sum that may be rounded.
-            meeting.time = meeting.time.min(ramp + rest);
+            first_time = first_time.min(ramp + rest);
         }
-        for person in outlook.people {
+        for (index, person) in crowd.people.iter().enumerate() {
             let (touch, near) = (person.touch, person.touch + clearance);
             let own = Vector2::<R>::splat(person.velocity.into());
             let taking_up = Stretch {
@@ -234,14 +269,23 @@ impl Yielder {
                 velocity: own - velocity,
                 duration: rest,
             };
-            let (first, least) = taking_up.meet(near, touch);
             let (second, later) = keeping.meet(near, touch);
-            let time = R::select(first.lt(ramp), first, ramp + second);
-            meeting.time = meeting.time.min(time);
-            let least = least.min(later).sqrt() - R::splat(touch);
-            meeting.clearance = meeting.clearance.min(least);
+            let mut time = ramp + second;
+            nearest.add(later, touch);
+            if index < crowd.early {
+                let (first, least) = taking_up.meet(near, touch);
+                time = R::select(first.lt(ramp), first, time);
+                nearest.add(least, touch);
+            }
+            first_time = first_time.min(time);
+            if index % LOOKED_AT == LOOKED_AT - 1 && useless(first_time) {
+                return None;
+            }
         }
-        meeting
+        Some(Meeting {
+            time: first_time,
+            clearance: nearest.clearance(),
+        })
     }
 
     /// When a velocity is stopped by a wall, in s: the time until it meets one, if that is soon,
@@ -301,19 +345,28 @@ impl Yielder {
         (change.dot(&change).sqrt() - ahead * R::splat(self.settings.goal_weight)) * per_speed
     }
 
+    /// Price of meeting others after times in s.
+    #[inline(always)]
+    fn haste<R: Real>(&self, time: R) -> R {
+        let Yielding {
+            horizon,
+            time_weight,
+            ..
+        } = self.settings;
+        let soon = R::splat(1.0) / time.max(R::splat(SOONEST)) - R::splat(1.0 / horizon);
+        soon.max(R::zero()) * R::splat(time_weight)
+    }
+
     /// Price of meeting and passing others.
     #[inline(always)]
     fn price<R: Real>(&self, meeting: &Meeting<R>) -> R {
         let Yielding {
-            horizon,
-            time_weight,
             distance_weight,
             comfort,
             ..
         } = self.settings;
         let one = R::splat(1.0);
-        let soon = one / meeting.time.max(R::splat(SOONEST)) - R::splat(1.0 / horizon);
-        let soon = soon.max(R::zero()) * R::splat(time_weight);
+        let soon = self.haste(meeting.time);
         let share = meeting.clearance.max(R::zero()) * R::splat(1.0 / comfort);
         let short = (one - share).max(R::zero());
         soon + short * short * R::splat(distance_weight)
@@ -324,6 +377,7 @@ impl Yielder {
 struct Choice<'a, F> {
     yielder: &'a Yielder,
     outlook: &'a Outlook<'a>,
+    crowd: Crowd<'a>,
     verified: F,
 }
 
@@ -332,7 +386,7 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
 
     #[inline(always)]
     fn call(mut self) -> Self::Output {
-        let (yielder, outlook) = (self.yielder, self.outlook);
+        let (yielder, outlook, crowd) = (self.yielder, self.outlook, self.crowd);
         let before = outlook.robot.velocity;
         let (mut best, mut chosen) = (f64::INFINITY, None);
         for chunk in 0..CHUNKS {
@@ -342,7 +396,11 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
             if !aims.lt(Lanes::splat(best)).any() {
                 continue;
             }
-            let meeting = yielder.meeting(outlook, candidates);
+            // Whom they have still to meet only adds to the price, too.
+            let useless = |time| !(aims + yielder.haste(time)).lt(Lanes::splat(best)).any();
+            let Some(meeting) = yielder.meeting_unless(outlook, &crowd, candidates, useless) else {
+                continue;
+            };
             let prices = aims + yielder.price(&meeting);
             let mut tried = prices.lt(Lanes::splat(best));
             while let Some(lane) = cheapest(prices, tried) {

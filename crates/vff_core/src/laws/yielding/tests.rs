@@ -25,6 +25,15 @@ fn outlook(people: &[Passerby]) -> Outlook<'_> {
     }
 }
 
+/// Everybody, none of them sorted out, all of them looked at while a velocity is taken up.
+fn everybody(people: &[Passerby]) -> Crowd<'_> {
+    Crowd {
+        people,
+        early: people.len(),
+        left_out: false,
+    }
+}
+
 fn passerby(offset: [f64; 2], velocity: [f64; 2]) -> Passerby {
     Passerby {
         offset: offset.into(),
@@ -66,7 +75,7 @@ fn meetings_are_those_of_small_steps() {
             people: &people,
             ..seen
         };
-        let meeting = yielder.meeting::<f64>(&outlook, target);
+        let meeting = yielder.meeting::<f64>(&outlook, &everybody(&people), target);
         let ramp = (target - seen.robot.velocity).norm() / 10.0;
         let (mut first, mut least) = (5.0_f64, f64::INFINITY);
         for step in 0..=50_000 {
@@ -95,13 +104,13 @@ fn lanes_price_as_single_velocities_do() {
         passerby([2.0, 1.0], [-0.8, 0.3]),
         passerby([1.0, -0.5], [0.1, 0.2]),
     ];
-    let outlook = outlook(&people);
+    let (outlook, crowd) = (outlook(&people), everybody(&people));
     for chunk in 0..CHUNKS {
         let candidates = yielder.candidates(&outlook, chunk);
-        let together = yielder.price(&yielder.meeting(&outlook, candidates));
+        let together = yielder.price(&yielder.meeting(&outlook, &crowd, candidates));
         for lane in 0..WIDTH {
             let one = Vector2::from(candidates.lane(lane));
-            let alone = yielder.price(&yielder.meeting::<f64>(&outlook, one));
+            let alone = yielder.price(&yielder.meeting::<f64>(&outlook, &crowd, one));
             assert_eq!(alone.to_bits(), together.lane(lane).to_bits());
         }
     }
@@ -111,7 +120,7 @@ fn lanes_price_as_single_velocities_do() {
 fn who_cannot_be_met_has_no_part_in_any_price() {
     let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
     let mut stream = numeric::random::Stream::new(5, 0);
-    let (mut kept, mut all) = (0, 0);
+    let (mut kept, mut early, mut all) = (0, 0, 0);
     for _ in 0..400 {
         let mut draw = |most: f64| stream.uniform(-most, most);
         let people: Vec<Passerby> = (0..12)
@@ -121,21 +130,89 @@ fn who_cannot_be_met_has_no_part_in_any_price() {
         whole.robot.velocity = Vector2::new(draw(1.0), draw(1.0));
         let mut room = [Passerby::NOBODY; SORTED];
         let near = yielder.near(&whole, &mut room);
-        let sorted = Outlook {
-            people: near,
-            left_out: near.len() < people.len(),
-            ..whole
-        };
-        kept += near.len();
+        kept += near.people.len();
+        early += near.early;
         all += people.len();
         for chunk in 0..CHUNKS {
             let candidates = yielder.candidates(&whole, chunk);
-            let one = yielder.price(&yielder.meeting(&whole, candidates));
-            let other = yielder.price(&yielder.meeting(&sorted, candidates));
+            let one = yielder.price(&yielder.meeting(&whole, &everybody(&people), candidates));
+            let other = yielder.price(&yielder.meeting(&whole, &near, candidates));
             for lane in 0..WIDTH {
                 assert_eq!(one.lane(lane).to_bits(), other.lane(lane).to_bits());
             }
         }
     }
     assert!(kept > all / 10 && kept < 8 * all / 10, "{kept} of {all}");
+    assert!(early > kept / 50 && early < kept / 2, "{early} of {kept}");
+}
+
+/// The cheapest candidate that is verified, the first of them where several are, without any short cut.
+fn cheapest_of_all(
+    yielder: &Yielder,
+    outlook: &Outlook<'_>,
+    verified: impl Fn(Vector2<f64>) -> bool,
+) -> Option<Vector2<f64>> {
+    let crowd = everybody(outlook.people);
+    let before = outlook.robot.velocity;
+    let wanted = yielder.limits.clipped(before, outlook.wanted);
+    let alone = yielder.meeting::<f64>(outlook, &crowd, outlook.wanted);
+    let Yielding {
+        horizon, comfort, ..
+    } = yielder.settings;
+    if alone.time >= horizon && alone.clearance >= comfort && verified(wanted) {
+        return Some(wanted);
+    }
+    let mut found: Option<(f64, Vector2<f64>)> = None;
+    for index in 0..2 + DIRECTIONS * SPEEDS {
+        let candidates = yielder.candidates(outlook, index / WIDTH);
+        let velocity = Vector2::from(candidates.lane(index % WIDTH));
+        let meeting = yielder.meeting::<f64>(outlook, &crowd, velocity);
+        let price = yielder.aims(outlook, velocity) + yielder.price(&meeting);
+        let command = yielder.limits.clipped(before, velocity);
+        if found.is_none_or(|(least, _)| price < least) && verified(command) {
+            found = Some((price, command));
+        }
+    }
+    found.map(|(_, command)| command)
+}
+
+#[test]
+fn the_cheapest_velocity_is_found_with_and_without_short_cuts() {
+    let mut stream = numeric::random::Stream::new(8, 0);
+    let (mut kept, mut none) = (0, 0);
+    for round in 0..600 {
+        let mut draw = |most: f64| stream.uniform(-most, most);
+        let settings = Yielding {
+            comfort: 0.1 + 0.2 * draw(0.4).abs(),
+            time_weight: 3.8 + draw(3.8),
+            ..Yielding::default()
+        };
+        let yielder = Yielder::new(settings, limits()).unwrap();
+        let people: Vec<Passerby> = (0..12)
+            .map(|_| Passerby {
+                touch: 0.6 + draw(0.2),
+                ..passerby([draw(5.0), draw(5.0)], [draw(1.5), draw(1.5)])
+            })
+            .collect();
+        let mut whole = outlook(&people);
+        whole.robot.velocity = Vector2::new(draw(1.0), draw(1.0));
+        whole.wanted = Vector2::new(draw(1.0), draw(1.0));
+        whole.to_goal = Vector2::new(draw(1.0), draw(1.0)).normalize();
+        // Half a plane of velocities in which some are missing.
+        let (edge, level) = (Vector2::new(draw(1.0), draw(1.0)), draw(0.3));
+        let verified = |velocity: Vector2<f64>| {
+            round % 3 == 0 || (velocity.dot(&edge) > level && (velocity.x * 40.0).sin() > -0.8)
+        };
+        let quick = yielder.decide(&whole, verified);
+        let slow = cheapest_of_all(&yielder, &whole, verified);
+        let bits = |found: Option<Vector2<f64>>| found.map(|v| [v.x.to_bits(), v.y.to_bits()]);
+        assert_eq!(bits(quick), bits(slow), "round {round}");
+        kept +=
+            u32::from(quick == Some(yielder.limits.clipped(whole.robot.velocity, whole.wanted)));
+        none += u32::from(quick.is_none());
+    }
+    assert!(
+        (6..300).contains(&kept) && (1..300).contains(&none),
+        "{kept}, {none}"
+    );
 }
