@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -287,9 +286,10 @@ class _Study:
                 return rows._native, rows.seeds
             return rows._native.reseeded(self.seeds), np.tile(np.array(self.seeds, dtype=np.uint64), len(rows))
         places = self.scenarios.values()
-        own = [[place.seed] if self.seeds is None else self.seeds for place in places]
-        natives = [place._native.reseeded(seed) for place, seeds in zip(places, own, strict=True) for seed in seeds]
-        return natives, np.array(list(itertools.chain(*own)), dtype=np.uint64)
+        if self.seeds is None:
+            return [place._native for place in places], np.array([place.seed for place in places], dtype=np.uint64)
+        natives = [place._native.reseeded(seed) for place in places for seed in self.seeds]
+        return natives, np.tile(np.array(self.seeds, dtype=np.uint64), len(natives) // len(self.seeds))
 
     def _naming_scenarios(self, error: InvalidParameterError) -> InvalidParameterError:
         """Return an error that names the scenario instead of the episode, which is a scenario with a seed."""

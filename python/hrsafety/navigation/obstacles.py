@@ -308,7 +308,8 @@ def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, de
     """Build the native counterpart of a round body that moves."""
     radius, velocity = number("radius", obstacle.radius), pair("velocity", obstacle.velocity)
     stop = None if obstacle.stop is None else pair("stop", obstacle.stop)
-    obstacle._converted(radius=radius, velocity=velocity, stop=stop)
+    if not (radius is obstacle.radius and velocity is obstacle.velocity and stop is obstacle.stop):
+        obstacle._set(radius=radius, velocity=velocity, stop=stop)
     limits = obstacle._limits()
     if limits["max_speed"] is None:
         limits["max_speed"] = default_max_speed
@@ -316,7 +317,11 @@ def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, de
     def straight() -> _hrsafety.Obstacle:
         return _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
 
-    obstacle._set(_native=moving_body(obstacle, start, {"radius": radius, **limits}, straight))
+    if obstacle.path is obstacle.segments is None:  # nearly always
+        native = straight()
+    else:
+        native = moving_body(obstacle, start, {"radius": radius, **limits}, straight)
+    obstacle._set(_native=native)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -373,10 +378,12 @@ class MovingDisc(Obstacle):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._converted(center=pair("center", self.center), acceleration=pair("acceleration", self.acceleration))
-        if self.path is None and not (math.isfinite(self.center[0]) and math.isfinite(self.center[1])):
-            raise InvalidParameterError("center", "be finite", self.center)
-        _moving(self, start=self.center, acceleration=self.acceleration, default_max_speed=None)
+        center, acceleration = pair("center", self.center), pair("acceleration", self.acceleration)
+        if not (center is self.center and acceleration is self.acceleration):
+            self._set(center=center, acceleration=acceleration)
+        if self.path is None and not (math.isfinite(center[0]) and math.isfinite(center[1])):
+            raise InvalidParameterError("center", "be finite", center)
+        _moving(self, start=center, acceleration=acceleration, default_max_speed=None)
 
     @classmethod
     def from_path(cls, time: npt.ArrayLike, position: npt.ArrayLike, *, radius: float, **fields: Any) -> Self:
