@@ -36,6 +36,10 @@ pub trait Mask:
     /// The mask with one lane made false.
     #[must_use]
     fn without(self, index: usize) -> Self;
+    /// Makes one lane true, where the mask is in memory.
+    fn set(&mut self, index: usize);
+    /// Truths as bits, that of the first lane lowest.
+    fn bits(self) -> u32;
 
     /// No lane is true.
     #[inline(always)]
@@ -78,6 +82,11 @@ pub trait Real:
     /// The number with one lane replaced.
     #[must_use]
     fn replace(self, index: usize, value: f64) -> Self;
+    /// Changes one lane, where the number is in memory.
+    #[inline(always)]
+    fn set(&mut self, index: usize, value: f64) {
+        *self = self.replace(index, value);
+    }
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -148,6 +157,14 @@ impl Mask for bool {
     #[inline(always)]
     fn without(self, _index: usize) -> Self {
         false
+    }
+    #[inline(always)]
+    fn set(&mut self, _index: usize) {
+        *self = true;
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
     }
 }
 
@@ -314,6 +331,18 @@ impl<const N: usize> Mask for LaneMask<N> {
         self.0[index] = 0;
         self
     }
+    #[inline(always)]
+    fn set(&mut self, index: usize) {
+        self.0[index] = u64::MAX;
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        let mut bits = 0;
+        for (lane, a) in self.0.into_iter().enumerate() {
+            bits |= u32::from(a != 0) << lane;
+        }
+        bits
+    }
 }
 
 impl<const N: usize> Lanes<N> {
@@ -354,6 +383,10 @@ impl<const N: usize> Real for Lanes<N> {
     fn replace(mut self, index: usize, value: f64) -> Self {
         self.0[index] = value;
         self
+    }
+    #[inline(always)]
+    fn set(&mut self, index: usize, value: f64) {
+        self.0[index] = value;
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -398,5 +431,30 @@ impl<const N: usize> Real for Lanes<N> {
             *a = f64::from_bits((a.to_bits() & m) | (b.to_bits() & !m));
         }
         then
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_lane_is_changed_in_its_place() {
+        let mut numbers = Lanes::<8>::from_fn(|lane| lane as f64);
+        numbers.set(3, -1.0);
+        assert_eq!(numbers, numbers.replace(3, -1.0));
+        assert_eq!((numbers.lane(2), numbers.lane(3)), (2.0, -1.0));
+        let (mut mask, mut truth) = (LaneMask::<8>::none(), false);
+        mask.set(5);
+        truth.set(0);
+        assert!(truth && (0..8).all(|lane| mask.lane(lane) == (lane == 5)));
+    }
+
+    #[test]
+    fn bits_tell_which_lanes_are_true() {
+        let odd = Lanes::<8>::from_fn(|lane| (lane % 2) as f64);
+        assert_eq!(odd.gt(Lanes::zero()).bits(), 0b1010_1010);
+        assert_eq!(LaneMask::<8>::splat(true).bits(), 0xff);
+        assert_eq!((true.bits(), false.bits()), (1, 0));
     }
 }
