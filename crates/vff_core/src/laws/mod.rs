@@ -157,6 +157,12 @@ pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
     /// A run begins in a lane: it forgets what it knew of the lane. The scenarios of all lanes have
     /// the same robot and the same rules, and none has more obstacles than the first one had.
     fn enter(&mut self, lane: usize, scenario: &Scenario);
+
+    /// Whether it remembers obstacles by their places in the list. A law that does not is told only
+    /// of those in whose active regions the robots are.
+    fn knows_again(&self) -> bool {
+        false
+    }
 }
 
 /// A law up to its gains: what a search over gains needs to know of it.

@@ -5,7 +5,7 @@ use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Real, Vector2, Wide};
 use crate::laws::{SceneLaw, Situation, Stop};
 use crate::run::Interrupted;
-use crate::run::lane_scenes::{LaneObstacle, LaneScenes};
+use crate::run::lane_scenes::{FeltObstacles, LaneObstacle, LaneScenes};
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::rollout::{rk4_held, semi_implicit_euler};
 use crate::run::runs::Runs;
@@ -21,6 +21,7 @@ struct Relay<'a, R: Real + Wide<R>> {
     scenes: LaneScenes<'a>,
     obstacles: Vec<LaneObstacle<R>>,
     bodies: Vec<Body<R>>,
+    felt: FeltObstacles<R>,
     runs: Runs<LaneScenes<'a>, R>,
     /// Motion steps since the start of the run of each lane.
     steps: R,
@@ -52,6 +53,7 @@ pub(crate) fn run_scenes<R: Real + Wide<R>, L: SceneLaw<R>>(
     let periods_per_question = (PERIODS_PER_QUESTION / (1 + relay.bodies.len())).max(1);
     let (mut next, mut until_question) = (0, periods_per_question);
     loop {
+        let mut entered = R::Mask::none();
         for lane in 0..R::WIDTH {
             if relay.runs.running.lane(lane) {
                 continue;
@@ -62,8 +64,12 @@ pub(crate) fn run_scenes<R: Real + Wide<R>, L: SceneLaw<R>>(
             if let Some(scene) = scenes.get(next) {
                 relay.enter(lane, next, scene);
                 law.enter(lane, scene);
+                entered.set(lane);
                 next += 1;
             }
+        }
+        if entered.any() {
+            relay.begin(entered);
         }
         if !relay.runs.running.any() {
             return Ok(());
@@ -96,6 +102,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         Self {
             scenes,
             obstacles,
+            felt: FeltObstacles::of_at_most(count),
             bodies,
             runs,
             steps: R::zero(),
@@ -104,19 +111,25 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         }
     }
 
-    /// Gives a lane another scene, at its start.
+    /// Gives a lane another scene, before its start.
     #[cold]
     #[inline(never)]
     fn enter(&mut self, lane: usize, index: usize, scene: &'a Scenario) {
         self.scenes.enter(lane, scene);
-        self.steps = self.steps.replace(lane, 0.0);
+        self.steps.set(lane, 0.0);
         self.index[lane] = Some(index);
         let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
         for (number, (obstacle, body)) in obstacles.enumerate() {
             obstacle.enter(lane, scene.obstacles.get(number), body);
         }
+        self.runs.enter(lane, scene);
+    }
+
+    /// The runs of some lanes begin.
+    #[inline(never)]
+    fn begin(&mut self, lanes: R::Mask) {
         self.place(|_| true);
-        self.runs.enter(lane, self.scenes, &self.bodies);
+        self.runs.begin(lanes, self.scenes, &self.bodies);
     }
 
     /// Instant of each lane, in s.
@@ -133,7 +146,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
         for (number, (obstacle, body)) in obstacles.enumerate() {
             if chosen(self.runs.watched[number]) {
-                body.state = obstacle.place(time, (&self.scenes, number));
+                obstacle.place(time, (&self.scenes, number), &mut body.state);
             }
         }
     }
@@ -178,9 +191,15 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
     fn sample<L: SceneLaw<R>>(&mut self, law: &mut L, time: R, stop: Stop<'_>) -> Result<()> {
         let runs = &mut self.runs;
         let (interval, step) = (runs.clock.interval, runs.clock.step);
+        let bodies = if law.knows_again() {
+            &self.bodies
+        } else {
+            let felt = &mut self.felt;
+            felt.among(&self.bodies, runs.position, runs.running)
+        };
         let command = law.command(&Situation {
             time,
-            bodies: &self.bodies,
+            bodies,
             ages: &[],
             robot: RobotState {
                 position: runs.position,
@@ -192,7 +211,6 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         });
         runs.check_force(command.force, time)?;
         runs.acceleration = self.scenes.of_first().robot.acceleration(command.force);
-        runs.command = command;
         runs.push = runs.acceleration * R::splat(step);
         runs.count_sample();
         runs.look_ahead(&self.bodies);

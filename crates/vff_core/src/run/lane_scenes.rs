@@ -1,6 +1,6 @@
 //! Scenes of robots side by side, one a lane: where the obstacles of each are.
 
-use crate::lanes::{Mask, Real, Wide};
+use crate::lanes::{Mask, Real, Vector2, Wide};
 use crate::run::scene::World;
 use crate::world::geometry::Body;
 use crate::world::motion::{BodyState, Piece};
@@ -98,6 +98,8 @@ pub(crate) struct LaneObstacle<R: Real> {
     /// Whether any lane ever takes another piece, and whether any is ever absent.
     turns: bool,
     leaves: bool,
+    /// Whether all lanes move straight on for now.
+    steady: bool,
 }
 
 impl<R: Real + Wide<R>> LaneObstacle<R> {
@@ -116,6 +118,7 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
             presence: (R::splat(f64::INFINITY), R::splat(f64::NEG_INFINITY)),
             turns: false,
             leaves: true,
+            steady: true,
         };
         let body = Body {
             shape: Shape::Disc { radius: R::zero() },
@@ -138,7 +141,11 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
         self.index[lane] = 0;
         let Some(placed) = placed else {
             self.set_presence(lane, (f64::INFINITY, f64::NEG_INFINITY));
-            self.until = self.until.replace(lane, f64::INFINITY);
+            self.until.set(lane, f64::INFINITY);
+            for axis in &mut self.piece.acceleration {
+                axis.set(lane, 0.0);
+            }
+            self.settle(&mut body.state);
             return;
         };
         self.set_presence(lane, placed.obstacle.motion.presence());
@@ -148,17 +155,35 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
             self.take_piece(lane, placed);
         }
         self.turns = (0..R::WIDTH).any(|lane| self.until.lane(lane) < f64::INFINITY);
-        let radius = placed.obstacle.shape.inner_radius();
-        let radius = body.shape.inner_radius().replace(lane, radius);
-        body.shape = Shape::Disc { radius };
+        if let Shape::Disc { radius } = &mut body.shape {
+            radius.set(lane, placed.obstacle.shape.inner_radius());
+        }
         let (own, regions) = (placed.regions, &mut body.regions);
-        regions.critical_radius = regions.critical_radius.replace(lane, own.critical_radius);
-        regions.active_radius = regions.active_radius.replace(lane, own.active_radius);
+        regions.critical_radius.set(lane, own.critical_radius);
+        regions.active_radius.set(lane, own.active_radius);
+        self.settle(&mut body.state);
+    }
+
+    /// Writes down what changes with the pieces only.
+    fn settle(&mut self, state: &mut BodyState<R>) {
+        // A negative zero would not leave the sign of a velocity as it is.
+        let zero = |axis: &R| (0..R::WIDTH).all(|lane| axis.lane(lane).to_bits() == 0);
+        self.steady = self.piece.acceleration.iter().all(zero);
+        state.velocity = self.piece.velocity;
+        if self.steady {
+            // As the pieces compute it, whatever the time.
+            state.velocity = self.piece.velocity.map(|axis| axis + R::zero());
+        }
+        state.acceleration = self.piece.acceleration;
+        if !self.leaves {
+            state.present = R::Mask::splat(true);
+        }
     }
 
     fn set_presence(&mut self, lane: usize, (from, to): (f64, f64)) {
         let (first, last) = &mut self.presence;
-        (*first, *last) = (first.replace(lane, from), last.replace(lane, to));
+        first.set(lane, from);
+        last.set(lane, to);
         let always = |lane| (first.lane(lane), last.lane(lane)) == ALWAYS;
         self.leaves = !(0..R::WIDTH).all(always);
     }
@@ -166,34 +191,38 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
     fn take_piece(&mut self, lane: usize, placed: &PlacedObstacle) {
         let (own, until) = placed.obstacle.motion.piece(self.index[lane]);
         let piece = &mut self.piece;
-        piece.start = piece.start.replace(lane, own.start);
+        piece.start.set(lane, own.start);
         for axis in 0..2 {
-            piece.position[axis] = piece.position[axis].replace(lane, own.position[axis]);
-            piece.velocity[axis] = piece.velocity[axis].replace(lane, own.velocity[axis]);
-            piece.acceleration[axis] =
-                piece.acceleration[axis].replace(lane, own.acceleration[axis]);
+            piece.position[axis].set(lane, own.position[axis]);
+            piece.velocity[axis].set(lane, own.velocity[axis]);
+            piece.acceleration[axis].set(lane, own.acceleration[axis]);
         }
-        self.until = self.until.replace(lane, until);
+        self.until.set(lane, until);
     }
 
     /// State of the obstacle of every lane at an instant of its own, in s; time never runs back in
     /// a lane.
     #[inline(always)]
-    pub fn place(&mut self, time: R, (scenes, obstacle): (&LaneScenes<'_>, usize)) -> BodyState<R> {
+    pub fn place(
+        &mut self,
+        time: R,
+        (scenes, obstacle): (&LaneScenes<'_>, usize),
+        state: &mut BodyState<R>,
+    ) {
         if self.turns && self.until.le(time).any() {
             self.turn(time, (scenes, obstacle));
+            self.settle(state);
         }
-        let (position, velocity) = self.piece.at(time);
-        let present = if self.leaves {
-            self.presence.0.le(time) & time.le(self.presence.1)
+        if self.steady {
+            let t = time - self.piece.start;
+            for (axis, position) in state.position.iter_mut().enumerate() {
+                *position = self.piece.position[axis] + state.velocity[axis] * t;
+            }
         } else {
-            R::Mask::splat(true)
-        };
-        BodyState {
-            position,
-            velocity,
-            acceleration: self.piece.acceleration,
-            present,
+            (state.position, state.velocity) = self.piece.at(time);
+        }
+        if self.leaves {
+            state.present = self.presence.0.le(time) & time.le(self.presence.1);
         }
     }
 
@@ -212,5 +241,116 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
     }
 }
 
+/// The obstacles that the robots feel, close up: the first one of each lane, the second one, and so
+/// on in their order. Lanes feel different ones, so that all of them together are more than those of
+/// any lane.
+#[derive(Clone)]
+pub(crate) struct FeltObstacles<R: Real> {
+    bodies: Vec<Body<R>>,
+}
+
+impl<R: Real + Wide<R>> FeltObstacles<R> {
+    /// Room for a number of obstacles.
+    pub fn of_at_most(count: usize) -> Self {
+        let absent = |_| LaneObstacle::absent().1;
+        Self {
+            bodies: (0..count).map(absent).collect(),
+        }
+    }
+
+    /// Those in whose active regions the robots of some lanes are.
+    #[inline(always)]
+    pub fn among(
+        &mut self,
+        bodies: &[Body<R>],
+        position: Vector2<R>,
+        lanes: R::Mask,
+    ) -> &[Body<R>] {
+        let (mut counts, mut most) = ([0; MOST_LANES], 0);
+        for body in bodies {
+            let reach = body.regions.active_radius;
+            let squared = body.offset(position).distance_squared;
+            let felt = squared.lt(reach * reach) & body.state.present & lanes;
+            if !felt.any() {
+                continue;
+            }
+            let mut left = felt.bits();
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let own = &mut self.bodies[counts[lane]];
+                if counts[lane] == most {
+                    own.state.present = R::Mask::none();
+                    most += 1;
+                }
+                copy_lane(own, body, lane);
+                counts[lane] += 1;
+            }
+        }
+        &self.bodies[..most]
+    }
+}
+
+/// Makes the obstacle of a lane that of another body.
+#[inline(always)]
+fn copy_lane<R: Real>(to: &mut Body<R>, from: &Body<R>, lane: usize) {
+    let copy = |to: &mut R, from: R| to.set(lane, from.lane(lane));
+    for axis in 0..2 {
+        copy(&mut to.state.position[axis], from.state.position[axis]);
+        copy(&mut to.state.velocity[axis], from.state.velocity[axis]);
+        let acceleration = from.state.acceleration[axis];
+        copy(&mut to.state.acceleration[axis], acceleration);
+    }
+    copy(
+        &mut to.regions.critical_radius,
+        from.regions.critical_radius,
+    );
+    copy(&mut to.regions.active_radius, from.regions.active_radius);
+    if let Shape::Disc { radius } = &mut to.shape {
+        copy(radius, from.shape.inner_radius());
+    }
+    to.state.present.set(lane);
+}
+
 /// Presence of an obstacle that never comes or goes.
 const ALWAYS: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Lanes;
+
+    /// An obstacle at (place, 0) in some lanes, felt within 1 m.
+    fn body(place: f64, lanes: &[usize]) -> Body<Lanes<8>> {
+        let mut body = LaneObstacle::absent().1;
+        body.state.position[0] = Lanes::splat(place);
+        body.regions.active_radius = Lanes::splat(1.0);
+        for lane in lanes {
+            body.state.present.set(*lane);
+        }
+        body
+    }
+
+    #[test]
+    fn every_lane_has_the_obstacles_that_its_robot_feels_in_their_order() {
+        let bodies = [
+            body(0.1, &[0, 1]),
+            body(5.0, &[0, 1, 2]),
+            body(0.3, &[0, 2]),
+        ];
+        let position = Vector2::new(Lanes::zero(), Lanes::zero());
+        let lanes = Lanes::<8>::splat(1.0).gt(Lanes::zero());
+        let mut felt = FeltObstacles::of_at_most(bodies.len());
+        for _ in 0..2 {
+            let found = felt.among(&bodies, position, lanes);
+            let places = |index: usize, lane: usize| found[index].state.position[0].lane(lane);
+            assert_eq!(found.len(), 2);
+            assert_eq!(found[0].state.present.bits(), 0b111);
+            assert_eq!([0, 1, 2].map(|lane| places(0, lane)), [0.1, 0.1, 0.3]);
+            assert_eq!(found[1].state.present.bits(), 0b001);
+            assert_eq!(places(1, 0), 0.3);
+        }
+        let others = felt.among(&bodies, position, lanes.without(0));
+        assert_eq!(others.len(), 1);
+    }
+}

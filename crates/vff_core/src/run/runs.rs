@@ -11,6 +11,7 @@ use crate::run::scene::{World, body_at};
 use crate::run::walls::{Maps, Walls};
 use crate::sensing::sampled::Past;
 use crate::world::geometry::Body;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A robot slower than this is at rest, in m/s.
 const REST_SPEED: f64 = 1e-3;
@@ -132,20 +133,19 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         }
     }
 
-    /// A run begins in one lane, at the start of its scenario.
-    pub fn enter(&mut self, lane: usize, world: W, bodies: &[Body<W::Number>]) {
-        let [x, y] = world.of_lane(lane).start;
-        let [goal_x, goal_y] = world.of_lane(lane).goal;
-        let set = |number: &mut R, value: f64| *number = number.replace(lane, value);
+    /// A lane takes another scenario, whose robot is at its start.
+    pub fn enter(&mut self, lane: usize, scenario: &Scenario) {
+        let ([x, y], [goal_x, goal_y]) = (scenario.start, scenario.goal);
+        let set = |number: &mut R, value: f64| number.set(lane, value);
         set(&mut self.position.x, x);
         set(&mut self.position.y, y);
         set(&mut self.goal.x, goal_x);
         set(&mut self.goal.y, goal_y);
         set(&mut self.velocity.x, 0.0);
         set(&mut self.velocity.y, 0.0);
-        let standing = self.wheels.speeds(Vector2::<R>::zeros());
+        let standing = self.wheels.speeds(Vector2::<f64>::zeros());
         for (speed, standing) in self.wheel_speeds.iter_mut().zip(standing) {
-            set(speed, standing.lane(lane));
+            set(speed, standing);
         }
         for number in [
             &mut self.speed,
@@ -158,20 +158,25 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         }
         set(&mut self.end_time, f64::NAN);
         set(&mut self.arrival_time, f64::NAN);
-        let others = (0..R::WIDTH).filter(|other| *other != lane);
-        let only = others.fold(R::Mask::splat(true), Mask::without);
-        self.running = self.running | only;
-        self.stopped = self.stopped & !only;
-        (self.near_goal, self.scenario) = (true, world);
-        self.watched.fill(true);
-        for (index, body) in bodies.iter().enumerate() {
-            self.reach[index] = self.scenario.reach(index);
-            self.speed_bound[index] = self.scenario.speed_bound(index);
+        for index in 0..self.watched.len() {
+            let (reach, bound) = reach_and_bound(scenario.obstacles.get(index));
+            self.reach[index].set(lane, reach);
+            self.speed_bound[index].set(lane, bound);
             set(&mut self.min_distance_squared[index], f64::INFINITY);
             set(&mut self.contact_time[index], f64::NAN);
             set(&mut self.contact_speed[index], f64::NAN);
             set(&mut self.at_fault[index], 0.0);
-            self.watch(index, body, W::Number::zero(), only);
+        }
+    }
+
+    /// The runs of some lanes begin, with the obstacles as given.
+    pub fn begin(&mut self, lanes: R::Mask, world: W, bodies: &[Body<W::Number>]) {
+        self.running = self.running | lanes;
+        self.stopped = self.stopped & !lanes;
+        (self.near_goal, self.scenario) = (true, world);
+        self.watched.fill(true);
+        for (index, body) in bodies.iter().enumerate() {
+            self.watch(index, body, W::Number::zero(), lanes);
         }
     }
 
@@ -547,6 +552,15 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             force_evaluations: totals.force_evaluations,
         }
     }
+}
+
+/// Distance in m at which the robot touches an obstacle of a lane, and the largest speed of that in
+/// m/s, infinite if there is none; both 0 where the lane has no such obstacle.
+fn reach_and_bound(placed: Option<&PlacedObstacle>) -> (f64, f64) {
+    placed.map_or((0.0, 0.0), |placed| {
+        let bound = placed.speed_bound.unwrap_or(f64::INFINITY);
+        (placed.contact_distance, bound)
+    })
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a counted number of samples

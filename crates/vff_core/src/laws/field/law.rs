@@ -172,16 +172,20 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         }
     }
 
-    /// Adds repulsion and detour of every obstacle to a sum and tells the lanes inside a critical
-    /// region. False if a side hangs on the other obstacles; the sum is void then.
+    /// Adds repulsion and detour of every obstacle to a sum, and Omega where the stabilizing force
+    /// asks for it; tells the lanes inside a critical region. False if a side hangs on the other
+    /// obstacles; the sums are void then.
     #[inline(always)]
     fn add_up<B: Wide<R>>(
-        &self,
+        &mut self,
         situation: &Situation<'_, R, B>,
         total: &mut Vector2<R>,
         critical: &mut R::Mask,
     ) -> bool {
         let robot = &situation.robot;
+        let stabilizes = self.stabilizing != Stabilizing::Off;
+        let state = self.dissipative(robot);
+        let mut dissipation = Dissipation::zero();
         for body in situation.bodies {
             let near = Near::new(body, robot);
             if !near.active.any() {
@@ -195,15 +199,24 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
                 return false;
             }
             let detour = side::latch(&self.rules, &approach, side, R::zero());
-            let repulsive = Repulsion::new(&approach).force(&self.gains, &approach);
-            let detouring = Turning::new(&approach, &detour).force(&self.gains, &approach);
+            let repulsion = Repulsion::new(&approach);
+            let turning = Turning::new(&approach, &detour);
+            let repulsive = repulsion.force(&self.gains, &approach);
+            let detouring = turning.force(&self.gains, &approach);
             let both = *total + (repulsive + detouring);
             *total = Vector2::select(near.active, both, *total);
+            if stabilizes {
+                let seen = (&approach, &repulsion, &turning, &detour);
+                dissipation.add(&self.gains, &state, body, seen);
+            }
+        }
+        if stabilizes {
+            self.dissipation = dissipation;
         }
         true
     }
 
-    /// As [`Self::add_up`], with the sides of every rule, Omega and the terms kept in the slots.
+    /// As [`Self::add_up`], with the sides of every rule and the terms kept in the slots.
     #[inline(always)]
     fn sum_in_full<B: Wide<R>>(
         &mut self,
@@ -333,10 +346,15 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
 impl<R: Real + Wide<R>, const RECORD: bool> SceneLaw<R> for ForceFieldLaw<R, RECORD> {
     fn enter(&mut self, lane: usize, scenario: &Scenario) {
         let [x, y] = scenario.goal;
-        self.goal = Vector2::new(self.goal.x.replace(lane, x), self.goal.y.replace(lane, y));
+        self.goal.x.set(lane, x);
+        self.goal.y.set(lane, y);
         for side in &mut self.latched {
-            *side = side.replace(lane, 0.0);
+            side.set(lane, 0.0);
         }
+    }
+
+    fn knows_again(&self) -> bool {
+        self.rules.hysteresis.is_finite()
     }
 }
 
@@ -347,8 +365,7 @@ impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, REC
         let stabilizes = self.stabilizing != Stabilizing::Off;
         let remembers = self.rules.hysteresis.is_finite();
         let (mut obstacles, mut critical) = (Vector2::zeros(), R::Mask::none());
-        let in_full = RECORD || stabilizes || remembers;
-        if in_full || !self.add_up(situation, &mut obstacles, &mut critical) {
+        if RECORD || remembers || !self.add_up(situation, &mut obstacles, &mut critical) {
             (obstacles, critical) = self.sum_in_full(situation);
         }
         let attraction = attractive_force(&self.gains, self.goal - robot.position, robot.velocity);

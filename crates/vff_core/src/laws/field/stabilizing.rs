@@ -196,6 +196,9 @@ impl<R: Real> Dissipation<R> {
         robot: &Dissipative<R>,
         control_period: f64,
     ) -> Vector2<R> {
+        if !self.omega.gt(R::zero()).any() {
+            return Vector2::zeros();
+        }
         let direction = self.direction(gains, robot.velocity);
         let length = direction.dot(&direction).sqrt();
         let acts = self.omega.gt(R::zero()) & R::splat(NO_DIRECTION).le(length);
@@ -209,11 +212,7 @@ impl<R: Real> Dissipation<R> {
                 wanted.min(speed * R::splat(share * robot.mass / control_period))
             }
         };
-        if acts.any() {
-            Vector2::select(acts, direction * (magnitude / length), Vector2::zeros())
-        } else {
-            Vector2::zeros()
-        }
+        Vector2::select(acts, direction * (magnitude / length), Vector2::zeros())
     }
 }
 

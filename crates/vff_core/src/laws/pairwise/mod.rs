@@ -153,7 +153,8 @@ impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
 impl<R: Real + Wide<R>, F: PairwiseField<R>> SceneLaw<R> for PairwiseLaw<R, F> {
     fn enter(&mut self, lane: usize, scenario: &Scenario) {
         let [x, y] = scenario.goal;
-        self.goal = Vector2::new(self.goal.x.replace(lane, x), self.goal.y.replace(lane, y));
+        self.goal.x.set(lane, x);
+        self.goal.y.set(lane, y);
     }
 }
 
