@@ -1,6 +1,6 @@
 //! Many scenes for few gain sets: scenes side by side in lanes, tasks of many scenes over all cores.
 
-use numeric::threads::{team, try_map};
+use numeric::threads::{map, team, try_map};
 
 use crate::error::Result;
 use crate::run::Interrupted;
@@ -12,7 +12,9 @@ use crate::run::plan::{Plan, Width};
 use crate::run::table::{BatchTable, Cell};
 use crate::world::scenario::Scenario;
 
-/// Most scenes of a task, and the least number of tasks of each thread.
+/// Most scenes of a task, of one thread alone and of several, and the least number of tasks of each
+/// of these.
+const MOST_ALONE: usize = 4096;
 const MOST_OF_TASK: usize = 512;
 const TASKS_OF_THREAD: usize = 4;
 
@@ -70,11 +72,11 @@ impl SceneBatch<'_> {
             let own = done.begins[run]..done.begins[run + 1];
             (&done.cells[run], &done.distances[own])
         };
-        Ok(BatchTable::of_rows(
-            self.scenarios,
-            points.len() / dimension * count,
-            place,
-        ))
+        // Every column asks for every row.
+        let rows = map(points.len() / dimension * count, place);
+        Ok(BatchTable::of_rows(self.scenarios, rows.len(), |row| {
+            rows[row]
+        }))
     }
 
     /// Runs without obstacles along every way, which errors count.
@@ -207,8 +209,7 @@ fn tasks_of(scenarios: &[Scenario], fits: impl Fn(&Scenario) -> bool) -> Vec<Tas
             None => alike.push(vec![index]),
         }
     }
-    let share = scenarios.len() / (TASKS_OF_THREAD * team());
-    let size = share.clamp(FEWEST_OF_TASK, MOST_OF_TASK);
+    let size = size_of_task(scenarios.len(), team());
     let mut tasks = Vec::new();
     for (scenes, side_by_side) in alike
         .iter()
@@ -221,6 +222,15 @@ fn tasks_of(scenarios: &[Scenario], fits: impl Fn(&Scenario) -> bool) -> Vec<Tas
         }));
     }
     tasks
+}
+
+/// Scenes of a task: at its end lanes run dry, so that one thread has few of them.
+fn size_of_task(scenes: usize, threads: usize) -> usize {
+    if threads == 1 {
+        return MOST_ALONE;
+    }
+    let share = scenes / (TASKS_OF_THREAD * threads);
+    share.clamp(FEWEST_OF_TASK, MOST_OF_TASK)
 }
 
 /// Task of each scene, and its number there.
