@@ -71,14 +71,17 @@ impl HolonomicRobot {
         positive("wheel_radius", self.wheels.radius)?;
         not_negative("winding_resistance", self.wheels.resistance)?;
         for wheel in 0..3 {
-            not_negative(
-                &format!("wheel_inertia[{wheel}]"),
-                self.wheels.inertia[wheel],
-            )?;
-            let friction = self.wheels.viscous_friction[wheel];
-            not_negative(&format!("wheel_viscous_friction[{wheel}]"), friction)?;
-            let friction = self.wheels.static_friction[wheel];
-            not_negative(&format!("wheel_static_friction[{wheel}]"), friction)?;
+            let wheels = &self.wheels;
+            for (name, value) in [
+                ("wheel_inertia", wheels.inertia[wheel]),
+                ("wheel_viscous_friction", wheels.viscous_friction[wheel]),
+                ("wheel_static_friction", wheels.static_friction[wheel]),
+            ] {
+                // Batches check millions of robots: a name is put together only for an error.
+                if not_negative(name, value).is_err() {
+                    not_negative(&format!("{name}[{wheel}]"), value)?;
+                }
+            }
         }
         Ok(self)
     }
@@ -127,6 +130,12 @@ fn limited<R: Real>(vector: Vector2<R>, limit: f64) -> (Vector2<R>, R) {
     (vector * factor, magnitude.min(limit))
 }
 
+/// Speed of the wheel with a row of the kinematics, in rad/s.
+#[inline(always)]
+fn wheel_speed<R: Real>([x, y]: &[f64; 2], velocity: &Vector2<R>) -> R {
+    velocity.x * R::splat(*x) + velocity.y * R::splat(*y)
+}
+
 /// Wheel speeds and currents at one heading.
 #[derive(Clone, Copy, Debug)]
 pub struct WheelModel {
@@ -162,7 +171,13 @@ impl WheelModel {
     /// Wheel speeds in rad/s.
     #[inline(always)]
     pub fn speeds<R: Real>(&self, velocity: Vector2<R>) -> [R; 3] {
-        self.rows.map(|row| velocity.dot(&Vector2::splat(row)))
+        // Written out: a map over the rows is not always compiled in its place.
+        let [first, second, third] = &self.rows;
+        [
+            wheel_speed(first, &velocity),
+            wheel_speed(second, &velocity),
+            wheel_speed(third, &velocity),
+        ]
     }
 
     /// Motor currents in A from the wheel speeds before and after a step, (D.3.2) with 1 A/V:
@@ -215,6 +230,14 @@ mod tests {
         for wheel in 0..3 {
             assert!((world[wheel] - own[wheel]).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn an_error_names_the_wheel() {
+        let mut robot = HolonomicRobot::default();
+        robot.wheels.static_friction[1] = -0.1;
+        let words = robot.checked().unwrap_err().to_string();
+        assert!(words.contains("wheel_static_friction[1]"), "{words}");
     }
 
     #[test]
