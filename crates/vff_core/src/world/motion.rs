@@ -59,8 +59,9 @@ pub struct Segment {
 /// Motion of a body over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Pieces in order of time; the last one lasts for ever.
-    pieces: Vec<Piece>,
+    /// Pieces in order of time; the last one lasts for ever. Most bodies have one, in its place here.
+    first: Piece,
+    later: Vec<Piece>,
     /// First and last instant of presence.
     presence: (f64, f64),
 }
@@ -80,9 +81,15 @@ impl Motion {
             acceleration,
         };
         Self {
-            pieces: vec![piece],
+            first: piece,
+            later: Vec::new(),
             presence: (f64::NEG_INFINITY, f64::INFINITY),
         }
+    }
+
+    /// All pieces in their order.
+    fn pieces(&self) -> impl Iterator<Item = &Piece> {
+        std::iter::once(&self.first).chain(&self.later)
     }
 
     /// Constant acceleration, or constant velocity until a sudden stop.
@@ -118,7 +125,7 @@ impl Motion {
                 let rule = "lie ahead of the start along the velocity";
                 return Err(Failure::invalid("stop", rule, Given::Pair(stop)));
             }
-            motion.pieces.push(Piece {
+            motion.later.push(Piece {
                 start: along / speed_squared,
                 position: stop,
                 velocity: [0.0; 2],
@@ -149,11 +156,11 @@ impl Motion {
             acceleration: [0.0; 2],
         };
         if until > from {
-            motion.pieces.push(moving);
+            motion.later.push(moving);
         }
         if until > from && until.is_finite() {
             let (position, _) = moving.at(until);
-            motion.pieces.push(Piece {
+            motion.later.push(Piece {
                 start: until,
                 position,
                 velocity: [0.0; 2],
@@ -168,12 +175,8 @@ impl Motion {
     #[must_use]
     pub fn first_move(&self) -> Option<([f64; 2], [f64; 2])> {
         let moves = |piece: &Piece| piece.velocity != [0.0; 2] || piece.acceleration != [0.0; 2];
-        let index = self.pieces.iter().position(moves)?;
-        let piece = &self.pieces[index];
-        let end = self
-            .pieces
-            .get(index + 1)
-            .map_or(f64::INFINITY, |next| next.start);
+        let index = self.pieces().position(moves)?;
+        let (piece, end) = self.piece(index);
         Some(([piece.start, end], piece.velocity))
     }
 
@@ -192,7 +195,6 @@ impl Motion {
             ));
         }
         let mut motion = Self::at_rest(start);
-        motion.pieces.clear();
         let (mut time, mut position) = (0.0, start);
         for (index, segment) in segments.iter().enumerate() {
             let owner = format!("segments[{index}]");
@@ -213,7 +215,11 @@ impl Motion {
                 velocity: segment.velocity,
                 acceleration: segment.acceleration,
             };
-            motion.pieces.push(piece);
+            if index == 0 {
+                motion.first = piece;
+            } else {
+                motion.later.push(piece);
+            }
             if segment.duration == f64::INFINITY {
                 return Ok(motion);
             }
@@ -221,7 +227,7 @@ impl Motion {
             let (reached, velocity) = piece.at(time);
             position = reached;
             if index + 1 == segments.len() {
-                motion.pieces.push(Piece {
+                motion.later.push(Piece {
                     start: time,
                     position,
                     velocity,
@@ -264,30 +270,24 @@ impl Motion {
                 return Err(Failure::invalid(name, rule, Given::Number(instant)));
             }
         }
-        let mut pieces: Vec<Piece> = time
-            .windows(2)
-            .zip(position.windows(2))
-            .map(|(t, p)| {
-                let rate = |i: usize| (p[1][i] - p[0][i]) / (t[1] - t[0]);
-                Piece {
-                    start: t[0],
-                    position: p[0],
-                    velocity: [rate(0), rate(1)],
-                    acceleration: [0.0; 2],
-                }
-            })
-            .collect();
-        if pieces.is_empty() {
-            let start = *first;
-            pieces.push(Piece {
-                start,
-                position: position[0],
-                velocity: [0.0; 2],
+        let mut pieces = time.windows(2).zip(position.windows(2)).map(|(t, p)| {
+            let rate = |i: usize| (p[1][i] - p[0][i]) / (t[1] - t[0]);
+            Piece {
+                start: t[0],
+                position: p[0],
+                velocity: [rate(0), rate(1)],
                 acceleration: [0.0; 2],
-            });
-        }
+            }
+        });
+        let alone = Piece {
+            start: *first,
+            position: position[0],
+            velocity: [0.0; 2],
+            acceleration: [0.0; 2],
+        };
         Ok(Self {
-            pieces,
+            first: pieces.next().unwrap_or(alone),
+            later: pieces.collect(),
             presence: (*first, *last),
         })
     }
@@ -296,32 +296,26 @@ impl Motion {
     #[must_use]
     pub fn is_stationary(&self) -> bool {
         let stands = |piece: &Piece| piece.velocity == [0.0; 2] && piece.acceleration == [0.0; 2];
-        self.presence == (f64::NEG_INFINITY, f64::INFINITY) && self.pieces.iter().all(stands)
+        self.presence == (f64::NEG_INFINITY, f64::INFINITY) && self.pieces().all(stands)
     }
 
     /// Instant from which the body stands where it is for all time, in s; infinite if there is
     /// none.
     #[must_use]
     pub fn stands_from(&self) -> f64 {
-        match self.pieces.last() {
-            Some(last)
-                if last.velocity == [0.0; 2]
-                    && last.acceleration == [0.0; 2]
-                    && self.presence == (f64::NEG_INFINITY, f64::INFINITY) =>
-            {
-                last.start
-            }
-            _ => f64::INFINITY,
+        let last = self.later.last().unwrap_or(&self.first);
+        let stands = last.velocity == [0.0; 2] && last.acceleration == [0.0; 2];
+        if stands && self.presence == (f64::NEG_INFINITY, f64::INFINITY) {
+            last.start
+        } else {
+            f64::INFINITY
         }
     }
 
     /// Largest speed at any time in m/s, or `None` for a motion that accelerates.
     #[must_use]
     pub fn speed_bound(&self) -> Option<f64> {
-        let steady = self
-            .pieces
-            .iter()
-            .all(|piece| piece.acceleration == [0.0; 2]);
+        let steady = self.pieces().all(|piece| piece.acceleration == [0.0; 2]);
         steady.then(|| self.max_initial_speed())
     }
 
@@ -329,14 +323,22 @@ impl Motion {
     #[must_use]
     pub fn max_initial_speed(&self) -> f64 {
         let speed = |piece: &Piece| piece.velocity[0].hypot(piece.velocity[1]);
-        self.pieces.iter().map(speed).fold(0.0, f64::max)
+        self.pieces().map(speed).fold(0.0, f64::max)
     }
 
     /// The piece of an index, and when the next one begins; infinite for the last one.
     pub(crate) fn piece(&self, index: usize) -> (&Piece, f64) {
-        let next = self.pieces.get(index + 1);
+        let next = self.later.get(index);
         let until = next.map_or(f64::INFINITY, |next| next.start);
-        (&self.pieces[index], until)
+        (self.at_index(index), until)
+    }
+
+    #[inline]
+    fn at_index(&self, index: usize) -> &Piece {
+        match index {
+            0 => &self.first,
+            _ => &self.later[index - 1],
+        }
     }
 
     /// First and last instant of presence, in s.
@@ -348,15 +350,15 @@ impl Motion {
     #[inline]
     #[must_use]
     pub fn at(&self, time: f64, cursor: &mut usize) -> BodyState {
-        let mut index = (*cursor).min(self.pieces.len() - 1);
-        while index > 0 && time < self.pieces[index].start {
+        let mut index = (*cursor).min(self.later.len());
+        while index > 0 && time < self.later[index - 1].start {
             index -= 1;
         }
-        while index + 1 < self.pieces.len() && time >= self.pieces[index + 1].start {
+        while index < self.later.len() && time >= self.later[index].start {
             index += 1;
         }
         *cursor = index;
-        let piece = &self.pieces[index];
+        let piece = self.at_index(index);
         let (position, velocity) = piece.at(time);
         let present = self.presence.0 <= time && time <= self.presence.1;
         BodyState {

@@ -52,8 +52,12 @@ impl Sensing {
                 given(of_robot, bound) + given(of_obstacle, bound)
             }),
         };
-        let closing = given(of_robot, robot.max_speed) + given(of_obstacle, obstacle.max_speed());
-        Ok(closing * latency + error)
+        let of_obstacle = if of_obstacle {
+            obstacle.max_speed()
+        } else {
+            0.0
+        };
+        Ok((given(of_robot, robot.max_speed) + of_obstacle) * latency + error)
     }
 }
 
