@@ -1,7 +1,7 @@
 //! Three-wheel holonomic robot: point mass with limits, wheel kinematics, feed-forward currents.
 
 use crate::error::{Result, not_negative, positive};
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Real, Vector2};
 use crate::robots::wheels::omni_rows;
 use crate::world::geometry::RobotState;
 use crate::world::region::RobotLimits;
