@@ -267,6 +267,24 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
 }
 
 #[test]
+fn a_robot_outside_of_the_box_finds_its_way_back() {
+    let plan = trap_plan();
+    let guidance = Guidance::new(Guide::default(), 0.2, plan.clone());
+    for place in [[0.0, 5.0], [8.5, 6.5], [-9.0, 0.0], [2.0, -4.5]] {
+        let outside = Point::from(place);
+        assert!(plan.view(outside).is_none(), "{place:?}");
+        let (view, local) = guidance.local_goal(outside).unwrap();
+        assert!(plan.sees(outside, local.point));
+        // The cost falls on the way back.
+        let ahead = outside + (local.point - outside).normalize() * 0.2;
+        let (nearer, _) = guidance.local_goal(ahead).unwrap();
+        assert!(nearer.cost < view.cost - 0.1, "{place:?}");
+    }
+    // From within a wall nothing is seen, outside of the box neither.
+    assert!(guidance.local_goal(Point::new(3.0, 0.0)).is_none());
+}
+
+#[test]
 fn what_has_no_plan_is_refused_with_the_reason() {
     let refused = |guide: Guide, map: &StaticMap, ends: [[f64; 2]; 2]| {
         guide

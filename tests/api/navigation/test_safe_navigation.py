@@ -378,3 +378,10 @@ def test_the_shield_reckons_with_the_age_of_what_a_camera_tells() -> None:
     assert late.position[:, 0].max() < told.position[:, 0].max() - 0.01
     # Frames come late: without an age the robot would be as near as if it were told at once.
     assert told.position[:, 0].max() < run(0.0, 0.0).position[:, 0].max() - 0.01
+
+
+@pytest.mark.parametrize("seed", [7_000_005, 7_000_006, 7_000_010, 7_000_011])
+def test_a_robot_that_people_push_out_of_the_box_of_its_guide_comes_back(seed: int) -> None:
+    scene = scenarios.random_traffic(12, seed=seed)
+    guided = SafeNavigation(FIELD, guide=Guide(spacing=0.1), shield=Shield(person_speed=1.0), yielding=Yielding())
+    assert nav.simulate(scene, guided).outcome == "arrived"

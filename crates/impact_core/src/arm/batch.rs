@@ -213,7 +213,10 @@ impl Arm {
                 let value = segment.multiplier * values[segment.source] + segment.addend;
                 let limits = segment.own_limits.unwrap_or_default();
                 within(&limits, value, || {
-                    format!("{}, which mimics, ", name(&segment.joint_name))
+                    format!(
+                        "{}, which follows another joint,",
+                        name(&segment.joint_name)
+                    )
                 })?;
             }
         }

@@ -81,7 +81,7 @@ impl Guidance {
             return false;
         };
         let (had, plan) = (self.around.is_some(), planning.finish());
-        self.around = plan.view(position).is_some().then_some(plan);
+        self.around = plan.view_or_way_back(position).is_some().then_some(plan);
         had || self.around.is_some()
     }
 
@@ -99,11 +99,12 @@ impl Guidance {
             .ok()
     }
 
-    /// Cost at a position and the local goal there; `None` without a plan there.
+    /// Cost at a position and the local goal there, outside of the box of the nodes on the way back into it;
+    /// `None` without a plan there.
     #[must_use]
     pub fn local_goal(&self, position: Vector2<f64>) -> Option<(View, LocalGoal)> {
         let plan = self.plan();
-        let view = plan.view(position)?;
+        let view = plan.view_or_way_back(position)?;
         Some((view, plan.local_goal(position, &view)))
     }
 }

@@ -58,6 +58,16 @@ impl Nodes {
         within(cell.x, self.columns) && within(cell.y, self.rows)
     }
 
+    /// The place in the box of the nodes that is nearest to another one.
+    pub fn nearest(&self, place: Vector2<f64>) -> Vector2<f64> {
+        let last = Vector2::new((self.columns - 1) as f64, (self.rows - 1) as f64);
+        let upper = self.lower + last * self.spacing;
+        Vector2::new(
+            place.x.max(self.lower.x).min(upper.x),
+            place.y.max(self.lower.y).min(upper.y),
+        )
+    }
+
     /// The nodes in the square of so many cells around the node nearest to a place.
     #[allow(clippy::cast_possible_truncation)] // saturates, far outside the grid
     pub fn square(&self, place: Vector2<f64>, reach: i64) -> impl Iterator<Item = usize> {

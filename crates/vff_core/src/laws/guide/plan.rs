@@ -194,11 +194,27 @@ impl Plan {
     /// How the plan looks from a position; `None` if no node with a plan is seen nearby.
     #[must_use]
     pub fn view(&self, position: Vector2<f64>) -> Option<View> {
+        self.view_near(position, position)
+    }
+
+    /// The same for a robot that was pushed out of the box of the nodes, beside people for example: the way
+    /// back leads to nodes at the nearest place of the box.
+    #[must_use]
+    pub fn view_or_way_back(&self, position: Vector2<f64>) -> Option<View> {
+        self.view(position).or_else(|| {
+            let nearest = self.nodes.nearest(position);
+            let outside = nearest != position;
+            outside.then(|| self.view_near(position, nearest)).flatten()
+        })
+    }
+
+    /// How the plan looks from a position by the nodes around a place.
+    fn view_near(&self, position: Vector2<f64>, place: Vector2<f64>) -> Option<View> {
         let least = self.seen_clearance(position);
         let mut near = [(f64::INFINITY, 0_usize); MOST_NEAR];
         for reach in REACHES {
             let mut count = 0;
-            for node in self.nodes.square(position, reach) {
+            for node in self.nodes.square(place, reach) {
                 let cost = self.found.cost[node];
                 if cost.is_finite() {
                     near[count] = (cost + (self.nodes.place(node) - position).norm(), node);

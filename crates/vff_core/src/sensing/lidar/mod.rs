@@ -20,6 +20,9 @@ pub(crate) use scans::Scans;
 pub const MOST_BEAMS: usize = 100_000;
 /// Force laws brake this near to a boundary point beyond the radius of the robot, in m.
 const AT_THE_WALL: f64 = 0.001;
+/// What reads zero is taken to be this far along its beam, in m: at the robot itself it would be in no
+/// direction, and no law would see it.
+const NEAREST: f64 = 1e-9;
 
 /// A lidar on a robot, and what a law is told of its scans.
 ///
@@ -163,7 +166,7 @@ impl Lidar {
         for (beam, range) in ranges.iter().enumerate() {
             if *range < self.range_max {
                 let (sin, cos) = self.bearing(beam).sin_cos();
-                let along = Vector2::new(cos, sin) * range.max(self.range_min);
+                let along = Vector2::new(cos, sin) * range.max(self.range_min).max(NEAREST);
                 points.push(pose.position + pose.outward(along));
             }
         }

@@ -52,6 +52,19 @@ fn four_beams_of_a_turn_look_along_the_axes() {
 }
 
 #[test]
+fn what_reads_zero_stays_in_the_direction_of_its_beam() {
+    let lidar = Lidar {
+        beams: 4,
+        ..Lidar::default()
+    };
+    let (pose, mut points, mut seen) = (Frame::at([3.0, 4.0], 0.0), Vec::new(), Vec::new());
+    lidar.points(&pose, &[10.0, 10.0, 0.0, 10.0], &mut points);
+    boundary_points_of(&points, pose.position, 1.0, 0.5, &mut seen);
+    assert_eq!(seen.len(), 1);
+    assert!(seen[0][0] > 3.0 && seen[0][0] < 3.0 + 1e-6);
+}
+
+#[test]
 fn people_hide_walls_and_the_inside_reads_zero() {
     let narrow = Lidar {
         map: room(),
