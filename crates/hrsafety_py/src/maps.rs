@@ -80,8 +80,10 @@ impl StaticMap {
                 origin: *origin,
                 yaw: *yaw,
             };
-            let added = shapes.grid(cells.as_slice()?, columns, place);
-            added.map_err(CoreError::from)?;
+            let cells = cells.as_slice()?;
+            watched(py, Report::none(), |control| {
+                shapes.grid(cells, columns, place, &|| control.interrupted())
+            })?;
         }
         Ok(Self(py.detach(|| shapes.map())))
     }
@@ -158,8 +160,9 @@ impl StaticMap {
 pub fn squared_cell_distances<'py>(py: Python<'py>, occupied: Cells<'py>) -> PyResult<Matrix<'py>> {
     let (rows, columns) = occupied.as_array().dim();
     let cells = occupied.as_slice()?;
-    let squares = py.detach(|| squared_distances(cells, columns));
-    let squares = squares.map_err(CoreError::from)?;
+    let squares = watched(py, Report::none(), |control| {
+        squared_distances(cells, columns, &|| control.interrupted())
+    })?;
     squares.into_pyarray(py).reshape([rows, columns])
 }
 

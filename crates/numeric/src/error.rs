@@ -66,6 +66,9 @@ pub enum Failure {
     },
 }
 
+/// Asked now and then whether to stop.
+pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// Result of the cores.
 pub type Result<T> = std::result::Result<T, Failure>;
 

@@ -34,7 +34,7 @@ fn floor() -> StaticMap {
         origin: [0.0; 2],
         yaw: 0.0,
     };
-    let added = shapes.grid(&cells, columns, place);
+    let added = shapes.grid(&cells, columns, place, &|| false);
     assert!(added.is_ok());
     shapes.map()
 }

@@ -232,7 +232,7 @@ proptest! {
         let occupied = [true, true, true, true, false, false];
         let place_of = GridPlace { resolution: 0.25, origin: [0.3, -0.4], yaw };
         let mut cells = MapShapes::new();
-        cells.grid(&occupied, 3, place_of).unwrap();
+        cells.grid(&occupied, 3, place_of, &|| false).unwrap();
         let (sin, cos) = yaw.sin_cos();
         let corner = |x: f64, y: f64| [0.3 + cos * x - sin * y, -0.4 + sin * x + cos * y];
         let corners = [
@@ -284,10 +284,16 @@ fn what_is_no_wall_is_refused_with_its_rule() {
         origin: [0.0; 2],
         yaw,
     };
-    assert!(refused(&|map| map.grid(&[true; 4], 2, grid(0.0, 0.0))).contains("resolution"));
-    assert!(refused(&|map| map.grid(&[true; 4], 2, grid(0.1, f64::NAN))).contains("yaw"));
-    assert!(refused(&|map| map.grid(&[true; 4], 3, grid(0.1, 0.0))).contains("whole rows"));
-    assert!(refused(&|map| map.grid(&[], 3, grid(0.1, 0.0))).contains("whole rows"));
+    assert!(
+        refused(&|map| map.grid(&[true; 4], 2, grid(0.0, 0.0), &|| false)).contains("resolution")
+    );
+    assert!(
+        refused(&|map| map.grid(&[true; 4], 2, grid(0.1, f64::NAN), &|| false)).contains("yaw")
+    );
+    assert!(
+        refused(&|map| map.grid(&[true; 4], 3, grid(0.1, 0.0), &|| false)).contains("whole rows")
+    );
+    assert!(refused(&|map| map.grid(&[], 3, grid(0.1, 0.0), &|| false)).contains("whole rows"));
 }
 
 /// A robot at rest at a place, with nobody around.
@@ -351,7 +357,7 @@ fn a_shape_lies_in_the_map_only_as_a_whole() {
         origin: [12.0, 0.0],
         yaw: 0.0,
     };
-    shapes.grid(&[true; 16], 4, place).unwrap();
+    shapes.grid(&[true; 16], 4, place, &|| false).unwrap();
     let map = shapes.map();
     let disc = PlacedShape::disc;
     for (shape, held) in [

@@ -145,10 +145,10 @@ fn no_xml(error: &roxmltree::Error) -> Failure {
 /// Refuses macros that nobody has expanded.
 fn refuse_xacro(document: &Document<'_>) -> Result<()> {
     for node in document.descendants().filter(Node::is_element) {
-        let of_xacro = node
-            .tag_name()
-            .namespace()
-            .is_some_and(|space| space.contains("xacro"));
+        // By the name of its space, or by the prefix that such files give it.
+        let of_xacro = node.tag_name().namespace().is_some_and(|space| {
+            space.contains("xacro") || node.lookup_prefix(space) == Some("xacro")
+        });
         let macros = node
             .attributes()
             .find(|each| each.value().contains("${") || each.value().contains("$("));

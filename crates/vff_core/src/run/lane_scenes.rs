@@ -318,7 +318,7 @@ const ALWAYS: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Lanes;
+    use crate::lanes::{Lanes, Zero};
 
     /// An obstacle at (place, 0) in some lanes, felt within 1 m.
     fn body(place: f64, lanes: &[usize]) -> Body<Lanes<8>> {

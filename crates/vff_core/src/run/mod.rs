@@ -41,14 +41,12 @@ pub(crate) use nominal::{Ways, nominal_runs};
 pub(crate) use plan::{Key, Plan, key_of};
 pub(crate) use table::min_clearance;
 
+pub use crate::error::Interrupted;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::{FieldTerms, Situation, Stop};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
-
-/// Asked now and then whether to stop.
-pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// One run with everything recorded.
 ///

@@ -105,7 +105,8 @@ impl TestPlan {
         interrupted: Interrupted<'_>,
     ) -> Result<TestRow> {
         let (course, scene, noise) = self.test(skirt, index)?;
-        let course = run(skirt, &self.motion, &scene, (course, noise), interrupted)?;
+        let start = (course, noise);
+        let course = run(skirt, &self.motion, &scene, start, |_| (), interrupted)?;
         let nearest_seen = scene.seen.get(course.nearest).copied().unwrap_or(true);
         Ok(TestRow {
             course,

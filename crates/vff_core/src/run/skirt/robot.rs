@@ -172,24 +172,27 @@ pub trait MomentObserver {
     fn moment(&mut self, moment: &Moment<'_>);
 }
 
-impl MomentObserver for () {
+impl<F: FnMut(&Moment<'_>)> MomentObserver for F {
     #[inline]
-    fn moment(&mut self, _moment: &Moment<'_>) {}
+    fn moment(&mut self, moment: &Moment<'_>) {
+        self(moment);
+    }
 }
 
 /// Runs the robot from the origin on a course at an angle in rad until it touches a disc or the
-/// time is over.
+/// time is over; `watch` sees every step.
 ///
 /// # Errors
 /// The state became non-finite, or the caller asked to stop.
-pub(crate) fn run(
+pub fn run(
     skirt: &Skirt,
     motion: &Travel,
     scene: &DiscScene,
     start: (f64, Stream),
+    watch: impl FnMut(&Moment<'_>),
     interrupted: Interrupted<'_>,
 ) -> Result<Course> {
-    let episode = episode(skirt, &*skirt.decider, motion, scene, start, ())?;
+    let episode = episode(skirt, &*skirt.decider, motion, scene, start, watch)?;
     Ok(episode.run(interrupted)?.parts.found)
 }
 

@@ -1,7 +1,7 @@
 //! Exact Euclidean distance transform, Felzenszwalb and Huttenlocher (2012), in whole numbers.
 
-use crate::error::{Failure, Given, Result, at_most};
-use crate::world::map::grid::MOST_CELLS;
+use crate::error::{Failure, Given, Interrupted, Result, at_most};
+use crate::world::map::grid::{MOST_CELLS, going_on};
 
 /// Larger than any squared distance of cells, and small enough to be added to one.
 const NOTHING: i64 = i64::MAX / 4;
@@ -10,8 +10,12 @@ const NOTHING: i64 = i64::MAX / 4;
 /// infinite where there is none. Cells are given row after row.
 ///
 /// # Errors
-/// The cells are not whole rows of `columns`, or there are too many.
-pub fn squared_distances(occupied: &[bool], columns: usize) -> Result<Vec<f64>> {
+/// The cells are not whole rows of `columns`, there are too many, or the caller asked to stop.
+pub fn squared_distances(
+    occupied: &[bool],
+    columns: usize,
+    interrupted: Interrupted<'_>,
+) -> Result<Vec<f64>> {
     at_most("cells", occupied.len(), MOST_CELLS)?;
     if columns == 0 || !occupied.len().is_multiple_of(columns) || occupied.is_empty() {
         let rule = "be whole rows of cells, one at least";
@@ -21,10 +25,12 @@ pub fn squared_distances(occupied: &[bool], columns: usize) -> Result<Vec<f64>> 
     let rows = occupied.len() / columns;
     let mut squares = vec![NOTHING; occupied.len()];
     for column in 0..columns {
+        going_on(interrupted)?;
         within_column(occupied, &mut squares, column, columns, rows);
     }
     let mut envelope = Envelope::with_room(columns);
     for row in squares.chunks_exact_mut(columns) {
+        going_on(interrupted)?;
         envelope.lower(row);
     }
     let distance = |square: i64| {
@@ -126,11 +132,11 @@ mod tests {
         cells[0] = true;
         cells[11] = true;
         let expected = [0.0, 1.0, 4.0, 4.0, 1.0, 2.0, 2.0, 1.0, 4.0, 4.0, 1.0, 0.0];
-        assert_eq!(squared_distances(&cells, 4).unwrap(), expected);
-        let nothing = squared_distances(&[false; 6], 3).unwrap();
+        assert_eq!(squared_distances(&cells, 4, &|| false).unwrap(), expected);
+        let nothing = squared_distances(&[false; 6], 3, &|| false).unwrap();
         assert!(nothing.iter().all(|distance| *distance == f64::INFINITY));
-        assert!(squared_distances(&[], 3).is_err());
-        assert!(squared_distances(&[true; 5], 3).is_err());
+        assert!(squared_distances(&[], 3, &|| false).is_err());
+        assert!(squared_distances(&[true; 5], 3, &|| false).is_err());
     }
 
     #[test]
@@ -144,7 +150,7 @@ mod tests {
                     (word >> 8).is_multiple_of(share)
                 })
                 .collect();
-            let found = squared_distances(&cells, columns).unwrap();
+            let found = squared_distances(&cells, columns, &|| false).unwrap();
             for (at, found) in found.iter().enumerate() {
                 let square = |other: usize| {
                     let x = (at % columns).abs_diff(other % columns);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::error::{Failure, Given, Result, at_most, finite, finite_pair, positive};
+use crate::error::{Failure, Given, Interrupted, Result, at_most, finite, finite_pair, positive};
 use crate::world::frame::Frame;
 use crate::world::map::capsule::Capsule;
 
@@ -85,21 +85,32 @@ impl Cells {
     }
 
     /// Number of segments of the boundary.
-    pub fn count_boundary(&self) -> usize {
+    pub fn count_boundary(&self, interrupted: Interrupted<'_>) -> Result<usize> {
         let mut count = 0;
-        self.each_run(|_, _| count += 1);
-        count
+        self.each_run(interrupted, |_, _| count += 1)?;
+        Ok(count)
     }
 
     /// Adds the boundary between occupied and free cells as segments, as long as may be.
-    pub fn boundary(&self, segments: &mut Vec<Capsule>) {
-        self.each_run(|from, to| segments.push(Capsule::wall(from, to, 0.0)));
+    pub fn boundary(
+        &self,
+        segments: &mut Vec<Capsule>,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
+        self.each_run(interrupted, |from, to| {
+            segments.push(Capsule::wall(from, to, 0.0));
+        })
     }
 
     /// Calls with the ends of every straight piece of the boundary.
-    fn each_run(&self, mut piece: impl FnMut(Vector2<f64>, Vector2<f64>)) {
+    fn each_run(
+        &self,
+        interrupted: Interrupted<'_>,
+        mut piece: impl FnMut(Vector2<f64>, Vector2<f64>),
+    ) -> Result<()> {
         // Edges between a cell and the one to its left, and between it and the one below it.
         for column in 0..=self.columns {
+            going_on(interrupted)?;
             let differs = |row: usize| {
                 let left = column > 0 && self.occupied(column - 1, row);
                 let right = column < self.columns && self.occupied(column, row);
@@ -110,6 +121,7 @@ impl Cells {
             });
         }
         for row in 0..=self.rows {
+            going_on(interrupted)?;
             let differs = |column: usize| {
                 let below = row > 0 && self.occupied(column, row - 1);
                 let above = row < self.rows && self.occupied(column, row);
@@ -119,7 +131,16 @@ impl Cells {
                 piece(self.corner(first, row), self.corner(end, row));
             });
         }
+        Ok(())
     }
+}
+
+/// An error if the caller asked to stop.
+pub(super) fn going_on(interrupted: Interrupted<'_>) -> Result<()> {
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    Ok(())
 }
 
 /// Calls with the first and the end of every run of places that hold.

@@ -15,7 +15,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use crate::error::{Failure, Given, Result, at_most, finite_pair, not_negative, positive};
+use crate::error::{
+    Failure, Given, Interrupted, Result, at_most, finite_pair, not_negative, positive,
+};
 use crate::world::map::grid::Cells;
 use crate::world::map::index::Index;
 use crate::world::shape::{PlacedShape, Shape};
@@ -117,12 +119,18 @@ impl MapShapes {
     /// of the grid is free.
     ///
     /// # Errors
-    /// The place is not allowed, the number of cells is not that of the rows and columns, or the
-    /// boundary has too many segments.
-    pub fn grid(&mut self, occupied: &[bool], columns: usize, place: GridPlace) -> Result<()> {
+    /// The place is not allowed, the number of cells is not that of the rows and columns, the
+    /// boundary has too many segments, or the caller asked to stop.
+    pub fn grid(
+        &mut self,
+        occupied: &[bool],
+        columns: usize,
+        place: GridPlace,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
         let cells = Cells::new(occupied, columns, place)?;
-        self.room_for("segments", cells.count_boundary())?;
-        cells.boundary(&mut self.capsules);
+        self.room_for("segments", cells.count_boundary(interrupted)?)?;
+        cells.boundary(&mut self.capsules, interrupted)?;
         self.grids.push(cells);
         Ok(())
     }
