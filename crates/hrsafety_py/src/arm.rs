@@ -83,6 +83,7 @@ impl Arm {
         fields.value("payload_mass", arm.payload_mass)?;
         fields.value("iso_mass", arm.iso_mass())?;
         fields.value("suspicious_links", &arm.suspicious)?;
+        fields.value("links_without_mass", &arm.without_mass)?;
         fields.value("has_armature", arm.has_armature)?;
         Ok(fields.finish())
     }

@@ -76,6 +76,11 @@ class Facts(Parameters):
         return tuple(self._facts["suspicious_links"])
 
     @property
+    def links_without_mass(self) -> tuple[str, ...]:
+        """Moving links with a shape but no ``inertial``: what they weigh is missing in every mass."""
+        return tuple(self._facts["links_without_mass"])
+
+    @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why masses may not be what they seem."""
         found = []
@@ -84,4 +89,7 @@ class Facts(Parameters):
         for link in self.suspicious_links:
             message = f"link {link!r} has a radius of gyration below 2 mm: its inertia is hardly real"
             found.append(ResultWarning("suspicious_link", f"link[{link!r}]", message))
+        for link in self.links_without_mass:
+            message = f"link {link!r} has a shape but no inertial: without what it weighs masses are too low"
+            found.append(ResultWarning("link_without_mass", f"link[{link!r}]", message))
         return tuple(found)

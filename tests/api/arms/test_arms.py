@@ -74,6 +74,21 @@ def test_links_below_two_millimeters_are_suspicious() -> None:
     assert [each.code for each in arm.warnings] == ["no_motor_inertia", "suspicious_link"]
 
 
+def test_moving_links_with_a_shape_but_no_inertial_are_told() -> None:
+    box = "<{0}><geometry><box size='.1 .1 .1'/></geometry></{0}>"
+    joints = (joint("one", "base", "a"), joint("two", "a", "b", kind="fixed"))
+    for shape in ("visual", "collision"):
+        arm = arms.Arm.from_urdf(robot(link("a"), link("b", box.format(shape)), *joints))
+        assert arm.links_without_mass == ("b",)
+        assert [each.code for each in arm.warnings] == ["no_motor_inertia", "link_without_mass"]
+        masses = arm.point_masses([0.0], link="a", point=(0.0, 0.4, 0.0), direction=(1, 0, 0))
+        assert "link_without_mass" in [each.code for each in masses.warnings]
+    frame = robot(link("a"), link("b", ""), *joints)  # as tools have
+    seen = '<link name="base">' + box.format("visual")  # which no joint moves
+    for text in (frame, frame.replace('<link name="base">', seen)):
+        assert arms.Arm.from_urdf(text).links_without_mass == ()
+
+
 # ---- options --------------------------------------------------------------------------------
 
 

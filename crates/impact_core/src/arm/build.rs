@@ -201,7 +201,7 @@ impl<'a> Builder<'a> {
 
     /// Puts the inertias of the links where they hang.
     fn finish(mut self) -> Result<Arm> {
-        let mut suspicious = Vec::new();
+        let (mut suspicious, mut without_mass) = (Vec::new(), Vec::new());
         let mut moving_mass = 0.0;
         for (text, (segment, frame)) in self.description.links.iter().zip(&self.places) {
             let Some(segment) = segment else { continue };
@@ -213,6 +213,9 @@ impl<'a> Builder<'a> {
                 .is_some_and(|radius| radius < LEAST_GYRATION)
             {
                 suspicious.push(text.name.clone());
+            }
+            if text.shape_without_mass {
+                without_mass.push(text.name.clone());
             }
         }
         numeric::error::finite("mass of all links", moving_mass)?;
@@ -242,6 +245,7 @@ impl<'a> Builder<'a> {
             moving_mass,
             payload_mass: 0.0,
             suspicious,
+            without_mass,
             has_armature: self.options.armature.iter().any(|(_, value)| *value > 0.0),
         })
     }

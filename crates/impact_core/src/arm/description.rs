@@ -20,6 +20,8 @@ pub struct LinkText {
     pub name: String,
     /// Inertia in the frame of the link; none without `inertial`.
     pub body: Body,
+    /// Whether it has a shape to see or to touch, but no `inertial`.
+    pub shape_without_mass: bool,
 }
 
 /// How a joint moves.
@@ -168,11 +170,20 @@ fn refuse_xacro(document: &Document<'_>) -> Result<()> {
 fn link(node: Node<'_, '_>) -> Result<LinkText> {
     let (element, name) = Element::named(node)?;
     element.spelled(&LINK)?;
-    let body = match element.child("inertial")? {
+    let inertial = element.child("inertial")?;
+    let mut children = node.children();
+    let shaped =
+        children.any(|child| child.has_tag_name("visual") || child.has_tag_name("collision"));
+    let shape_without_mass = shaped && inertial.is_none();
+    let body = match inertial {
         Some(inertial) => body(&inertial).map_err(|failure| about(failure, &name))?,
         None => Body::default(),
     };
-    Ok(LinkText { name, body })
+    Ok(LinkText {
+        name,
+        body,
+        shape_without_mass,
+    })
 }
 
 /// Puts the name of its link before what only knows that a number is wrong.

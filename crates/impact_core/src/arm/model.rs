@@ -92,6 +92,8 @@ pub struct Arm {
     pub payload_mass: f64,
     /// Links whose radius of gyration is below 2 mm.
     pub suspicious: Vec<String>,
+    /// Links that some joint moves and that have a shape, but no inertia.
+    pub without_mass: Vec<String>,
     /// Whether some joint has a motor inertia.
     pub has_armature: bool,
 }
