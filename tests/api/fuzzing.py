@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety import arms, datasets, impact, reactive, scenarios, standards, sweep
+from hrsafety import arms, contact, datasets, impact, reactive, scenarios, standards, sweep
 from hrsafety import navigation as nav
 
 NAN, INF = float("nan"), float("inf")
@@ -45,6 +45,28 @@ STILL = dict.fromkeys(WEIGHED.joint_names[:4], 0.0)
 POINT: dict[str, Any] = {"joints": np.zeros(6), "link": "tool", "point": (0.0, 0.0, 0.1), "threads": 1}
 APART = {"reaction_time": 0.1, "deceleration": 3.0, "human_speed": 1.6, "intrusion": 0.2, "uncertainty": 0.1}
 LEADER = reactive.FollowerLayouts(kind="static").scene(0)
+
+PAD = contact.Covering(
+    material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9), thickness=0.02, shape="flat", area=4e-3
+)
+TOUCH = {"robot_mass": 16.0, "body_mass": 0.6, "region": 75e3}
+BORNE = {"force": 280.0, "pressure": 3.8e6}
+TRAP = nav.StaticMap.from_polylines([[(3.0, -1.5), (3.0, 1.5)], [(1.0, 1.5), (3.0, 1.5)], [(1.0, -1.5), (3.0, -1.5)]])
+WALKER = nav.crowd.Person(start=(1.0, 2.0), route=[(3.0, 2.0)])
+CROSSER = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(3.0, 0.0))
+
+
+def _crowd(**given: Any) -> nav.crowd.CrowdTrajectories:
+    return nav.crowd.simulate_crowd(nav.crowd.World(**given))
+
+
+def _update(**told: Any) -> object:
+    """Answer the second update of a new controller."""
+    law = nav.SafeNavigation(FIELD, shield=nav.Shield(), yielding=nav.Yielding())
+    controller = nav.Controller(law, nav.HolonomicRobot(), (5.0, 0.0), people=2)
+    controller.update(0.0, (0.0, 0.0), (0.0, 0.0))
+    return controller.update(**told)
+
 
 # Calls that are right, and cheap enough to be made thousands of times.
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
@@ -199,6 +221,90 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "random_traffic": (scenarios.random_traffic, {"obstacles": 2, "seed": 0}),
     "Recording": (datasets.Recording, dict(WALK)),
     "Recording.humans": (RECORDING.humans, {"start_time": 0.2, "duration": 1.0}),
+    "contact.allowed_speed": (
+        contact.allowed_speed,
+        {
+            **TOUCH,
+            "limits": dict(BORNE),
+            "covering": PAD,
+            "max_strain": 0.7,
+            "human_speed": 0.1,
+            "robot_stiffness": 0.0,
+        },
+    ),
+    "contact.allowed_speed bare": (contact.allowed_speed, {**TOUCH, "limits": dict(BORNE), "area": 1e-4}),
+    "contact.allowed_speeds": (
+        contact.allowed_speeds,
+        {**TOUCH, "limits": dict(BORNE), "covering": PAD, "thickness": [0.01, 0.02], "threads": 1},
+    ),
+    "contact.simulate": (
+        contact.simulate,
+        {**TOUCH, "closing_speed": 0.3, "covering": PAD, "stop": (0.01, 5.0), "horizon": 0.1, "body_stiffness": 0.0},
+    ),
+    "contact.batch": (contact.batch, {**TOUCH, "closing_speed": [0.3, 0.5], "covering": PAD, "threads": 1}),
+    "contact.thickness": (contact.thickness, {**TOUCH, "speed": 0.8, "limits": dict(BORNE), "covering": PAD}),
+    "contact.probability": (
+        contact.probability,
+        {**TOUCH, "speed": 0.8, "limits": dict(BORNE), "covering": PAD, "draws": 200, "seed": 1},
+    ),
+    "contact.sensitivity": (contact.sensitivity, {**TOUCH, "limits": dict(BORNE), "covering": PAD}),
+    "contact.contact_speed_limit": (
+        contact.contact_speed_limit,
+        {
+            "base": contact.HolonomicBase(mass=20.0, inertia=0.8),
+            "covering": None,
+            "point": (0.2, 0.0),
+            "normal": (1.0, 0.0),
+            "regions": [LIMITS.contact("lower_leg")],
+            "area": 1e-4,
+        },
+    ),
+    "Covering.column": (PAD.column, {"compression": 0.01}),
+    "crowd.decide": (
+        nav.crowd.decide,
+        {
+            "model": nav.crowd.Moussaid(),
+            "position": [(0.0, 0.0), (1.0, 0.0)],
+            "velocity": [(0.0, 1.0), (0.0, 0.0)],
+            "goal": [(5.0, 0.0), (1.0, 4.0)],
+            "radius": 0.2,
+            "desired_speed": 1.0,
+            "walls": [nav.Disc(center=(2.0, 0.0), radius=0.1)],
+            "step": 0.05,
+        },
+    ),
+    "crowd.simulate": (_crowd, {"people": [WALKER], "robots": [CROSSER], "step": 0.05, "time_limit": 1.0, "seed": 0}),
+    "metrics.evaluate": (
+        nav.metrics.evaluate,
+        {
+            "run": np.stack([TIME, 0.0 * TIME], axis=1),
+            "people": np.full((21, 1, 2), 1.5),
+            "step": 0.1,
+            "goal": (2.0, 0.0),
+            "robot_radius": 0.2,
+        },
+    ),
+    "Shield.decide": (
+        nav.Shield().decide,
+        {"wanted": (0.5, 0.0), "velocity": (0.1, 0.0), "people": [(2.0, 0.0)], "max_acceleration": 10.0},
+    ),
+    "Controller.update": (
+        _update,
+        {
+            "time": 0.06,
+            "position": (0.0, 0.0),
+            "velocity": (0.1, 0.0),
+            "people": {"a": (3.0, 0.0, 0.0, 0.0)},
+            "gone": (),
+        },
+    ),
+    "StaticMap.clearance": (TRAP.clearance, {"point": (0.0, 0.0)}),
+    "StaticMap.ray": (TRAP.ray, {"start": (0.0, 0.0), "bearing": 0.1}),
+    "StaticMap.boundary_points": (TRAP.boundary_points, {"point": (0.0, 0.0), "reach": 2.0, "kappa": 0.5}),
+    "Guide.plan": (
+        nav.Guide(spacing=0.2).plan,
+        {"map": TRAP, "radius": 0.2, "start": (0.0, 0.0), "goal": (5.0, 0.0)},
+    ),
     "Axis": (sweep.Axis, {"name": "x", "low": 0.0, "high": 1.0, "points": 4}),
     "LatinHypercube": (sweep.LatinHypercube, {"axes": [AXIS], "size": 8, "seed": 0}),
     "Sobol": (sweep.Sobol, {"axes": [AXIS], "size": 8, "seed": 0}),

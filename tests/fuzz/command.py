@@ -1,9 +1,9 @@
 """The command: random inputs to every public constructor, many functions and all readers of files.
 
 Each input is made from the seed and its number alone, so that ``--only NUMBER`` repeats it. An answer is
-right if it is a result, or an error of the package; a parameter object must hold no NaN, and an answer
-comes within seconds. Everything else is printed, and the exit code is 1. A process that hangs or dies is
-noticed from outside and replaced.
+right if it is a result, or an error of the package; a parameter object must hold no NaN, a result none
+without a status or a warning, and an answer comes within seconds. Everything else is printed, and the exit
+code is 1. A process that hangs or dies is noticed from outside and replaced.
 """
 
 from __future__ import annotations

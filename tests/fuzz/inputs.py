@@ -16,6 +16,7 @@ import numpy as np
 from api.fuzzing import CALLS
 from fuzz.constructors import Right, constructors
 from fuzz.readers import damaged, readers
+from fuzz.results import missing_numbers, says_why
 from fuzz.values import spoiled
 from hrsafety import HrsafetyError
 
@@ -26,6 +27,8 @@ ANSWERS = ("results", "errors", "escapes")
 
 # Of all inputs: calls of functions take milliseconds, constructors microseconds.
 FUNCTION_SHARE, FILE_SHARE = 0.04, 0.02
+# Functions whose documentation says where a result holds NaN, without a status beside it.
+DOCUMENTED = frozenset({"metrics.evaluate", "crowd.simulate"})
 MOST_SHOWN = 2000
 
 
@@ -70,6 +73,8 @@ class Inputs:
         self._groups = (list(made), list(CALLS), list(self._files))
         self.names = [name for group in self._groups for name in group]
         self._number = {name: index for index, name in enumerate(self.names)}
+        # What is NaN in the answer to a right call, by function; found when it is needed.
+        self._usual: dict[str, set[str]] = {}
 
     def target(self, draws: random.Random) -> str:
         """Return what is called."""
@@ -96,12 +101,26 @@ class Inputs:
             content = damaged(self._contents[name], draws)
             path.write_bytes(content)
             try:
-                return _answered(target, reader, {"path": path}, content, made=False)
+                return _answered(target, reader, {"path": path}, content, made=False)[0]
             finally:
                 path.write_bytes(self._contents[name])
         function, right = self._targets[name]
         arguments = _spoiled(right, draws)
-        return _answered(target, function, arguments, arguments, made=name not in CALLS)
+        outcome, result = _answered(target, function, arguments, arguments, made=name not in CALLS)
+        silent = self._silent(name, result) if name in CALLS and result is not None else []
+        if not silent:
+            return outcome
+        return Outcome(target, "escapes", f"silent NaN in {', '.join(silent)}", repr(arguments)[:MOST_SHOWN])
+
+    def _silent(self, name: str, result: object) -> list[str]:
+        """Return what is NaN in a result that does not say why, beside what always is."""
+        found = missing_numbers(result)
+        if not found or name in DOCUMENTED or says_why(result):
+            return []
+        if name not in self._usual:
+            function, right = CALLS[name]
+            self._usual[name] = missing_numbers(function(**right))
+        return sorted(found - self._usual[name])
 
 
 def _spoiled(right: Right, draws: random.Random) -> Right:
@@ -113,8 +132,10 @@ def _spoiled(right: Right, draws: random.Random) -> Right:
     return arguments
 
 
-def _answered(target: int, function: Callable[..., Any], given: Right, shown: object, *, made: bool) -> Outcome:
-    """Call, and return how it was answered; ``made``: whether a parameter object comes out."""
+def _answered(
+    target: int, function: Callable[..., Any], given: Right, shown: object, *, made: bool
+) -> tuple[Outcome, object]:
+    """Call, and return how it was answered, and the result; ``made``: whether a parameter object comes out."""
     told = ""
     try:
         with warnings.catch_warnings():
@@ -122,17 +143,17 @@ def _answered(target: int, function: Callable[..., Any], given: Right, shown: ob
             result = function(given["path"]) if isinstance(shown, bytes) else function(**given)
         empty = _fields_without_number(result) if made else []
         if not empty:
-            return Outcome(target, "results")
+            return Outcome(target, "results"), result
         told = f"silent NaN in {', '.join(empty)}"
     except HrsafetyError as error:
         if str(error):
-            return Outcome(target, "errors")
+            return Outcome(target, "errors"), None
         told = "an error without a message"
     except KeyboardInterrupt:
         raise
     except BaseException as error:
         told = f"{type(error).__name__}: {error}"
-    return Outcome(target, "escapes", told, repr(shown)[:MOST_SHOWN])
+    return Outcome(target, "escapes", told, repr(shown)[:MOST_SHOWN]), None
 
 
 def _fields_without_number(made: object) -> list[str]:

@@ -150,7 +150,7 @@ def separation_distance(
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     speeds, rows, braking, shape = _rows("robot_speed", robot_speed, rules, deceleration, stopping)
     if stopping is None:
-        found = _hrsafety.separation_distances(speeds, braking, rows)
+        found = _with_answer("robot_speed", speeds, _hrsafety.separation_distances(speeds, braking, rows))
     else:
         found = _stops(stopping).curve(load, extension).distances(speeds, rows)
     return found.reshape(shape) if shape else float(found[0])
@@ -194,7 +194,7 @@ def separation_speed(
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     distances, rows, braking, shape = _rows("distance", distance, rules, deceleration, stopping)
     if stopping is None:
-        found = _hrsafety.separation_speeds(distances, braking, rows)
+        found = _with_answer("distance", distances, _hrsafety.separation_speeds(distances, braking, rows))
     else:
         found, _ = _stops(stopping).curve(load, extension).speeds(distances, rows)
     return found.reshape(shape) if shape else float(found[0])
@@ -302,7 +302,7 @@ def speed_over_distance(
     braked = None if deceleration is None else number("deceleration", deceleration)
     distances, rows, braking, _ = _rows("distance", given, single, braked, stopping)
     if stopping is None:
-        apart = _hrsafety.separation_speeds(distances, braking, rows)
+        apart = _with_answer("distance", distances, _hrsafety.separation_speeds(distances, braking, rows))
         beyond = np.zeros(len(given), dtype=bool)
     else:
         apart, beyond = _stops(stopping).curve(load, extension).speeds(distances, rows)
@@ -324,6 +324,16 @@ def _stops(stopping: object) -> StoppingData:
     if not isinstance(stopping, StoppingData):
         raise InvalidParameterError("stopping", "be StoppingData", stopping)
     return stopping
+
+
+def _with_answer(name: str, given: Array, found: Array) -> Array:
+    """Return what was found; squares and quotients of extreme numbers leave the range of numbers."""
+    empty = np.isnan(found)
+    if empty.any():
+        row = int(np.argmax(empty))
+        label = name if len(given) == 1 else f"{name}[{row}]"
+        raise InvalidParameterError(label, "have an answer with the other numbers", float(given[row]))
+    return found
 
 
 def _rules(

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -65,6 +66,23 @@ def test_a_nan_that_is_kept_and_a_foreign_error_are_escapes(some: Inputs, monkey
     assert "silent NaN in value" in some.answer(0).told
     monkeypatch.setitem(some._targets, "impact.Foam", (len, {"obj": 0.0}))
     assert some.answer(0).answer == "escapes"
+
+
+def test_a_nan_in_a_result_without_a_word_is_an_escape(some: Inputs, monkeypatch: pytest.MonkeyPatch) -> None:
+    def answer(value: float) -> dict[str, object]:
+        return {"speed": [1.0, value], "time": float("nan")}
+
+    def with_status(value: float) -> SimpleNamespace:
+        return SimpleNamespace(speed=value, status="no_impact")
+
+    for function, told in ((answer, "silent NaN in speed.[]"), (with_status, "")):
+        monkeypatch.setitem(fuzzing.CALLS, "spoiled", (function, {"value": 0.0}))
+        monkeypatch.setitem(some._targets, "spoiled", fuzzing.CALLS["spoiled"])
+        monkeypatch.setitem(some._number, "spoiled", 0)
+        monkeypatch.setattr(some, "target", lambda _draws: "spoiled")
+        monkeypatch.setattr(drawn, "spoiled", lambda _right, _draws: float("nan"))
+        some._usual.pop("spoiled", None)
+        assert some.answer(0).told == told
 
 
 def test_an_input_is_the_same_by_its_number(some: Inputs) -> None:

@@ -224,3 +224,11 @@ def test_a_template_has_the_columns_and_no_values(tmp_path: Path, kind: str) -> 
         standards.limits(path)
     assert all(column in standards.template(kind) for column in HEADER.split(","))
     assert not any(character.isdigit() for character in standards.template("csv").replace("cm2", ""))
+
+
+def test_separations_of_numbers_without_a_quotient_are_refused() -> None:
+    extreme = {"reaction_time": 0.1, "deceleration": 1e-308, "human_speed": 0.0}
+    with pytest.raises(InvalidParameterError, match="robot_speed must have an answer"):
+        standards.separation_distance(1e308, **extreme)
+    with pytest.raises(InvalidParameterError, match=r"robot_speed\[1\] must have an answer"):
+        standards.separation_distance([1.0, 1e308], **extreme)
