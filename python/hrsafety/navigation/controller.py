@@ -342,9 +342,7 @@ class Controller:
 
     def _left(self, gone: Iterable[Hashable], seen: Mapping[Hashable, object] | npt.ArrayLike | None) -> list[int]:
         """Return the places of those who left; nobody can have left who is measured in the same update."""
-        if isinstance(gone, str) or not isinstance(gone, Iterable):
-            raise InvalidParameterError("gone", "be names in a list, a tuple or a set", gone)
-        names = list(gone)
+        names = sequence("gone", "be names in a list, a tuple or a set", gone)
         for name in names:
             if not isinstance(name, Hashable):
                 raise InvalidParameterError("gone", "hold names as they stand in people", name)

@@ -273,6 +273,7 @@ def test_who_is_faster_than_the_shield_reckons_with_is_named() -> None:
         ({"people": {"a": {"x": 1.0, "y": 2.0, "vx": 0.0, "vy": 0.0}}}, r"people\['a'\] must be a Sighting"),
         ({"gone": "Ada"}, "gone must be names"),
         ({"gone": 5}, "gone must be names"),
+        ({"gone": np.array(1.0)}, "gone must be names"),
         ({"gone": [["a"]]}, "gone must hold names"),
         ({"gone": ["a"], "people": {"a": (3.0, 0.0, 0.0, 0.0)}}, "nobody who is measured in the same update"),
         ({"people": {"a": (math.nan, 0.0, 0.0, 0.0)}}, "finite"),
