@@ -435,9 +435,15 @@ def _add_benchmark(commands: Any) -> None:
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
 
+def _starter(word: str) -> str:
+    """Return the kind of file that a command reads, for those who name the command."""
+    return {"simulate": "scenario", "optimize": "gains"}.get(word, word)
+
+
 def _add_init(commands: Any) -> None:
     parser = _add_command(commands, "init", summary="write a commented file to start from", example=_INIT_EXAMPLE)
-    parser.add_argument("kind", choices=tuple(STARTERS), metavar="KIND", help=", ".join(STARTERS))
+    words = f"{', '.join(STARTERS)}, or the command that reads it"
+    parser.add_argument("kind", type=_starter, choices=tuple(STARTERS), metavar="KIND", help=words)
     parser.add_argument("file", nargs="?", metavar="FILE", help="where to write it [a name of its kind]")
 
 

@@ -98,3 +98,12 @@ def test_info_names_versions_and_every_extra(capsys: pytest.CaptureFixture[str])
     for extra in set(offered) - {"test", "dev", "docs", "all"}:
         assert f"\n{extra} " in shown, extra
     assert "test" not in {line.split(" ")[0] for line in shown.splitlines()}
+
+
+@pytest.mark.parametrize(("command", "file"), [("simulate", "my_first_crossing.toml"), ("optimize", "gain_study.toml")])
+def test_init_takes_the_command_for_its_file(
+    command: str, file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", command]) == 0
+    assert (tmp_path / file).exists()
