@@ -60,6 +60,11 @@ def _crowd(**given: Any) -> nav.crowd.CrowdTrajectories:
     return nav.crowd.simulate_crowd(nav.crowd.World(**given))
 
 
+def _scores(**given: Any) -> tuple[object, ...]:
+    """Return the columns of the metrics of positions."""
+    return tuple(nav.metrics.evaluate(**given).columns().items())
+
+
 def _update(**told: Any) -> object:
     """Answer the second update of a new controller."""
     law = nav.SafeNavigation(FIELD, shield=nav.Shield(), yielding=nav.Yielding())
@@ -275,7 +280,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "crowd.simulate": (_crowd, {"people": [WALKER], "robots": [CROSSER], "step": 0.05, "time_limit": 1.0, "seed": 0}),
     "metrics.evaluate": (
-        nav.metrics.evaluate,
+        _scores,
         {
             "run": np.stack([TIME, 0.0 * TIME], axis=1),
             "people": np.full((21, 1, 2), 1.5),
