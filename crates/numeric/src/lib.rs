@@ -1,9 +1,10 @@
 //! What all cores stand on: errors with their data, checks of numbers, numbers and vectors side by
-//! side, streams of random numbers, threads.
+//! side, elementary functions of them, streams of random numbers, threads.
 
 #![forbid(unsafe_code)]
 
 pub mod angle;
+pub mod elementary;
 pub mod error;
 pub mod lanes;
 pub mod parallel;

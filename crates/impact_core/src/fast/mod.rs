@@ -8,7 +8,6 @@
 //! any width.
 
 pub(crate) mod apart;
-mod elementary;
 mod humps;
 mod maxima;
 mod modes;

@@ -13,8 +13,8 @@
 
 use super::Each;
 use super::apart::apart;
-use super::elementary::{cosine_and_sine, exponential};
 use crate::series::Plant;
+use numeric::elementary::{cosine_and_sine, exponential};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 

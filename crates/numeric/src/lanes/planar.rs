@@ -11,6 +11,12 @@ pub trait Planar<R: Real> {
     /// The vector turned counter-clockwise by a right angle.
     #[must_use]
     fn left_normal(self) -> Self;
+    /// The length.
+    #[must_use]
+    fn length(self) -> R;
+    /// The vector over a number.
+    #[must_use]
+    fn over(self, divisor: R) -> Self;
     /// `then` where the mask is true, `otherwise` elsewhere.
     #[must_use]
     fn select(mask: R::Mask, then: Self, otherwise: Self) -> Self;
@@ -26,6 +32,14 @@ impl<R: Real> Planar<R> for Vector2<R> {
     #[inline(always)]
     fn left_normal(self) -> Self {
         Self::new(-self.y, self.x)
+    }
+    #[inline(always)]
+    fn length(self) -> R {
+        self.dot(&self).sqrt()
+    }
+    #[inline(always)]
+    fn over(self, divisor: R) -> Self {
+        Self::new(self.x / divisor, self.y / divisor)
     }
     #[inline(always)]
     fn select(mask: R::Mask, then: Self, otherwise: Self) -> Self {

@@ -2,10 +2,11 @@
 //! numbers of `JuPedSim`. People behind walls count, too.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
+use crate::crowd::neighbors::{Each, Unnoticed};
+use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};
 use crate::crowd::walls::pushes;
-use crate::lanes::Vector2;
+use crate::lanes::{Planar, Real, Vector2, Zero};
+use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;
 
@@ -27,18 +28,26 @@ pub struct CollisionFreeSpeed {
 }
 
 impl CollisionFreeSpeed {
-    /// Direction in which a person walks: `e` turned by the others.
-    fn heading(&self, own: &Walker, around: &Around<'_>) -> Vector {
+    /// Direction in which a person walks: `e` turned by the others, who are kept.
+    #[inline(always)]
+    fn heading(&self, own: &Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let me = &own.agent;
         let mut sum = me.direction;
         let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(me, limits, Unnoticed::Skipped, |neighbor| {
-                let overlap = me.radius + neighbor.agent.radius - neighbor.distance;
-                let size = self.strength * (overlap / self.range).exp();
-                sum += neighbor.normal * (neighbor.weight * size);
+        let (neighbors, Room { near, ahead, .. }) = (around.neighbors, room);
+        ahead.clear();
+        for others in neighbors.near(me, limits, Unnoticed::Skipped, near) {
+            let touch = Each::splat(me.radius) + others.radius();
+            let overlap = touch - others.distance;
+            let size = Each::splat(self.strength) * exp(overlap / Each::splat(self.range));
+            others.add(others.normal * (others.weight * size), &mut sum);
+            let gap = (others.distance - touch) / others.weight;
+            ahead.push(Body {
+                offset: others.offset,
+                gap: Each::select(others.present(), gap, Each::splat(f64::INFINITY)),
+                touch,
             });
+        }
         sum += pushes(around.walls, me.position, |near| {
             let overlap = me.radius - near.distance;
             near.normal * (self.wall_strength * (overlap / self.wall_range).exp())
@@ -50,33 +59,31 @@ impl CollisionFreeSpeed {
             sum / length
         }
     }
+}
 
-    /// Way in m that is free ahead.
-    fn spacing(&self, own: &Walker, around: &Around<'_>) -> f64 {
-        let (me, ahead) = (&own.agent, own.heading);
-        let mut least = f64::INFINITY;
-        let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(me, limits, Unnoticed::Skipped, |neighbor| {
-                let touch = me.radius + neighbor.agent.radius;
-                let offset = neighbor.offset;
-                if -ahead.dot(&offset) >= 0.0 && ahead.perp(&offset).abs() <= touch {
-                    least = least.min((neighbor.distance - touch) / neighbor.weight);
-                }
-            });
-        least
+/// Way in m that is free ahead.
+#[inline(always)]
+fn spacing(ahead: Vector, bodies: &[Body]) -> f64 {
+    let ahead: Vector2<Each> = Planar::<Each>::splat(ahead.into());
+    let mut least = Each::splat(f64::INFINITY);
+    for body in bodies {
+        let before = (-ahead.dot(&body.offset)).ge(Each::zero());
+        let across = ahead.x * body.offset.y - ahead.y * body.offset.x;
+        let met = before & across.abs().le(body.touch);
+        least = Each::select(met, body.gap, Each::splat(f64::INFINITY)).min(least);
     }
+    let lanes = (0..Each::WIDTH).map(|lane| least.lane(lane));
+    lanes.fold(f64::INFINITY, f64::min)
 }
 
 impl Pedestrian for CollisionFreeSpeed {
-    #[inline]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, _room: &mut Room) -> Vector {
+    #[inline(always)]
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         if own.stays {
             return Vector::zeros();
         }
-        own.heading = self.heading(own, around);
-        let speed = self.spacing(own, around) / self.time_gap;
+        own.heading = self.heading(own, around, room);
+        let speed = spacing(own.heading, &room.ahead) / self.time_gap;
         own.heading * speed.max(0.0).min(own.desired_speed)
     }
 }

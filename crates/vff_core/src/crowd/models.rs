@@ -38,7 +38,7 @@ pub const NAMES: [&str; 5] = [
 const MOST_NEIGHBORS: usize = 1 << 16;
 
 impl Pedestrian for Model {
-    #[inline]
+    #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64> {
         match self {
             Self::SocialForce1995(model) => model.decide(own, around, room),

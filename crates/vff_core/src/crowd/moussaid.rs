@@ -7,10 +7,12 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::neighbors::{Each, Unnoticed};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Planar, Real, Vector2};
+use numeric::angle::unsigned_angle;
+use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;
 
@@ -53,27 +55,38 @@ impl Moussaid {
     /// Acceleration by somebody at distance `d` in direction `-n`, with the velocity relative to him in m/s.
     #[inline(always)]
     #[must_use]
-    pub fn push(&self, normal: Vector, distance: f64, relative: Vector) -> Vector {
-        let sight = -normal;
-        let interaction = relative * self.velocity_weight + sight;
-        let length = interaction.norm();
-        if length < SHORTEST {
-            return Vector::zeros();
-        }
-        let along = interaction / length;
-        let reach = self.gamma * length;
-        let mut angle = sight.perp(&along).atan2(sight.dot(&along));
-        if angle <= -PI {
-            angle = PI;
-        }
-        let theta = angle + self.side_bias * reach;
-        let bell = |narrow: f64| {
-            let argument = narrow * reach * theta;
-            (-argument * argument).exp()
-        };
-        let size = self.strength * (-distance / reach).exp();
-        let side = if theta == 0.0 { 0.0 } else { theta.signum() };
-        (along.left_normal() * (side * bell(self.n)) - along * bell(self.n_prime)) * size
+    pub fn push<R: Real>(
+        &self,
+        normal: Vector2<R>,
+        distance: R,
+        relative: Vector2<R>,
+    ) -> Vector2<R> {
+        let (zero, pi) = (R::zero(), R::splat(PI));
+        let sight = Vector2::new(-normal.x, -normal.y);
+        let weight = R::splat(self.velocity_weight);
+        let interaction = Vector2::new(relative.x * weight, relative.y * weight) + sight;
+        let length = interaction.dot(&interaction).sqrt();
+        let along = Vector2::new(interaction.x / length, interaction.y / length);
+        let reach = R::splat(self.gamma) * length;
+        let across = sight.x * along.y - sight.y * along.x;
+        let angle = unsigned_angle(across, sight.dot(&along));
+        let angle = R::select(across.lt(zero), -angle, angle);
+        let angle = R::select(angle.le(-pi), pi, angle);
+        let theta = angle + R::splat(self.side_bias) * reach;
+        let turning = bell(R::splat(self.n) * reach * theta);
+        let slowing = bell(R::splat(self.n_prime) * reach * theta);
+        let size = R::splat(self.strength) * exp(-distance / reach);
+        let side = R::select(theta.gt(zero), turning, -turning);
+        let side = R::select(theta.lt(zero) | theta.gt(zero), side, zero);
+        let push = Vector2::new(
+            (-along.y * side - along.x * slowing) * size,
+            (along.x * side - along.y * slowing) * size,
+        );
+        Planar::<R>::select(
+            length.lt(R::splat(SHORTEST)),
+            Vector2::new(zero, zero),
+            push,
+        )
     }
 
     /// Acceleration by the group of a person.
@@ -100,19 +113,24 @@ impl Moussaid {
     }
 }
 
+/// `exp(-x^2)`.
+#[inline(always)]
+fn bell<R: Real>(x: R) -> R {
+    exp(-x * x)
+}
+
 impl Pedestrian for Moussaid {
-    #[inline]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, _room: &mut Room) -> Vector {
+    #[inline(always)]
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let mut force = drive(own, self.relaxation_time);
-        let velocity = own.agent.velocity;
+        let velocity: Vector2<Each> = Planar::<Each>::splat(own.agent.velocity.into());
         let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(&own.agent, limits, Unnoticed::Skipped, |neighbor| {
-                let relative = velocity - neighbor.agent.velocity;
-                let push = self.push(neighbor.normal, neighbor.distance, relative);
-                force += push * neighbor.weight;
-            });
+        let neighbors = around.neighbors;
+        for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
+            let relative = velocity - others.velocity();
+            let push = self.push(others.normal, others.distance, relative);
+            others.add(push * others.weight, &mut force);
+        }
         force += pushes(around.walls, own.agent.position, |near| {
             near.normal * (self.wall_strength * (-near.distance / self.wall_range).exp())
         });

@@ -1,7 +1,8 @@
 //! What a pedestrian model knows and answers.
 
 use crate::crowd::agent::{Agent, SHORTEST};
-use crate::crowd::neighbors::{Neighbors, Period};
+use crate::crowd::nearest::Nearest;
+use crate::crowd::neighbors::{Each, Neighbors, Period};
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
@@ -104,11 +105,26 @@ impl Fellows for Groupings<'_> {
     }
 }
 
+/// Some bodies side by side as somebody sees them who does not want to walk into them.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// From the bodies, in m.
+    pub offset: Vector2<Each>,
+    /// Distance of the surfaces in m, over the weight; infinite in lanes that are left over.
+    pub gap: Each,
+    /// Sum of the radii in m.
+    pub touch: Each,
+}
+
 /// Room that decisions need, used again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Room {
-    /// Nearest neighbors: distance, the neighbor, its weight, the vector from it.
-    pub nearest: Vec<(f64, Agent, f64, Vector2<f64>)>,
+    /// Places in the grids of those who are near.
+    pub near: Vec<u32>,
+    /// The nearest of them.
+    pub nearest: Nearest,
+    /// Bodies ahead.
+    pub ahead: Vec<Body>,
     /// Half-planes of permitted velocities.
     pub planes: Vec<HalfPlane>,
     /// Linear programs.

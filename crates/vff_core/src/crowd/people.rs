@@ -67,8 +67,14 @@ pub struct PersonState {
     pub source: Option<u32>,
     /// Group, if it belongs to one.
     pub group: Option<u32>,
-    /// Next point of the route.
+    /// Next point of the route by number.
     pub next: u32,
+    /// Where that is, in m.
+    pub target: Vector,
+    /// Squared distance at which it is reached, in m^2.
+    pub arrival_squared: f64,
+    /// Whether the person follows a recording and reacts to nobody.
+    pub recorded: bool,
     /// When the end of the route was reached, in s; NaN before.
     pub arrival_time: f64,
     /// Where that was, in m; NaN before.
@@ -99,6 +105,13 @@ impl PersonState {
             source: None,
             group: None,
             next: 0,
+            target: traits
+                .route
+                .points
+                .first()
+                .map_or(place, |first| Vector::from(*first)),
+            arrival_squared: traits.route.arrival_radius * traits.route.arrival_radius,
+            recorded: false,
             arrival_time: f64::NAN,
             arrival_position: Vector::repeat(f64::NAN),
         }
@@ -115,6 +128,7 @@ impl PersonState {
             person.presence = Presence::Expected;
         }
         if let Some(motion) = &setup.recorded {
+            person.recorded = true;
             person.desired_speed = motion.max_initial_speed();
             person.presence = Presence::Expected;
             person.replay(motion, 0.0);
@@ -157,12 +171,12 @@ impl PersonState {
 
     /// The person as one who decides.
     #[inline]
-    pub(super) fn walker(&self, number: u32, route: &Route, decides: bool) -> Walker {
+    pub(super) fn walker(&self, number: u32) -> Walker {
         let (mut direction, mut to_go) = (Vector::zeros(), 0.0);
-        if !decides {
+        if self.recorded {
             direction = direction_of(self.velocity);
         } else if self.presence == Presence::Walking {
-            let way = Vector::from(route.points[self.next as usize]) - self.position;
+            let way = self.target - self.position;
             to_go = way.norm();
             direction = if to_go < SHORTEST {
                 direction
@@ -179,7 +193,7 @@ impl PersonState {
                 number,
             },
             desired_speed: self.desired_speed,
-            decides,
+            decides: !self.recorded,
             to_go,
             stays: self.presence != Presence::Walking,
             heading: self.heading,
@@ -204,24 +218,31 @@ impl PersonState {
         self.position += self.velocity * step;
     }
 
+    /// Whether the next point is not reached.
+    fn is_off_target(&self) -> bool {
+        let way = self.target - self.position;
+        way.dot(&way) > self.arrival_squared
+    }
+
     /// Looks at the next points of the route at a time in s.
     #[inline]
     pub(super) fn follow(&mut self, route: &Route, time: f64) {
-        if self.presence != Presence::Walking {
+        // On the way nothing of the route is read: it is elsewhere in memory.
+        if self.presence != Presence::Walking || self.is_off_target() {
             return;
         }
-        let radius = route.arrival_radius * route.arrival_radius;
         for _ in 0..route.points.len() {
-            let way = Vector::from(route.points[self.next as usize]) - self.position;
-            if way.dot(&way) > radius {
+            if self.is_off_target() {
                 return;
             }
             self.next += 1;
-            if self.next as usize == route.points.len() {
+            let ended = self.next as usize == route.points.len();
+            if ended {
                 self.next = 0;
-                if route.end == RouteEnd::Repeat {
-                    continue;
-                }
+            }
+            if !ended || route.end == RouteEnd::Repeat {
+                self.target = route.points[self.next as usize].into();
+            } else {
                 self.presence = if route.end == RouteEnd::Leave {
                     Presence::Left
                 } else {

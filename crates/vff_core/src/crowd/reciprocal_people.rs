@@ -3,10 +3,10 @@
 //! The half-planes of discs stand here in the form that needs no outline; [`crate::laws::reciprocal::avoiding`] is
 //! the same for any shape. Half-planes of walls are never violated.
 
-use crate::crowd::agent::{Agent, SHORTEST};
-use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::agent::SHORTEST;
+use crate::crowd::neighbors::{Each, Unnoticed, WIDTH};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
 type Vector = Vector2<f64>;
@@ -26,91 +26,106 @@ pub struct ReciprocalPeople {
     pub cutoff: f64,
 }
 
-/// Two discs that are to avoid each other.
+/// Pairs of discs that are to avoid each other, side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting {
+pub struct Meeting<R> {
     /// From the own center to the other one, in m.
-    pub way: Vector,
+    pub way: Vector2<R>,
     /// Velocity relative to the other, in m/s.
-    pub relative: Vector,
+    pub relative: Vector2<R>,
     /// Sum of the radii in m.
-    pub touch: f64,
+    pub touch: R,
 }
 
-impl Meeting {
+impl<R: Real> Meeting<R> {
     /// Direction of the line and change `u` of the relative velocity that avoids a contact within the horizon, or,
     /// of touching discs, ends it within a step, both in s.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn avoided(&self, horizon: f64, step: f64) -> (Vector, Vector) {
+    pub fn avoided(&self, horizon: f64, step: f64) -> (Vector2<R>, Vector2<R>) {
         let Self {
             way,
             relative,
             touch,
         } = *self;
         let squared = way.dot(&way);
-        if squared <= touch * touch {
-            return self.front(relative - way / step, 1.0 / step);
-        }
-        let from_front = relative - way / horizon;
+        let from_front = relative - way.over(R::splat(horizon));
         let along = from_front.dot(&way);
-        if along < 0.0 && along * along > touch * touch * from_front.dot(&from_front) {
-            return self.front(from_front, 1.0 / horizon);
-        }
+        let ahead =
+            along.lt(R::zero()) & (touch * touch * from_front.dot(&from_front)).lt(along * along);
         let leg = (squared - touch * touch).sqrt();
-        let direction = if way.perp(&from_front) > 0.0 {
-            Vector::new(way.x * leg - way.y * touch, way.x * touch + way.y * leg) / squared
-        } else {
-            -Vector::new(way.x * leg + way.y * touch, way.y * leg - way.x * touch) / squared
-        };
-        (direction, direction * relative.dot(&direction) - relative)
+        let left = R::zero().lt(way.x * from_front.y - way.y * from_front.x);
+        let (to_left, to_right) = (
+            Vector2::new(way.x * leg - way.y * touch, way.x * touch + way.y * leg),
+            Vector2::new(way.x * leg + way.y * touch, way.y * leg - way.x * touch),
+        );
+        let to_right = Vector2::new(-to_right.x, -to_right.y);
+        let side = <Vector2<R> as Planar<R>>::select(left, to_left, to_right);
+        let mut direction = side.over(squared);
+        let mut change = direction * relative.dot(&direction) - relative;
+        let touching = squared.le(touch * touch);
+        if ahead.any() {
+            let front = self.front(from_front, R::splat(1.0 / horizon));
+            direction = <Vector2<R> as Planar<R>>::select(ahead, front.0, direction);
+            change = <Vector2<R> as Planar<R>>::select(ahead, front.1, change);
+        }
+        if touching.any() {
+            let within = relative - way.over(R::splat(step));
+            let front = self.front(within, R::splat(1.0 / step));
+            direction = <Vector2<R> as Planar<R>>::select(touching, front.0, direction);
+            change = <Vector2<R> as Planar<R>>::select(touching, front.1, change);
+        }
+        (direction, change)
     }
 
     /// At the rounded front of the velocity obstacle.
-    #[inline]
-    fn front(&self, away: Vector, per_time: f64) -> (Vector, Vector) {
-        let length = away.norm();
-        let unit = if length == 0.0 {
-            Vector::x()
-        } else {
-            away / length
-        };
-        (-unit.left_normal(), unit * (self.touch * per_time - length))
+    #[inline(always)]
+    fn front(&self, away: Vector2<R>, per_time: R) -> (Vector2<R>, Vector2<R>) {
+        let length = away.length();
+        let still = length.le(R::zero());
+        let along_x = Vector2::new(R::one(), R::zero());
+        let unit = <Vector2<R> as Planar<R>>::select(still, along_x, away.over(length));
+        let direction = Vector2::new(unit.y, -unit.x);
+        (direction, unit * (self.touch * per_time - length))
     }
 }
 
 impl ReciprocalPeople {
-    /// The nearest neighbors in order, ties by number.
-    fn gather(&self, own: &Walker, around: &Around<'_>, room: &mut Room) {
-        let nearest = &mut room.nearest;
-        nearest.clear();
+    /// Half-planes of the nearest neighbors, behind those of walls.
+    #[inline(always)]
+    fn keep_off_others(&self, own: &Walker, around: &Around<'_>, room: &mut Room) {
+        let me = own.agent;
         let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(&own.agent, limits, Unnoticed::Skipped, |neighbor| {
-                let before = |entry: &(f64, Agent, f64, Vector)| {
-                    entry.0 < neighbor.distance
-                        || (entry.0 == neighbor.distance && entry.1.number < neighbor.agent.number)
-                };
-                let full = nearest.len() >= self.max_neighbors;
-                if full && nearest.last().is_none_or(before) {
-                    return;
-                }
-                if full {
-                    nearest.pop();
-                }
-                let place = nearest
-                    .iter()
-                    .rposition(before)
-                    .map_or(0, |index| index + 1);
-                let way = if neighbor.distance < SHORTEST {
-                    neighbor.normal * -SHORTEST
-                } else {
-                    -neighbor.offset
-                };
-                let entry = (neighbor.distance, *neighbor.agent, neighbor.weight, way);
-                nearest.insert(place, entry);
-            });
+        let Room {
+            near: list,
+            nearest,
+            planes,
+            ..
+        } = room;
+        let near = around.neighbors.near(&me, limits, Unnoticed::Skipped, list);
+        let velocity: Vector2<Each> = Planar::<Each>::splat(me.velocity.into());
+        let nearest = nearest.of(near, self.max_neighbors);
+        for block in nearest.chunks(WIDTH) {
+            let others = near.among(block);
+            let together = others.distance.lt(Each::splat(SHORTEST));
+            let mut away = others.offset;
+            if together.any() {
+                let little = others.normal * Each::splat(SHORTEST);
+                away = Planar::<Each>::select(together, little, away);
+            }
+            let touch = Each::splat(me.radius) + others.radius() + Each::splat(2.0 * self.margin);
+            let meeting = Meeting {
+                way: Vector2::new(-away.x, -away.y),
+                relative: velocity - others.velocity(),
+                touch,
+            };
+            let (direction, change) = meeting.avoided(self.horizon, around.step);
+            let point = velocity + change * (Each::splat(0.5) * others.weight);
+            planes.extend((0..others.count).map(|lane| HalfPlane {
+                point: point.lane(lane).into(),
+                direction: direction.lane(lane).into(),
+            }));
+        }
     }
 
     /// Half-planes of walls; returns how many there are.
@@ -139,28 +154,15 @@ impl ReciprocalPeople {
 }
 
 impl Pedestrian for ReciprocalPeople {
-    #[inline]
+    #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
-        self.gather(own, around, room);
         let hard = self.keep_off_walls(own, around, room);
-        let me = own.agent;
-        for (_, other, weight, way) in &room.nearest {
-            let meeting = Meeting {
-                way: *way,
-                relative: me.velocity - other.velocity,
-                touch: me.radius + other.radius + 2.0 * self.margin,
-            };
-            let (direction, change) = meeting.avoided(self.horizon, around.step);
-            room.planes.push(HalfPlane {
-                point: me.velocity + change * (0.5 * weight),
-                direction,
-            });
-        }
+        self.keep_off_others(own, around, room);
         let speed = own.desired_speed.min(own.to_go / around.step);
         let wanted = if own.stays {
             Vector::zeros()
         } else {
-            me.direction * speed
+            own.agent.direction * speed
         };
         room.solver
             .nearest(&room.planes, hard, own.desired_speed, wanted)

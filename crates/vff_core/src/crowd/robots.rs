@@ -205,7 +205,11 @@ impl CrowdRobot {
         people: &[PersonState],
         index: usize,
     ) -> Result<()> {
-        let (Some((law, sight)), Some(kind)) = (&mut self.law, &world.robots[index].law) else {
+        // Without a law nothing of the world is read.
+        let Some((law, sight)) = &mut self.law else {
+            return Ok(());
+        };
+        let Some(kind) = &world.robots[index].law else {
             return Ok(());
         };
         let mut places = guests(world);
@@ -228,7 +232,7 @@ impl CrowdRobot {
     /// Whether its state is finite.
     pub(super) fn is_finite(&self) -> bool {
         let RobotState { position, velocity } = self.reading.robot;
-        (position + velocity).norm().is_finite()
+        (position + velocity).norm_squared().is_finite()
     }
 
     /// Distance of the surfaces from a disc in m.

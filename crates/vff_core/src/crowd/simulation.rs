@@ -11,11 +11,10 @@ use crate::crowd::record::Trajectories;
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::snapshot::{Setting, Snapshot};
 use crate::crowd::sources::Source;
-use crate::crowd::world::{CrowdWorld, Route, count_of};
+use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
-use crate::world::motion::Motion;
 
 /// Share of a step by which a time limit may miss a whole number of them.
 const WHOLE: f64 = 1e-9;
@@ -41,6 +40,15 @@ pub struct Divergence {
     pub agent: Diverged,
 }
 
+/// Room for the decisions of everybody at an instant; nothing in it outlasts the instant, so that worlds that are
+/// stepped in turn can share it and find it in the cache.
+#[derive(Clone, Debug, Default)]
+pub struct DecisionRoom {
+    walkers: Vec<Option<Walker>>,
+    decisions: Vec<Vector2<f64>>,
+    snapshot: Snapshot,
+}
+
 /// What an episode of a crowd consists of.
 struct CrowdParts {
     world: CrowdWorld,
@@ -50,34 +58,15 @@ struct CrowdParts {
     bodies: Vec<Agent>,
     sources: Vec<Source>,
     groups: Groups,
-    walkers: Vec<Option<Walker>>,
-    decisions: Vec<Vector2<f64>>,
-    snapshot: Snapshot,
+    room: Box<DecisionRoom>,
     reach: f64,
+    /// Whether somebody follows a recording.
+    replays: bool,
     record: Option<Trajectories>,
     /// Steps of the world so far.
     instant: usize,
     diverged: Option<Divergence>,
     over: bool,
-}
-
-fn route_of<'a>(world: &'a CrowdWorld, person: &PersonState, number: usize) -> &'a Route {
-    match person.source {
-        Some(source) => &world.sources[source as usize].traits.route,
-        None => &world.people[number].traits.route,
-    }
-}
-
-/// The recording that a person follows, if it does.
-fn recorded_of<'a>(
-    world: &'a CrowdWorld,
-    person: &PersonState,
-    number: usize,
-) -> Option<&'a Motion> {
-    if person.source.is_some() {
-        return None;
-    }
-    world.people[number].recorded.as_ref()
 }
 
 fn clock_of(world: &CrowdWorld) -> Result<Clock> {
@@ -118,10 +107,9 @@ impl CrowdParts {
             bodies: Vec::with_capacity(world.robots.len()),
             sources: Vec::new(),
             groups: Groups::default(),
-            walkers: Vec::new(),
-            decisions: Vec::new(),
-            snapshot: Snapshot::default(),
+            room: Box::default(),
             reach: 0.0,
+            replays: false,
             record: record.then(Trajectories::default),
             instant: 0,
             diverged: None,
@@ -138,6 +126,7 @@ impl CrowdParts {
         self.people.extend(
             numbered.map(|(number, setup)| PersonState::at_start(setup, world.seed, number)),
         );
+        self.replays = self.people.iter().any(|person| person.recorded);
         self.groups.fill(&self.people);
         self.robots.clear();
         for index in 0..world.robots.len() {
@@ -173,13 +162,16 @@ impl CrowdParts {
         if people.is_empty() {
             return;
         }
-        self.walkers.clear();
-        for (index, number) in (0..people.len()).zip(0_u32..) {
-            let person = &people[index];
-            let decides = recorded_of(world, person, index).is_none();
-            let walker = || person.walker(number, route_of(world, person, index), decides);
-            self.walkers.push(person.is_present().then(walker));
-        }
+        let DecisionRoom {
+            walkers,
+            decisions,
+            snapshot,
+        } = &mut *self.room;
+        walkers.clear();
+        let numbered = people.iter().zip(0_u32..);
+        walkers.extend(
+            numbered.map(|(person, number)| person.is_present().then(|| person.walker(number))),
+        );
         let setting = Setting {
             walls: &world.walls,
             company: &Companions {
@@ -192,12 +184,10 @@ impl CrowdParts {
             step: part,
         };
         let model_of = |number: usize| &world.models[people[number].model as usize];
-        let (walkers, robots) = (&mut self.walkers, &self.bodies);
-        self.snapshot
-            .decide(&setting, walkers, robots, model_of, &mut self.decisions);
-        let decided = self.decisions.iter().zip(&self.walkers);
+        snapshot.decide(&setting, walkers, &self.bodies, model_of, decisions);
+        let decided = decisions.iter().zip(&*walkers);
         for (person, (decision, walker)) in people.iter_mut().zip(decided) {
-            if let Some(walker) = walker.filter(|walker| walker.decides) {
+            if let Some(walker) = walker.as_ref().filter(|walker| walker.decides) {
                 person.heading = walker.heading;
                 let model = &world.models[person.model as usize];
                 person.move_by(*decision, model, part);
@@ -207,6 +197,9 @@ impl CrowdParts {
 
     /// Moves those who follow a recording, to a time in s.
     fn replay(&mut self, time: f64) {
+        if !self.replays {
+            return;
+        }
         for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
             if let Some(motion) = &setup.recorded {
                 person.replay(motion, time);
@@ -217,7 +210,10 @@ impl CrowdParts {
     /// Notes who is no longer at a finite place, at a time in s.
     fn find_divergence(&mut self, time: f64) {
         let lost = |person: &PersonState| {
-            person.is_present() && !(person.position + person.velocity).norm().is_finite()
+            person.is_present()
+                && !(person.position + person.velocity)
+                    .norm_squared()
+                    .is_finite()
         };
         let person = self.people.iter().position(lost).map(Diverged::Person);
         let robot = || {
@@ -289,7 +285,7 @@ impl Parts for CrowdParts {
         let time = clock.time(step);
         self.instant = step / clock.steps_per_sample;
         for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
-            if setup.recorded.is_none() {
+            if !person.recorded {
                 person.enter(setup, time);
                 person.follow(&setup.traits.route, time);
             }
@@ -359,6 +355,11 @@ impl Simulation {
         if let Some(robot) = self.0.parts.robots.get_mut(robot) {
             robot.ask(request);
         }
+    }
+
+    /// Exchanges the room for decisions with another one.
+    pub fn exchange_room(&mut self, room: &mut Box<DecisionRoom>) {
+        std::mem::swap(&mut self.0.parts.room, room);
     }
 
     /// Advances by one step of the world. Does nothing once it has ended.

@@ -48,22 +48,52 @@ impl Snapshot {
         let Setting { reach, period, .. } = *setting;
         self.people.fill(&self.present, reach, period);
         self.robots.fill(robots, reach, period);
+        let Self {
+            people,
+            robots,
+            room,
+            ..
+        } = self;
         let around = Around {
-            neighbors: Neighbors {
-                people: &self.people,
-                robots: &self.robots,
-            },
+            neighbors: Neighbors { people, robots },
             walls: setting.walls,
             company: setting.company,
             step: setting.step,
         };
         decisions.clear();
         decisions.resize(walkers.len(), Vector2::zeros());
-        for agent in self.people.agents() {
+        pulp::Arch::new().dispatch(Decisions {
+            around: &around,
+            walkers,
+            model_of,
+            decisions,
+            room,
+        });
+    }
+}
+
+/// The decisions of everybody, compiled once for each instruction set; their bits are the same for all.
+struct Decisions<'a, F> {
+    around: &'a Around<'a>,
+    walkers: &'a mut [Option<Walker>],
+    model_of: F,
+    decisions: &'a mut [Vector2<f64>],
+    room: &'a mut Room,
+}
+
+impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Decisions<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for agent in self.around.neighbors.people.agents() {
             let number = agent.number as usize;
-            if let Some(walker) = walkers[number].as_mut().filter(|walker| walker.decides) {
-                let model = model_of(number);
-                decisions[number] = model.decide(walker, &around, &mut self.room);
+            if let Some(walker) = self.walkers[number]
+                .as_mut()
+                .filter(|walker| walker.decides)
+            {
+                let model = (self.model_of)(number);
+                self.decisions[number] = model.decide(walker, self.around, self.room);
             }
         }
     }

@@ -4,10 +4,11 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Other, Unnoticed};
+use crate::crowd::neighbors::{Each, Others, Unnoticed};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
+use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;
 
@@ -38,47 +39,49 @@ pub struct SocialForce1995 {
 }
 
 impl SocialForce1995 {
-    /// Force of a neighbor, before weights.
+    /// Forces of neighbors, before weights.
     #[inline(always)]
-    fn push(&self, neighbor: &Other<'_>) -> Vector {
+    fn push(&self, others: &Others<'_>) -> Vector2<Each> {
         let unit = self.strength / self.range;
-        if neighbor.distance < SHORTEST {
-            return neighbor.normal * unit;
-        }
-        let other = neighbor.agent;
-        let way = other.direction * (other.velocity.norm() * self.step_time);
-        let apart = neighbor.offset - way;
-        let far = apart.norm();
-        if far < SHORTEST {
-            return Vector::zeros();
-        }
-        let sum = neighbor.distance + far;
+        let speed = Planar::<Each>::length(others.velocity());
+        let way = others.direction() * (speed * Each::splat(self.step_time));
+        let apart = others.offset - way;
+        let far = Planar::<Each>::length(apart);
+        let sum = others.distance + far;
         let squared = sum * sum - way.dot(&way);
-        if squared < ON_THE_WAY {
+        let axis = Each::splat(0.5) * squared.sqrt();
+        let decay = exp(-axis / Each::splat(self.range));
+        let size = Each::splat(unit) * decay * sum / (Each::splat(4.0) * axis);
+        let mut push = (others.normal + Planar::<Each>::over(apart, far)) * size;
+        let shortest = Each::splat(SHORTEST);
+        let (met, reached) = (others.distance.lt(shortest), far.lt(shortest));
+        let passing = squared.lt(Each::splat(ON_THE_WAY));
+        if (met | reached | passing).any() {
             // Those who meet exactly head-on pass on their right.
-            return way.left_normal() * (unit / (4.0 * neighbor.distance * far).sqrt());
+            let side = Each::splat(4.0) * others.distance * far;
+            let aside = way.left_normal() * (Each::splat(unit) / side.sqrt());
+            push = Planar::<Each>::select(passing, aside, push);
+            push = Planar::<Each>::select(reached, Vector2::zeros(), push);
+            push = Planar::<Each>::select(met, others.normal * Each::splat(unit), push);
         }
-        let axis = 0.5 * squared.sqrt();
-        let size = unit * (-axis / self.range).exp() * sum / (4.0 * axis);
-        (neighbor.normal + apart / far) * size
+        push
     }
 }
 
 impl Pedestrian for SocialForce1995 {
-    #[inline]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, _room: &mut Room) -> Vector {
-        let cosine = self.view_angle.cos();
+    #[inline(always)]
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
+        let cosine = Each::splat(self.view_angle.cos());
         let mut force = drive(own, self.relaxation_time);
-        let ahead = own.agent.direction;
+        let ahead: Vector2<Each> = Planar::<Each>::splat(own.agent.direction.into());
         let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(&own.agent, limits, Unnoticed::Skipped, |neighbor| {
-                let push = self.push(neighbor);
-                let seen = -ahead.dot(&push) >= push.norm() * cosine;
-                let view = if seen { 1.0 } else { self.behind };
-                force += push * (neighbor.weight * view);
-            });
+        let neighbors = around.neighbors;
+        for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
+            let push = self.push(&others);
+            let seen = (-ahead.dot(&push)).ge(Planar::<Each>::length(push) * cosine);
+            let view = Each::select(seen, Each::splat(1.0), Each::splat(self.behind));
+            others.add(push * (others.weight * view), &mut force);
+        }
         let wall = self.wall_strength / self.wall_range;
         force
             + pushes(around.walls, own.agent.position, |near| {

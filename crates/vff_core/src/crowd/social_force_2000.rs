@@ -4,10 +4,11 @@
 //! `kappa g` times the difference of their velocities along the tangent. Friction at walls brakes, as printed.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::neighbors::{Each, Unnoticed};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
+use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;
 
@@ -35,8 +36,8 @@ pub struct SocialForce2000 {
 }
 
 impl Pedestrian for SocialForce2000 {
-    #[inline]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, _room: &mut Room) -> Vector {
+    #[inline(always)]
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let me = own.agent;
         let speed = me.velocity.norm();
         let ahead = if speed < SHORTEST {
@@ -45,24 +46,36 @@ impl Pedestrian for SocialForce2000 {
             me.velocity / speed
         };
         let mut force = Vector::zeros();
+        let ahead: Vector2<Each> = Planar::<Each>::splat(ahead.into());
+        let front = Each::splat(self.anisotropy);
+        let rest = Each::splat(0.5 * (1.0 - self.anisotropy));
         let limits = (self.cutoff, own.awareness);
-        around
-            .neighbors
-            .each(&me, limits, Unnoticed::Told, |neighbor| {
-                let normal = neighbor.normal;
-                let overlap = me.radius + neighbor.agent.radius - neighbor.distance;
-                if neighbor.weight > 0.0 {
-                    let behind = 0.5 * (1.0 - self.anisotropy) * (1.0 - normal.dot(&ahead));
-                    let size = self.strength * (overlap / self.range).exp();
-                    force += normal * (neighbor.weight * size * (self.anisotropy + behind));
+        let neighbors = around.neighbors;
+        for others in neighbors.near(&me, limits, Unnoticed::Told, &mut room.near) {
+            let normal = others.normal;
+            let overlap = Each::splat(me.radius) + others.radius() - others.distance;
+            let behind = rest * (Each::splat(1.0) - normal.dot(&ahead));
+            let size = Each::splat(self.strength) * exp(overlap / Each::splat(self.range));
+            let push = normal * (others.weight * size * (front + behind));
+            let touching = Each::zero().lt(overlap) & others.present();
+            if !touching.any() {
+                others.add(push, &mut force);
+                continue;
+            }
+            // Whoever touches acts whether noticed or not.
+            for lane in 0..others.count {
+                if others.weight.lane(lane) > 0.0 {
+                    force += Vector::from(push.lane(lane));
                 }
-                if overlap > 0.0 {
+                if touching.lane(lane) {
+                    let (normal, overlap) = (Vector::from(normal.lane(lane)), overlap.lane(lane));
                     let tangent = normal.left_normal();
-                    let sliding = (neighbor.agent.velocity - me.velocity).dot(&tangent);
+                    let sliding = (others.agents[lane].velocity - me.velocity).dot(&tangent);
                     force += normal * (self.stiffness * overlap);
                     force += tangent * (self.friction * overlap * sliding);
                 }
-            });
+            }
+        }
         force += pushes(around.walls, me.position, |near| {
             let overlap = me.radius - near.distance;
             let mut size = self.wall_strength * (overlap / self.range).exp();

@@ -10,7 +10,7 @@ mod settings;
 
 pub use layout::{Area, Layout, seed_of};
 pub use observation::{BOUND, RANGE};
-pub use one::{Environment, State, Step};
+pub use one::{Environment, Shared, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
 
 use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
@@ -120,12 +120,12 @@ impl Environments {
         let settings = &self.settings;
         let chosen = |index: usize| mask.get(index).copied().unwrap_or(true);
         let seed_of = |index: usize| seeds.get(index).copied().flatten();
-        let work = |(index, row): (usize, Row<'_>)| -> Result<()> {
+        let work = |(index, row): (usize, Row<'_>), shared: &mut Shared| -> Result<()> {
             if chosen(index) {
                 row.environment.reset(settings, seed_of(index))?;
                 *row.started = true;
             }
-            row.show(settings);
+            row.show(settings, shared);
             Ok(())
         };
         each_row((settings, self.threads), &mut self.each, outputs, work)
@@ -150,7 +150,9 @@ impl Environments {
             return Err(Failure::invalid(name, "be under way", given)
                 .mended_by("start its next episode by reset first"));
         }
-        let work = |(index, row): (usize, Row<'_>)| row.step(settings, actions[index], interrupted);
+        let work = |(index, row): (usize, Row<'_>), shared: &mut Shared| {
+            row.step(settings, actions[index], interrupted, shared)
+        };
         each_row((settings, self.threads), &mut self.each, outputs, work)
     }
 
@@ -167,7 +169,7 @@ fn each_row(
     (settings, threads): (&Settings, Option<usize>),
     each: &mut [Environment],
     outputs: Outputs<'_>,
-    work: impl Fn((usize, Row<'_>)) -> Result<()> + Sync + Send,
+    work: impl Fn((usize, Row<'_>), &mut Shared) -> Result<()> + Sync + Send,
 ) -> Result<()> {
     let size = settings.size();
     let count = each.len();
@@ -196,7 +198,8 @@ fn each_row(
         )
         .enumerate();
     if threads == Some(1) {
-        return rows.try_for_each(work);
+        let mut shared = Shared::default();
+        return rows.try_for_each(|row| work(row, &mut shared));
     }
     on_threads(threads, || {
         let share = count.div_ceil(4 * team()).max(LEAST_SHARE);
@@ -210,13 +213,17 @@ fn each_row(
             }
             blocks.push(block);
         }
-        try_each(blocks, |block| block.into_iter().try_for_each(&work))
+        try_each(blocks, |block| {
+            let mut shared = Shared::default();
+            let mut rows = block.into_iter();
+            rows.try_for_each(|row| work(row, &mut shared))
+        })
     })
 }
 
 impl Row<'_> {
-    fn show(self, settings: &Settings) {
-        self.environment.observe(settings, self.observation);
+    fn show(self, settings: &Settings, shared: &mut Shared) {
+        self.environment.observe(settings, shared, self.observation);
         self.seen[0] = count(self.environment.seen(settings));
         *self.state = self.environment.state().code();
     }
@@ -226,19 +233,20 @@ impl Row<'_> {
         settings: &Settings,
         action: [f64; 2],
         interrupted: Interrupted<'_>,
+        shared: &mut Shared,
     ) -> Result<()> {
         let environment = self.environment;
         *self.started = false;
         if environment.state() != State::Running {
             // The episode ended in the step before.
             environment.reset(settings, None)?;
-            environment.observe(settings, self.observation);
+            environment.observe(settings, shared, self.observation);
             self.seen[0] = count(environment.seen(settings));
             (*self.reward, *self.clearance) = (0.0, f64::INFINITY);
             (*self.state, *self.started) = (State::Running.code(), true);
             return Ok(());
         }
-        let step = environment.step(settings, action, interrupted)?;
+        let step = environment.step(settings, action, interrupted, shared)?;
         (*self.reward, *self.clearance) = (step.reward, step.clearance);
         *self.state = step.state.code();
         if step.state != State::Running {
@@ -246,13 +254,13 @@ impl Row<'_> {
                 *self.metrics = RobotMetrics::into_array(found);
             }
             if settings.autoreset == Autoreset::SameStep {
-                environment.observe(settings, self.final_observation);
+                environment.observe(settings, shared, self.final_observation);
                 self.seen[1] = count(environment.seen(settings));
                 environment.reset(settings, None)?;
                 *self.started = true;
             }
         }
-        environment.observe(settings, self.observation);
+        environment.observe(settings, shared, self.observation);
         self.seen[0] = count(environment.seen(settings));
         Ok(())
     }

@@ -84,7 +84,7 @@ pub(super) fn observe(
     ranking: &mut Ranking,
     into: &mut [f32],
 ) {
-    let world = simulation.world();
+    let world = &settings.world;
     let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
     let state = robot.state();
     let to_goal = Vector::from(setup.goal) - state.position;

@@ -5,7 +5,7 @@ use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe, seen};
 use crate::crowd::environments::settings::{Action, Settings};
 use crate::crowd::metrics::RobotMetrics;
-use crate::crowd::simulation::Simulation;
+use crate::crowd::simulation::{DecisionRoom, Simulation};
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::run::{Interrupted, Request};
@@ -92,6 +92,13 @@ pub struct Step {
     pub clearance: f64,
 }
 
+/// Room that environments on one thread share, so that it stays in the cache.
+#[derive(Default)]
+pub struct Shared {
+    ranking: Ranking,
+    decisions: Box<DecisionRoom>,
+}
+
 /// One environment.
 pub struct Environment {
     simulation: Simulation,
@@ -103,7 +110,6 @@ pub struct Environment {
     state: State,
     /// Steps of the world in one of the robot.
     steps: usize,
-    ranking: Ranking,
     history: History,
     /// From the robot to the people at the last instant; NaN for who was absent.
     ways: Vec<Vector>,
@@ -129,7 +135,6 @@ impl Environment {
             heading: 0.0,
             state: State::Running,
             steps,
-            ranking: Ranking::default(),
             history: History::default(),
             ways: Vec::new(),
         };
@@ -159,12 +164,12 @@ impl Environment {
     fn open(&mut self, settings: &Settings) {
         self.next += 1;
         self.state = State::Running;
-        let to_goal = self.to_goal();
+        let to_goal = self.to_goal(settings);
         self.heading = to_goal.y.atan2(to_goal.x);
         self.history.clear();
         self.note(settings);
         self.ways.clear();
-        self.look();
+        self.look(settings);
     }
 
     /// How the episode stands.
@@ -186,8 +191,8 @@ impl Environment {
     }
 
     /// Writes what the robot sees.
-    pub fn observe(&mut self, settings: &Settings, into: &mut [f32]) {
-        observe(settings, &self.simulation, &mut self.ranking, into);
+    pub fn observe(&self, settings: &Settings, shared: &mut Shared, into: &mut [f32]) {
+        observe(settings, &self.simulation, &mut shared.ranking, into);
     }
 
     /// Metrics of the episode up to now, if positions are kept.
@@ -207,19 +212,18 @@ impl Environment {
         settings: &Settings,
         action: [f64; 2],
         interrupted: Interrupted<'_>,
+        shared: &mut Shared,
     ) -> Result<Step> {
-        let before = self.to_goal().norm();
+        let before = self.to_goal(settings).norm();
         let request = self.request(settings, action);
         self.simulation.ask(0, request);
-        let mut clearance = f64::INFINITY;
-        for _ in 0..self.steps {
-            self.simulation.step(interrupted)?;
-            clearance = clearance.min(self.look());
-            self.note(settings);
-        }
-        self.state = self.judged(clearance);
-        let distance = self.to_goal().norm();
-        let period = self.simulation.world().robots[0].control_period;
+        self.simulation.exchange_room(&mut shared.decisions);
+        let clearance = self.advance(settings, interrupted);
+        self.simulation.exchange_room(&mut shared.decisions);
+        let clearance = clearance?;
+        self.state = self.judged(settings, clearance);
+        let distance = self.to_goal(settings).norm();
+        let period = settings.world.robots[0].control_period;
         let extra = settings.rewards.progress * (before - distance) + settings.rewards.step;
         let reward = match self.state {
             State::Arrived => ARRIVAL_REWARD,
@@ -243,15 +247,28 @@ impl Environment {
         })
     }
 
-    fn to_goal(&self) -> Vector {
-        let goal = self.simulation.world().robots[0].goal;
+    /// Moves everybody until the next command; returns the least gap.
+    fn advance(&mut self, settings: &Settings, interrupted: Interrupted<'_>) -> Result<f64> {
+        let mut clearance = f64::INFINITY;
+        for _ in 0..self.steps {
+            self.simulation.step(interrupted)?;
+            clearance = clearance.min(self.look(settings));
+            self.note(settings);
+        }
+        Ok(clearance)
+    }
+
+    // The robot, the walls and the period are those of the settings, which all environments read.
+
+    fn to_goal(&self, settings: &Settings) -> Vector {
+        let goal = settings.world.robots[0].goal;
         Vector::from(goal) - self.simulation.robots()[0].state().position
     }
 
     /// What the robot is told, from an action in [-1, 1].
     fn request(&mut self, settings: &Settings, action: [f64; 2]) -> Request {
         let action = Vector::from(action.map(|share| share.clamp(-1.0, 1.0)));
-        let setup = &self.simulation.world().robots[0];
+        let setup = &settings.world.robots[0];
         let fastest = setup.max_speed();
         match settings.action {
             Action::Velocity => {
@@ -276,8 +293,8 @@ impl Environment {
     }
 
     /// How the episode stands at the end of a step.
-    fn judged(&self, clearance: f64) -> State {
-        let (simulation, world) = (&self.simulation, self.simulation.world());
+    fn judged(&self, settings: &Settings, clearance: f64) -> State {
+        let (simulation, world) = (&self.simulation, &settings.world);
         let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
         let place = robot.state().position;
         let mut walls = world.walls.iter();
@@ -288,7 +305,7 @@ impl Environment {
             || walls.any(|wall| touches(wall.clearance(place) - setup.radius()))
         {
             State::Collided
-        } else if self.to_goal().norm() <= setup.arrival_tolerance {
+        } else if self.to_goal(settings).norm() <= setup.arrival_tolerance {
             State::Arrived
         } else if simulation.time() >= world.time_limit - ROUNDING * world.step {
             State::TimedOut
@@ -298,8 +315,8 @@ impl Environment {
     }
 
     /// Least gap to people since the last look, in straight relative motion, in m.
-    fn look(&mut self) -> f64 {
-        let period = self.simulation.world().period;
+    fn look(&mut self, settings: &Settings) -> f64 {
+        let period = settings.world.period;
         let robot = &self.simulation.robots()[0];
         let (place, radius) = (robot.state().position, robot.radius());
         let mut least = f64::INFINITY;

@@ -1,7 +1,7 @@
 //! Exponential, sine and cosine of numbers side by side, from basic operations only, so that their
 //! bits do not depend on the width.
 
-use numeric::lanes::Real;
+use crate::lanes::Real;
 
 /// `1.5 * 2^52`: a number of moderate size added to it is rounded to an integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -11,6 +11,8 @@ const LN_2: [f64; 2] = [0.693_147_175_014_019, 5.545_926_296_966_060_5e-9];
 const TURN: [f64; 2] = [6.283_185_303_211_212, 3.968_374_318_722_162e-9];
 /// Exponents below this give numbers of no weight.
 const LOWEST: f64 = -700.0;
+/// Exponents above this give numbers too large for a power of two.
+const HIGHEST: f64 = 709.0;
 
 /// `1 / (start + step * 0)!`, `1 / (start + step * 1)!` and so on, signs by turns for two steps.
 const fn reciprocal_factorials<const N: usize>(start: usize, step: usize) -> [f64; N] {
@@ -63,6 +65,17 @@ pub fn exponential<R: Real>(x: R) -> R {
     polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
 }
 
+/// `exp(x)` of any number: infinite beyond 709, zero below -700, NaN of NaN.
+#[inline(always)]
+pub fn exp<R: Real>(x: R) -> R {
+    let highest = R::splat(HIGHEST);
+    let found = exponential(x.min(highest));
+    let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), found);
+    // Neither at most the highest one nor above it: not a number.
+    let beyond = R::select(x.gt(highest), R::splat(f64::INFINITY), x);
+    R::select(x.le(highest), found, beyond)
+}
+
 /// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
 /// full turns, doubled twice.
 #[inline(always)]
@@ -85,6 +98,26 @@ pub fn cosine_and_sine<R: Real>(x: R) -> [R; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::Lanes;
+
+    #[test]
+    fn the_exponential_of_any_number_keeps_what_is_not_finite() {
+        let given = [
+            -1e300,
+            f64::NEG_INFINITY,
+            709.5,
+            f64::INFINITY,
+            f64::NAN,
+            0.0,
+        ];
+        let expected = [0.0, 0.0, f64::INFINITY, f64::INFINITY, f64::NAN, 1.0];
+        let lanes: Lanes<6> = exp(Lanes::from_fn(|lane| given[lane]));
+        for (lane, (x, result)) in given.into_iter().zip(expected).enumerate() {
+            assert!(exp(x).to_bits() == result.to_bits() || exp(x).is_nan() && result.is_nan());
+            assert!(lanes.lane(lane).to_bits() == exp(x).to_bits() || result.is_nan());
+        }
+        assert!(Real::lane(lanes, 4).is_nan());
+    }
 
     #[test]
     fn they_agree_with_the_library() {
@@ -92,6 +125,10 @@ mod tests {
             let x = f64::from(index) * 0.01;
             let error = exponential(x) / x.exp() - 1.0;
             assert!(error.abs() < 1e-15, "{x}: {error:e}");
+        }
+        for index in -7000..=7090 {
+            let x = f64::from(index) * 0.1;
+            assert!((exp(x) / x.exp() - 1.0).abs() < 1e-15, "{x}");
         }
         for index in 0..100_000 {
             let x = f64::from(index) * 0.003;
