@@ -35,6 +35,7 @@ __all__ = [
     "MOST_RUNS",
     "MOST_SAMPLES",
     "MOST_SEEDS",
+    "MOST_SIGHTINGS",
     "MOST_SWINGS",
     "MOST_TABLE_ROWS",
     "MOST_TASKS",
@@ -62,6 +63,8 @@ MOST_DRAWS = 10**6
 MOST_LAYOUTS = 10**7
 # Seeds of repeated runs, of noise in a search, of a calibration study.
 MOST_SEEDS = 10**6
+# Pairs of a robot under a law and somebody whom it may see, in all worlds together: 300 bytes each.
+MOST_SIGHTINGS = 10**7
 # Rows of a table of runs: about half a kilobyte each while it is made.
 MOST_TABLE_ROWS = 10**7
 # Motion steps from one row of a recorded run to the next.

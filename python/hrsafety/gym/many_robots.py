@@ -14,6 +14,7 @@ from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
 from hrsafety._arguments import Array, checked_seed, numbers, positive, word
+from hrsafety._bounds import MOST_SIGHTINGS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
@@ -105,6 +106,16 @@ def _driven(world: World) -> list[int]:
     return found
 
 
+def _check_size(world: World, driven: int) -> None:
+    """Refuse robots whose worlds, one of each that is driven, would not fit into memory together."""
+    robots, people = len(world.robots), len(world.people)
+    pairs = driven * max(robots - 1, 0) * (robots + people)
+    if pairs > MOST_SIGHTINGS:
+        rule = f"be few: each driven one has a world in which all others see everybody, {MOST_SIGHTINGS} pairs at most"
+        remedy = f"{driven} driven of {robots} robots among {people} people make {pairs} pairs"
+        raise InvalidParameterError("world.robots", rule, Shown(f"{robots} robots"), remedy)
+
+
 class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # PettingZoo has no types
     """Robots that a learner drives side by side in one world; made by `parallel_env`.
 
@@ -148,6 +159,7 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
             raise InvalidParameterError("world", "be a World or Task", world)
         task = Task(world=world) if isinstance(world, World) else world
         driven = _driven(task.world)
+        _check_size(task.world, len(driven))
         self.render_mode = render_mode
         self.possible_agents = [f"robot_{index}" for index in driven]
         self.agents: list[str] = []

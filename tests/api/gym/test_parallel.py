@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -175,3 +176,14 @@ def test_a_refused_seed_leaves_the_episode_as_it_was() -> None:
     found, expected = env.step(action), other.step(action)
     for name in env.agents:
         np.testing.assert_array_equal(found[0][name], expected[0][name])
+
+
+def test_robots_whose_worlds_would_not_fit_into_memory_are_refused() -> None:
+    ends = [((3.0 * k, 0.0), (3.0 * k, 9.0)) for k in range(220)]
+    robots = [nav.crowd.CrowdRobot(start=start, goal=goal) for start, goal in ends]
+    with pytest.raises(InvalidParameterError, match=r"world\.robots must be few: .* got 220 robots; 220 driven of 220"):
+        gym.parallel_env(nav.crowd.World(robots=robots))
+    # With laws of their own only what is driven has a world.
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    mixed = [replace(each, law=law if k else None) for k, each in enumerate(robots[:30])]
+    assert gym.parallel_env(nav.crowd.World(robots=mixed)).possible_agents == ["robot_0"]

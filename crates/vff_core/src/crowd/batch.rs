@@ -2,9 +2,9 @@
 
 use numeric::threads;
 
-use crate::crowd::simulation::Simulation;
+use crate::crowd::simulation::{MOST_ROWS, Simulation, size_of_record};
 use crate::crowd::world::CrowdWorld;
-use crate::error::Result;
+use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 
 /// Runs worlds to their ends, with everybody's places at every step; `done` is told of each.
@@ -17,6 +17,7 @@ pub fn simulate_worlds(
     interrupted: Interrupted<'_>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<Simulation>> {
+    check_size(worlds)?;
     threads::on_threads(threads, || {
         threads::try_map(worlds.len(), |index| {
             let ended = Simulation::new(worlds[index].clone(), true)
@@ -26,4 +27,20 @@ pub fn simulate_worlds(
             Ok(ended)
         })
     })
+}
+
+/// Refuses worlds whose records would not fit into memory together; what is wrong in one of them is said later.
+fn check_size(worlds: &[CrowdWorld]) -> Result<()> {
+    if worlds.len() < 2 {
+        return Ok(());
+    }
+    let sizes = worlds.iter().map(size_of_record);
+    let places = sizes.map(|(instants, agents)| instants * agents);
+    let total: f64 = places.filter(|places| places.is_finite()).sum();
+    if total <= MOST_ROWS {
+        return Ok(());
+    }
+    let rule = format!("hold at most {MOST_ROWS} agents times steps together");
+    let advice = "run them in several calls, or shorten time_limit";
+    Err(Failure::invalid("worlds", rule, Given::Number(total)).mended_by(advice))
 }

@@ -19,8 +19,8 @@ use crate::run::{Clock, Episode, Interrupted, Parts, Request};
 /// Share of a step by which a time limit may miss a whole number of them.
 const WHOLE: f64 = 1e-9;
 
-/// Most places of agents that a record keeps: 3 GB.
-const MOST_ROWS: f64 = 1e8;
+/// Most places of agents that records keep together: 3 GB, twice that while they are handed over.
+pub(super) const MOST_ROWS: f64 = 1e8;
 
 /// Whose state is no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,12 +80,18 @@ fn clock_of(world: &CrowdWorld) -> Result<Clock> {
     })
 }
 
-/// Refuses a record that would not fit into memory.
-fn check_rows(world: &CrowdWorld, clock: &Clock) -> Result<()> {
-    let instants = (clock.steps / clock.steps_per_sample) as f64 + 1.0;
+/// Instants of a record, and agents at each.
+pub(super) fn size_of_record(world: &CrowdWorld) -> (f64, f64) {
+    let instants = (world.time_limit / world.step - WHOLE).ceil().max(1.0) + 1.0;
     let coming = world.sources.iter().map(|source| source.rate);
     let coming = coming.sum::<f64>() * world.time_limit;
     let agents = world.people.len() as f64 + world.robots.len() as f64 + coming;
+    (instants, agents)
+}
+
+/// Refuses a record that would not fit into memory.
+fn check_rows(world: &CrowdWorld) -> Result<()> {
+    let (instants, agents) = size_of_record(world);
     if instants * agents <= MOST_ROWS {
         return Ok(());
     }
@@ -328,7 +334,7 @@ impl Simulation {
         world.check()?;
         let clock = clock_of(&world)?;
         if record {
-            check_rows(&world, &clock)?;
+            check_rows(&world)?;
         }
         let mut parts = CrowdParts::new(world, record);
         parts.open(clock.step)?;

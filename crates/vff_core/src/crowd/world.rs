@@ -19,6 +19,9 @@ pub const MOST_PEOPLE: usize = 1_000_000;
 /// Most robots of a world.
 pub const MOST_ROBOTS: usize = 10_000;
 
+/// Most pairs of a robot under a law and somebody whom it may see: 300 bytes each.
+pub const MOST_SIGHTINGS: usize = 10_000_000;
+
 /// Most steps of a world.
 const MOST_STEPS: f64 = 1e7;
 
@@ -291,6 +294,7 @@ impl CrowdWorld {
         }
         at_most("len(people)", self.people.len(), MOST_PEOPLE)?;
         at_most("len(robots)", self.robots.len(), MOST_ROBOTS)?;
+        self.check_sightings()?;
         for (index, person) in self.people.iter().enumerate() {
             person
                 .check()
@@ -312,6 +316,23 @@ impl CrowdWorld {
                 .map_err(|error| error.within(&format!("robots[{index}]")))?;
         }
         Ok(())
+    }
+
+    /// Pairs of a robot under a law and somebody whom it may see from the start.
+    pub(super) fn sightings(&self) -> usize {
+        let under_laws = self.robots.iter().filter(|robot| robot.law.is_some());
+        under_laws.count() * (self.people.len() + self.robots.len())
+    }
+
+    /// Refuses robots whose memory of each other and of the people would not fit.
+    fn check_sightings(&self) -> Result<()> {
+        let pairs = self.sightings();
+        if pairs <= MOST_SIGHTINGS {
+            return Ok(());
+        }
+        let rule = format!("see at most {MOST_SIGHTINGS} people and robots together");
+        let advice = "take fewer robots under laws, or fewer people";
+        Err(Failure::invalid("robots", rule, Given::Count(pairs as u64)).mended_by(advice))
     }
 
     fn check_model(&self, traits: &Traits) -> Result<()> {

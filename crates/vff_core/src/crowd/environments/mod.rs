@@ -14,12 +14,15 @@ pub use one::{Environment, Shared, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
 
 use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
+use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 use numeric::threads::{on_threads, team, try_each};
 
 /// Most environments of a set.
 pub const MOST_ENVIRONMENTS: usize = 1 << 20;
+/// Most people and robots of all environments together: about 1 kB each.
+const MOST_AGENTS: usize = 10_000_000;
 /// Fewest environments that are worth another thread.
 const LEAST_SHARE: usize = 16;
 /// Numbers of a row of metrics.
@@ -84,6 +87,7 @@ impl Environments {
             ));
         }
         let settings = settings.checked()?;
+        check_size(&settings.world, count)?;
         let seeds = (0..count as u64).map(|index| seed.wrapping_add(index));
         let each: Result<Vec<Environment>> = seeds
             .map(|seed| Environment::new(&settings, seed))
@@ -162,6 +166,24 @@ impl Environments {
         let mut states = self.each.iter().map(Environment::state);
         states.position(|state| state != State::Running)
     }
+}
+
+/// Refuses environments that would not fit into memory.
+fn check_size(world: &CrowdWorld, count: usize) -> Result<()> {
+    let agents = count.saturating_mul(world.people.len() + world.robots.len());
+    let sightings = count.saturating_mul(world.sightings());
+    for (found, most, what) in [
+        (agents, MOST_AGENTS, "people and robots"),
+        (sightings, MOST_SIGHTINGS, "pairs of a robot under a law and somebody it may see"),
+    ] {
+        if found > most {
+            let rule = format!("make at most {most} {what} together");
+            let advice = format!("{count} of them make {found}; take fewer or smaller worlds");
+            let given = Given::Count(count as u64);
+            return Err(Failure::invalid("num_envs", rule, given).mended_by(advice));
+        }
+    }
+    Ok(())
 }
 
 /// Does something with each environment and its results, on so many threads.
