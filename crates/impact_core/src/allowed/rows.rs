@@ -1,7 +1,7 @@
 //! Many contacts at once, for batches and maps.
 
 use numeric::parallel::Work;
-use numeric::threads::{map, on_threads};
+use numeric::threads::{on_threads, try_each};
 
 use super::row::{
     CALLED, COUNT, FIRST_MATERIAL, Known, MASSES, NAMES, OPTIONAL, Row, Setup, is_of_law,
@@ -107,6 +107,24 @@ pub struct Columns {
     pub word: Vec<u8>,
 }
 
+/// Columns of some rows, to be filled.
+struct Piece<'a, const N: usize> {
+    first: usize,
+    numbers: [&'a mut [f64]; N],
+    status: &'a mut [u8],
+    word: &'a mut [u8],
+}
+
+impl<const N: usize> Piece<'_, N> {
+    fn put(&mut self, place: usize, (numbers, status, word): ([f64; N], u8, u8)) {
+        for (column, number) in self.numbers.iter_mut().zip(numbers) {
+            column[place] = number;
+        }
+        self.status[place] = status;
+        self.word[place] = word;
+    }
+}
+
 /// Results of all rows in blocks over the threads; `words` statuses come before those of invalid rows, which
 /// have `nothing` as their second code.
 ///
@@ -118,9 +136,8 @@ fn each_row<const N: usize, M: Default>(
     of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync,
 ) -> Result<Columns> {
     let varying = given.varying();
-    let block = |index: usize| -> Result<Vec<([f64; N], u8, u8)>> {
-        let rows = index * BLOCK..given.rows.min((index + 1) * BLOCK);
-        let fixed = if given.rows == 0 || given.varies() {
+    let fill = |mut piece: Piece<'_, N>| -> Result<()> {
+        let fixed = if given.varies() {
             Ok(None)
         } else {
             setup.material(&given.row(0))
@@ -130,37 +147,45 @@ fn each_row<const N: usize, M: Default>(
             let material = fixed.as_ref().map_err(Clone::clone)?;
             of(row, material.as_ref(), remembered)
         };
-        let mut found = Vec::with_capacity(rows.len());
-        let (mut row, mut remembered) = (given.row(rows.start), M::default());
-        for index in rows {
+        let (mut row, mut remembered) = (given.row(piece.first), M::default());
+        for place in 0..piece.status.len() {
             if (work.interrupted)() {
                 return Err(Failure::Interrupted);
             }
+            let index = piece.first + place;
             if given.advance(&mut row, &varying, index) {
                 remembered = M::default();
             }
-            found.push(match one(index, &row, &mut remembered) {
+            let found = match one(index, &row, &mut remembered) {
                 Ok((numbers, status, word)) => (numbers, code_of(status), word),
                 Err(failure) => ([f64::NAN; N], invalid(setup, &failure, words), nothing),
-            });
+            };
+            piece.put(place, found);
         }
-        (work.progress)(found.len());
-        Ok(found)
+        (work.progress)(piece.status.len());
+        Ok(())
     };
-    let blocks = on_threads(work.threads, || Ok(map(given.rows.div_ceil(BLOCK), block)))?;
-    let mut numbers = names.map(|name| (name, Vec::with_capacity(given.rows)));
-    let mut status = Vec::with_capacity(given.rows);
-    let mut word = Vec::with_capacity(given.rows);
-    for part in blocks {
-        let part = part?;
-        for (place, (_, column)) in numbers.iter_mut().enumerate() {
-            column.extend(part.iter().map(|(numbers, ..)| numbers[place]));
-        }
-        status.extend(part.iter().map(|(_, status, _)| *status));
-        word.extend(part.iter().map(|(.., word)| *word));
-    }
+    let mut numbers = names.map(|_| vec![0.0; given.rows]);
+    let mut status = vec![0; given.rows];
+    let mut word = vec![0; given.rows];
+    let mut columns = numbers.each_mut().map(|column| column.chunks_mut(BLOCK));
+    let codes = status.chunks_mut(BLOCK).zip(word.chunks_mut(BLOCK));
+    let pieces = codes.enumerate().map(|(index, (status, word))| Piece {
+        first: index * BLOCK,
+        numbers: columns
+            .each_mut()
+            .map(|pieces| pieces.next().unwrap_or_default()),
+        status,
+        word,
+    });
+    let pieces = pieces.collect();
+    on_threads(work.threads, || try_each(pieces, fill))?;
+    let mut numbers = numbers.into_iter();
     Ok(Columns {
-        numbers: numbers.into(),
+        numbers: names
+            .into_iter()
+            .map(|name| (name, numbers.next().unwrap_or_default()))
+            .collect(),
         status,
         word,
     })
