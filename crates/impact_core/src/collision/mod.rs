@@ -66,12 +66,12 @@ impl Body {
         }
     }
 
-    fn check(&self, owner: &str) -> Result<()> {
+    fn check(&self, [mass, damping, stiffness]: [&str; 3]) -> Result<()> {
         if self.mass != f64::INFINITY {
-            positive(&format!("{owner}_mass"), self.mass)?;
+            positive(mass, self.mass)?;
         }
-        not_negative(&format!("{owner}_damping"), self.damping)?;
-        not_negative(&format!("{owner}_stiffness"), self.stiffness)?;
+        not_negative(damping, self.damping)?;
+        not_negative(stiffness, self.stiffness)?;
         Ok(())
     }
 
@@ -122,8 +122,10 @@ impl Collision<'_> {
     /// # Errors
     /// A number is out of its range.
     pub fn check(&self) -> Result<()> {
-        self.robot.check("robot")?;
-        self.body.check("body")?;
+        self.robot
+            .check(["robot_mass", "robot_damping", "robot_stiffness"])?;
+        self.body
+            .check(["body_mass", "body_damping", "body_stiffness"])?;
         self.region.checked()?;
         finite("closing_speed", self.closing_speed)?;
         positive("horizon", self.horizon)?;

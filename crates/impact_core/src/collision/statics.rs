@@ -34,9 +34,9 @@ pub fn rest_of(pad: Option<&Pad>, region: Region, energy: f64) -> Rest {
         return at_force(force);
     };
     let at = |compression: f64| {
-        let [force, slope] = pad.force(compression);
+        let [stored, force, slope] = pad.work_and_force(compression);
         let deflection = region.deflection(force);
-        let work = pad.work(compression) + region.work(force);
+        let work = stored + region.work(force);
         let yielding = region.force(deflection)[1];
         // dW/dd = F + F F'/g'.
         let rise = force * (1.0 + if slope == 0.0 { 0.0 } else { slope / yielding });

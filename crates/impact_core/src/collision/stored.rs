@@ -84,7 +84,8 @@ impl Column<'_> {
         if self.region == Region::Rigid {
             return [pad.work(compression), 1.0];
         }
-        self.with_region(pad.work(compression), pad.force(compression))
+        let [work, force, slope] = pad.work_and_force(compression);
+        self.with_region(work, [force, slope])
     }
 
     /// What a flat covering that has not bottomed out returns: `U` is a function of its work alone,

@@ -3,6 +3,9 @@
 /// Steps after which a bracket has no room left.
 const MAX_STEPS: usize = 200;
 
+/// Newton steps this short, relatively, leave an error below rounding.
+const NEAR: f64 = 1e-9;
+
 /// Steps after which plain Newton steps are too slow.
 const FEW_STEPS: usize = 12;
 
@@ -69,15 +72,21 @@ pub fn beyond(
     bound: f64,
     function: impl Fn(f64) -> [f64; 2],
 ) -> f64 {
-    let mut x = low + (target - at_low) / slope;
+    let straight = low + (target - at_low) / slope;
+    // A law with a pole at its bound rises like 1/(bound - x) at least.
+    let mut x = if bound.is_finite() {
+        straight.min(bound - (bound - low) * at_low / target)
+    } else {
+        straight
+    };
     for _ in 0..FEW_STEPS {
         if !(x > low && x < bound) {
             break;
         }
         let [value, slope] = function(x);
         let newton = x - (value - target) / slope;
-        if (newton - x).abs() <= 2.0 * f64::EPSILON * x {
-            return x;
+        if (newton - x).abs() <= NEAR * x {
+            return newton;
         }
         x = newton;
     }

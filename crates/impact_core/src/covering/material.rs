@@ -85,8 +85,10 @@ impl GibsonAshby {
     /// A law from its numbers: `E` and `s_p` in Pa, `e_D`, `D`, `m`.
     #[must_use]
     pub fn new([modulus, plateau, lock, d, m]: [f64; 5]) -> Self {
-        let plateau_end = lock * (1.0 - d.powf(-1.0 / m));
+        let share = if m == 1.0 { 1.0 / d } else { d.powf(-1.0 / m) };
+        let plateau_end = lock * (1.0 - share);
         let first = lock - plateau_end;
+        let rest = if m == 1.0 { 1.0 } else { first.powf(1.0 - m) };
         Self {
             modulus,
             plateau,
@@ -94,7 +96,7 @@ impl GibsonAshby {
             d,
             m,
             plateau_end,
-            dense_scale: plateau / d * raised(lock, m) * first.powf(1.0 - m),
+            dense_scale: plateau / d * raised(lock, m) * rest,
         }
     }
 
@@ -280,6 +282,24 @@ impl Material {
             Self::Avalle { .. } => strain * unit_integral(|y| self.stress(strain * y)[0]),
             Self::Table(table) => table.works(strain)[0],
         }
+    }
+
+    /// Work, stress and slope of the stress, for less than each for itself.
+    #[must_use]
+    pub fn work_and_stress(&self, strain: f64) -> [f64; 3] {
+        if let Self::Rusch { a, p, b, q } = self
+            && strain > 0.0
+        {
+            let [first, first_slope] = power(*a, *p, strain);
+            let [second, second_slope] = power(*b, *q, strain);
+            return [
+                strain * (first / (p + 1.0) + second / (q + 1.0)),
+                first + second,
+                first_slope + second_slope,
+            ];
+        }
+        let [stress, slope] = self.stress(strain);
+        [self.work(strain), stress, slope]
     }
 
     /// Integral `w2` of the work.

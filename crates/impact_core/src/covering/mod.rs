@@ -313,6 +313,26 @@ impl Pad {
         self.scale * thickness * value + 0.5 * bottoming.stiffness * backing * backing
     }
 
+    /// Work, force and slope of the force at a compression.
+    #[must_use]
+    pub fn work_and_force(&self, compression: f64) -> [f64; 3] {
+        let thickness = self.covering.thickness;
+        let flat = matches!(self.covering.shape, Shape::Flat { .. });
+        if !flat || compression <= 0.0 || compression > self.bottom {
+            let [force, slope] = self.force(compression);
+            return [self.work(compression), force, slope];
+        }
+        let [work, stress, slope] = self
+            .covering
+            .material
+            .work_and_stress(compression / thickness);
+        [
+            self.scale * thickness * work,
+            self.scale * stress,
+            self.scale * slope / thickness,
+        ]
+    }
+
     /// Largest compression at which the force is at most a value; `None` beyond the end of a table.
     #[must_use]
     pub fn compression_at(&self, force: f64) -> Option<f64> {
