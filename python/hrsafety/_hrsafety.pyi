@@ -1588,14 +1588,14 @@ class Run:
 class Controller:
     """A law on a robot."""
 
-    def __new__(cls, scenario: Scenario, law: Law, lidar: Lidar | None) -> Self: ...
+    def __new__(cls, scenario: Scenario, law: Law, lidar: Lidar | None, latency: float) -> Self: ...
     def update(
         self,
         time: float,
         robot: tuple[_Pair, _Pair] | None,
         heading: float,
         *,
-        seen: list[tuple[int, _Pair, _Pair, float]],
+        seen: list[tuple[int, _Pair, _Pair, float | None]],
         gone: list[int],
         scan: _Array | None,
     ) -> dict[str, Any]:

@@ -20,7 +20,7 @@ use crate::parameters::Scenario;
 use crate::watch::{Report, here};
 
 /// Number, position, velocity and instant of somebody who was measured.
-type Seen = (usize, [f64; 2], [f64; 2], f64);
+type Seen = (usize, [f64; 2], [f64; 2], Option<f64>);
 
 /// A law on a robot.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -33,9 +33,14 @@ fn busy() -> PyErr {
 #[pymethods]
 impl Controller {
     #[new]
-    fn new(scenario: &Scenario, law: &Law, lidar: Option<PyRef<'_, Lidar>>) -> PyResult<Self> {
+    fn new(
+        scenario: &Scenario,
+        law: &Law,
+        lidar: Option<PyRef<'_, Lidar>>,
+        latency: f64,
+    ) -> PyResult<Self> {
         let lidar = lidar.as_ref().map(|lidar| &lidar.0);
-        let core = controller::Controller::new(scenario.0.clone(), &law.any, lidar);
+        let core = controller::Controller::new(scenario.0.clone(), &law.any, lidar, latency);
         Ok(Self(Mutex::new(core.map_err(CoreError::from)?)))
     }
 

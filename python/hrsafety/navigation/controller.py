@@ -16,11 +16,14 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown, Simulation
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles import Human, Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.shield_warnings import of_controller
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Command", "Controller", "Sighting"]
 
@@ -40,16 +43,17 @@ class Sighting(NamedTuple):
     ----------
     x, y : float
         Center in m.
-    vx, vy : float
-        Velocity in m/s.
+    vx, vy : float or None
+        Velocity in m/s; taken for zero when ``None``, which a shield that reckons with velocities refuses.
     time : float or None
-        When it was measured, in s; at the update that tells of it when ``None``.
+        When it was measured, in s. When ``None``: at the update that tells of it, or before, by at most the
+        ``latency`` of the shield.
     """
 
     x: float
     y: float
-    vx: float = 0.0
-    vy: float = 0.0
+    vx: float | None = None
+    vy: float | None = None
     time: float | None = None
 
 
@@ -141,8 +145,10 @@ class Controller:
 
     Told the same at the same instants, it commands the same as a run, bit for bit. It keeps what it was
     told: whoever is not measured again stays where he was, with an age that grows, and the shield reckons
-    with wherever he can be by then. He is forgotten when ``gone`` names him, or after 2 s if a
-    scan sees his place to be empty. Measurements older than what is known of somebody count for nothing.
+    with wherever he can be by then; so it does with the points of a scan. What is told without its instant
+    can be as old as the ``latency`` of the shield when it is told. Somebody is forgotten when ``gone`` names
+    him, or after 2 s if a scan sees his place to be empty. Measurements older than what is known of somebody
+    count for nothing.
 
     Parameters
     ----------
@@ -232,14 +238,23 @@ class Controller:
         if start is not None:
             self._native = self._made(pair("start", start))
 
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """What the shield of the law does not cover; empty without a shield."""
+        shield = _shield(self._law)
+        if shield is None:
+            return ()
+        lidar, speed = self._lidar is not None, self._person_speed
+        return tuple(of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar))
+
     def _made(self, start: Pair) -> _hrsafety.Controller:
         scenario = Scenario(start=start, **self._rules)
         lidar = None if self._lidar is None else self._lidar._lidar
-        return _hrsafety.Controller(scenario._native, self._law._native, lidar)
+        return _hrsafety.Controller(scenario._native, self._law._native, lidar, _latency(self._law))
 
-    def _faster(self, seen: list[tuple[int, Pair, Pair, float]]) -> tuple[Hashable, ...]:
+    def _faster(self, seen: list[tuple[int, Pair, Pair, float | None]]) -> tuple[Hashable, ...]:
         """Return who was measured to be faster than the shield reckons with."""
-        shield = self._law.shield if isinstance(self._law, SafeNavigation) else None
+        shield = _shield(self._law)
         if shield is None:
             return ()
         most = self._person_speed if shield.person_speed is None else shield.person_speed
@@ -313,7 +328,7 @@ class Controller:
             if robot is None:
                 return self._told(_NOTHING, (0.0, 0.0), ())
             self._native = self._made(robot[0])
-        seen = [] if people is None else self._seen(people, now)
+        seen = [] if people is None else self._seen(people)
         ranges = None if scan is None else _ranges(scan)
         left = self._left(gone, people)
         fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
@@ -329,16 +344,40 @@ class Controller:
         return Command(before=before, faster=faster, **limits, **fields)
 
     def _seen(
-        self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike, now: float
-    ) -> list[tuple[int, Pair, Pair, float]]:
+        self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike
+    ) -> list[tuple[int, Pair, Pair, float | None]]:
         """Return who was measured, by the places of the core."""
         if not isinstance(people, Mapping):
             rows = numbers("people", people)
             if rows.size and (rows.ndim != 2 or rows.shape[1] not in (4, 5)):
                 raise ShapeError("people", "(n, 4) or (n, 5)", rows.shape)
             people = dict(enumerate(rows.reshape(-1, max(1, rows.shape[-1])).tolist() if rows.size else []))
-        told = {name: _sighting(name, given, now) for name, given in people.items()}
+        told = {name: self._sighting(name, given) for name, given in people.items()}
         return [(self._place(name, told), *sighting) for name, sighting in told.items()]
+
+    def _sighting(self, name: Hashable, given: Sequence[float | None]) -> tuple[Pair, Pair, float | None]:
+        """Return place, velocity and instant of somebody who was measured."""
+        label = f"people[{name!r}]"
+        if isinstance(given, (str, Mapping)) or not (hasattr(given, "__len__") and hasattr(given, "__getitem__")):
+            rule = "be a Sighting or (x, y, vx, vy), with the instant as a fifth number"
+            raise InvalidParameterError(label, rule, given)
+        if len(given) not in (4, 5):
+            raise ShapeError(label, "(4,) or (5,)", (len(given),))
+        x, y = (number(label, value) for value in given[:2])
+        vx, vy = (self._speed(label, value) for value in given[2:4])
+        instant = given[4] if len(given) == 5 else None
+        return (x, y), (vx, vy), None if instant is None else number(f"{label}.time", instant)
+
+    def _speed(self, name: str, value: float | None) -> float:
+        """Return a component of a velocity; who is not known to move may not be taken to stand."""
+        if value is not None:
+            return number(name, value)
+        shield = _shield(self._law)
+        if shield is not None and shield.velocity_error is not None:
+            rule = "have a velocity, as the shield assumes one to be known to velocity_error"
+            remedy = "give vx and vy, or a shield without velocity_error and person_acceleration"
+            raise InvalidParameterError(name, rule, None, remedy)
+        return 0.0
 
     def _left(self, gone: Iterable[Hashable], seen: Mapping[Hashable, object] | npt.ArrayLike | None) -> list[int]:
         """Return the places of those who left; nobody can have left who is measured in the same update."""
@@ -402,18 +441,6 @@ def _ranges(scan: npt.ArrayLike) -> Array:
     return np.where((ranges >= 0.0) & (ranges < NEAREST), NEAREST, ranges)
 
 
-def _sighting(name: Hashable, given: Sequence[float | None], now: float) -> tuple[Pair, Pair, float]:
-    """Return place, velocity and instant of somebody who was measured."""
-    label = f"people[{name!r}]"
-    if isinstance(given, (str, Mapping)) or not (hasattr(given, "__len__") and hasattr(given, "__getitem__")):
-        raise InvalidParameterError(label, "be a Sighting or (x, y, vx, vy), with the instant as a fifth number", given)
-    if len(given) not in (4, 5):
-        raise ShapeError(label, "(4,) or (5,)", (len(given),))
-    x, y, vx, vy = (number(label, value) for value in given[:4])
-    instant = given[4] if len(given) == 5 else None
-    return (x, y), (vx, vy), now if instant is None else number(f"{label}.time", instant)
-
-
 def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:
     """Return obstacles that stand: where another one is, nobody would ever tell."""
     found: list[Obstacle] = sequence("obstacles", "be a sequence of obstacles", obstacles)
@@ -422,6 +449,17 @@ def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:
             remedy = "tell where it is in people= of every update"
             raise InvalidParameterError(f"obstacles[{index}]", "stand for all time", obstacle, remedy)
     return found
+
+
+def _shield(law: AnyLaw) -> Shield | None:
+    """Return the shield of a law, if it has one."""
+    return law.shield if isinstance(law, SafeNavigation) else None
+
+
+def _latency(law: AnyLaw) -> float:
+    """Return how old may be what is told without its instant, in s."""
+    shield = _shield(law)
+    return 0.0 if shield is None else shield.latency
 
 
 def _with_map(law: Any, map: StaticMap | None) -> Any:

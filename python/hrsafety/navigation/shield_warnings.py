@@ -76,12 +76,60 @@ def of_shield(
         motion=Motion(scenario.robot, scenario.control_period, motion_step),
         walls=any(isinstance(obstacle, Rectangle) for obstacle in scenario.obstacles),
     )
+    if built is not None and built.wheels is not None:
+        yield ResultWarning(
+            ASSUMES_LESS,
+            "wheels",
+            "the shield plans for a robot that takes up each velocity evenly within a control period and then stands "
+            "still; wheels with motors lag and slip, more than its margin covers: nothing is proved for this run",
+        )
+    if built is not None and built.robot_vision is not None:
+        yield ResultWarning(
+            ASSUMES_LESS,
+            "robot_vision",
+            f"margin of the shield is {shield.margin:.4g}, but a camera tells the robot its own place with noise and "
+            "late: it may let the robot move into somebody; give a margin that covers noise and the way in between",
+        )
     if built is not None and (built.obstacle_vision is not None or built.sensors):
         yield ResultWarning(
             SEES_LESS,
             "sensors",
             "the shield keeps off those whom the sensors show at the time, with the errors and the age that it "
             "assumes: who is hidden, or was not seen yet, is not there for it",
+        )
+
+
+def of_controller(
+    shield: Shield, robot: HolonomicRobot | DifferentialDriveRobot, *, person_speed: float, lidar: bool
+) -> Iterator[ResultWarning]:
+    """Warn of what a shield on a robot does not cover: people who are faster, and what a lidar does not show.
+
+    Parameters
+    ----------
+    shield : Shield
+        What is assumed.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot.
+    person_speed : float
+        Largest speed of people in m/s.
+    lidar : bool
+        Whether the robot has one.
+
+    Yields
+    ------
+    ResultWarning
+        Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
+    """
+    # How the robot carries out what it is told is its own: no motion steps here.
+    motion = Motion(robot, 1.0, 0.0)
+    yield from of_surroundings(shield, [("people", person_speed)], measurement=None, motion=motion, walls=False)
+    if lidar:
+        yield ResultWarning(
+            SEES_LESS,
+            "lidar",
+            "the shield keeps off at most eight points of a scan, those within the reach of the lidar: what lies "
+            "between two beams, behind others or farther away is not there for it; give a reach beyond its "
+            "braking distance, and tell of people by people=",
         )
 
 

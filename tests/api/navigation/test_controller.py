@@ -132,6 +132,65 @@ def test_a_late_measurement_counts_with_its_age() -> None:
     assert late.oldest == pytest.approx(0.3)
 
 
+def test_who_is_lost_is_older_than_the_time_since_he_was_told_by_the_latency() -> None:
+    person = (2.0, 0.0, 0.0, 0.0)
+    one, two = shielded(latency=0.3), shielded(latency=0.3)
+    still(one, 1.0, people={"a": person})
+    still(two, 1.0, people={"a": (*person, 0.7)})
+    # Told without an instant he may have been measured 0.3 s before, and is as old as the other from then on.
+    for time in (1.06, 1.3, 1.6):
+        untimed, timed = still(one, time), still(two, time)
+        assert untimed.velocity == pytest.approx(timed.velocity, abs=1e-12)
+        assert (untimed.oldest, timed.oldest) == (pytest.approx(time - 1.0), pytest.approx(time - 0.7))
+    now = shielded(latency=0.3)
+    still(now, 1.0, people={"a": (*person, 1.0)})
+    assert still(now, 1.6).velocity[0] > untimed.velocity[0] + 0.05
+
+
+def test_points_of_a_scan_grow_old() -> None:
+    scan = np.full(36, np.inf)
+    scan[17:20] = 1.5
+    law = SafeNavigation(Ahead(), shield=Shield())
+    lidar = nav.sensing.Lidar(beams=36, max_speed=1.6)
+    controller = Controller(law, ROBOT, (20.0, 0.0), start=(0.0, 0.0), lidar=lidar)
+    fresh = still(controller, 0.0, scan=scan).velocity[0]
+    later = [still(controller, 0.06 * step).velocity[0] for step in range(1, 15)]
+    assert fresh > 0.5
+    assert later[-1] < 0.05
+    assert all(after <= before + 1e-9 for before, after in itertools.pairwise(later))
+    assert still(controller, 0.9, scan=scan).velocity[0] == fresh
+
+
+def test_a_turn_that_was_lost_or_late_is_over() -> None:
+    robot, law = nav.DifferentialDriveRobot(), SafeNavigation(FIELD, shield=Shield())
+
+    def turning() -> Controller:
+        controller = Controller(law, robot, (0.0, 5.0), start=(0.0, 0.0))
+        for step in range(4):
+            assert controller.update(0.06 * step, (0.0, 0.0), (0.0, 0.0), heading=0.0).turn_rate > 1.0
+        return controller
+
+    def again(controller: Controller, time: float) -> Command:
+        return controller.update(time, (0.0, 0.0), (0.0, 0.0), heading=math.pi / 2.0 - 1e-3)
+
+    fresh = again(Controller(law, robot, (0.0, 5.0), start=(0.0, 0.0)), 3.0)
+    late = again(turning(), 3.0)
+    assert (late.timing, late.turn_rate, late.speed) == ("late", fresh.turn_rate, fresh.speed)
+    lost = turning()
+    for step in range(5, 51):
+        assert lost.update(0.06 * step - 0.06, None, None).timing == "lost"
+    assert again(lost, 3.0).turn_rate == fresh.turn_rate
+    assert again(turning(), 0.24).turn_rate > fresh.turn_rate + 0.5
+
+
+def test_who_is_not_known_to_move_is_not_taken_to_stand() -> None:
+    bounded = shielded(velocity_error=0.1, person_acceleration=1.0)
+    with pytest.raises(InvalidParameterError, match="known to velocity_error"):
+        still(bounded, 0.0, people={"a": Sighting(2.0, 0.0)})
+    assert still(bounded, 0.0, people={"a": Sighting(9.0, 0.0, 0.0, 0.0)}).status == "kept"
+    assert still(shielded(), 0.0, people={"a": Sighting(9.0, 0.0)}).status == "kept"
+
+
 def test_an_older_measurement_of_somebody_counts_for_nothing() -> None:
     one, two = shielded(), shielded()
     for controller in (one, two):

@@ -69,3 +69,25 @@ def test_sensors_that_hide_people_are_told() -> None:
     built = nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()])
     assert ("shield_sees_less", "sensors") in warned(SCENE, Shield(), built=built)
     assert warned(SCENE, Shield(), built=nav.robots.AsBuilt()) == set()
+
+
+def test_wheels_and_cameras_that_no_margin_covers_are_told() -> None:
+    wheels = nav.robots.AsBuilt(wheels=nav.robots.HOLONOMIC_WHEELS)
+    assert ("shield_assumes_less", "wheels") in warned(SCENE, Shield(), built=wheels)
+    camera = nav.robots.AsBuilt(robot_vision=nav.sensing.Vision())
+    assert ("shield_assumes_less", "robot_vision") in warned(SCENE, Shield(), built=camera)
+    law = SafeNavigation(FIELD, shield=Shield())
+    alone = nav.Scenario(start=(0.0, 0.0), goal=(3.0, 0.0), time_limit=5.0)
+    found = nav.metrics.falsify(alone, law, episodes=2, built=wheels)
+    assert "wheels" in {each.subject for each in found.warnings}
+
+
+def test_a_controller_tells_what_its_shield_does_not_cover() -> None:
+    law = SafeNavigation(FIELD, shield=Shield(person_speed=1.0))
+    slow = nav.Controller(law, SCENE.robot, (5.0, 0.0), person_speed=1.0)
+    assert slow.warnings == ()
+    fast = nav.Controller(law, SCENE.robot, (5.0, 0.0), person_speed=1.6)
+    assert [each.subject for each in fast.warnings] == ["shield.person_speed"]
+    scanning = nav.Controller(law, SCENE.robot, (5.0, 0.0), person_speed=1.0, lidar=nav.sensing.Lidar())
+    assert [each.code for each in scanning.warnings] == ["shield_sees_less"]
+    assert nav.Controller(FIELD, SCENE.robot, (5.0, 0.0), lidar=nav.sensing.Lidar()).warnings == ()

@@ -4,7 +4,7 @@
 //! counts with its age, what comes out of order does not count, and what does not come leaves the last
 //! of it standing, ever older.
 
-use crate::error::{Failure, Given, Result, finite, finite_pair};
+use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative};
 use crate::lanes::Vector2;
 use crate::laws::shield::{Limits, Status, braking};
 use crate::laws::{Situation, Stop};
@@ -34,8 +34,8 @@ pub struct Sighting {
     pub position: [f64; 2],
     /// Velocity in m/s.
     pub velocity: [f64; 2],
-    /// When, in s.
-    pub time: f64,
+    /// When, in s; `None` where only the update that tells of it is known.
+    pub time: Option<f64>,
 }
 
 /// What is told to a controller at an instant.
@@ -111,17 +111,31 @@ pub struct Controller {
     bodies: Vec<Body>,
     /// When each obstacle was measured, in s.
     measured: Vec<f64>,
+    /// Whether the instant of that was told.
+    dated: Vec<bool>,
+    /// When the last scan was told, in s.
+    scanned: f64,
+    /// Age in s, at most, of what is told without its instant.
+    latency: f64,
+    /// How old what is known of each body can be, in s.
     ages: Vec<f64>,
     last: Option<(f64, Order)>,
 }
 
 impl Controller {
     /// Of a law in a scenario, whose obstacles that can move are places for those who will be seen; a
-    /// lidar adds its points.
+    /// lidar adds its points. `latency`: age in s, at most, of what is told without its instant.
     ///
     /// # Errors
-    /// The law cannot work in the scenario, or does not steer a robot with two wheels.
-    pub fn new(scenario: Scenario, law: &AnyLaw, lidar: Option<&Lidar>) -> Result<Self> {
+    /// The law cannot work in the scenario, or does not steer a robot with two wheels, or the latency is
+    /// negative.
+    pub fn new(
+        scenario: Scenario,
+        law: &AnyLaw,
+        lidar: Option<&Lidar>,
+        latency: f64,
+    ) -> Result<Self> {
+        not_negative("latency", latency)?;
         if scenario.differential.is_some() && !law.driven().steers_by_velocity() {
             let rule = "have a shield, which steers a robot with two wheels by velocities";
             let given = Given::Found("a law without".into());
@@ -142,6 +156,9 @@ impl Controller {
         Ok(Self {
             law: law.driven().steering(&known)?,
             measured: vec![f64::NEG_INFINITY; scenario.obstacles.len()],
+            dated: vec![true; scenario.obstacles.len()],
+            scanned: f64::NEG_INFINITY,
+            latency,
             ages: vec![0.0; known.obstacles.len()],
             bodies: bodies.collect(),
             scans,
@@ -168,7 +185,7 @@ impl Controller {
         self.learn(told);
         let order = match told.robot {
             Some(robot) => self.decide(told, robot, stop)?,
-            None => self.brake(),
+            None => self.brake(told.time),
         };
         self.last = Some((told.time, order));
         Ok(order)
@@ -184,11 +201,11 @@ impl Controller {
         for (place, seen) in told.seen.iter().enumerate() {
             finite_pair(&format!("people[{place}].position"), seen.position)?;
             finite_pair(&format!("people[{place}].velocity"), seen.velocity)?;
-            finite(&format!("people[{place}].time"), seen.time)?;
-            if seen.time > told.time {
+            let name = format!("people[{place}].time");
+            let time = finite(&name, seen.time.unwrap_or(told.time))?;
+            if time > told.time {
                 let rule = format!("not be later than the update, {} s", told.time);
-                let name = format!("people[{place}].time");
-                return Err(Failure::invalid(&name, rule, Given::Number(seen.time)));
+                return Err(Failure::invalid(&name, rule, Given::Number(time)));
             }
         }
         let indices = told.seen.iter().map(|seen| seen.index);
@@ -207,10 +224,12 @@ impl Controller {
         for seen in told.seen {
             // An older measurement of somebody who is there tells nothing.
             let there = self.bodies[seen.index].state.present;
-            if there && seen.time < self.measured[seen.index] {
+            let time = seen.time.unwrap_or(told.time);
+            if there && time < self.measured[seen.index] {
                 continue;
             }
-            self.measured[seen.index] = seen.time;
+            self.measured[seen.index] = time;
+            self.dated[seen.index] = seen.time.is_some();
             self.bodies[seen.index].state = BodyState {
                 position: seen.position,
                 velocity: seen.velocity,
@@ -221,14 +240,35 @@ impl Controller {
         for index in told.gone {
             self.bodies[*index].state.present = false;
         }
-        let people = self.ages.iter_mut().zip(&self.measured);
-        for ((age, measured), placed) in people.zip(&self.scenario.obstacles) {
+    }
+
+    /// How old each of what is known can be at a time in s: since it was measured, or was told if only
+    /// that is known, and then it was measured some time before.
+    fn date(&mut self, now: f64) {
+        let (people, points) = self.ages.split_at_mut(self.measured.len());
+        let told = self.measured.iter().zip(&self.dated);
+        for ((age, (measured, dated)), placed) in
+            people.iter_mut().zip(told).zip(&self.scenario.obstacles)
+        {
             *age = if placed.stationary {
                 0.0
             } else {
-                (told.time - measured).max(0.0)
+                (now - measured).max(0.0) + if *dated { 0.0 } else { self.latency }
             };
         }
+        points.fill((now - self.scanned).max(0.0) + self.latency);
+    }
+
+    /// How long ago each obstacle was measured, in s.
+    fn since(&self, now: f64) -> impl Iterator<Item = f64> + '_ {
+        let told = self.measured.iter().zip(&self.scenario.obstacles);
+        told.map(move |(measured, placed)| {
+            if placed.stationary {
+                0.0
+            } else {
+                (now - measured).max(0.0)
+            }
+        })
     }
 
     /// Who is there, as far as is known, in the order of the obstacles of the scenario.
@@ -238,21 +278,23 @@ impl Controller {
     }
 
     /// Forgets who was lost where a scan sees nobody.
-    fn scan(&mut self, frame: &Frame, ranges: &[f64]) -> Result<()> {
+    fn scan(&mut self, now: f64, frame: &Frame, ranges: &[f64]) -> Result<()> {
         let people = self.measured.len();
+        let since: Vec<f64> = self.since(now).collect();
         let Some(scans) = &mut self.scans else {
             let rule = "be None for a controller without a lidar";
             let given = Given::Found("ranges".into());
             return Err(Failure::invalid("scan", rule, given));
         };
         scans.read(ranges, frame, &mut self.bodies[people..])?;
+        self.scanned = now;
         let bodies = self.bodies[..people].iter_mut();
-        for (body, age) in bodies.zip(&self.ages) {
+        for (body, since) in bodies.zip(since) {
             let placed = PlacedShape {
                 center: body.state.position.into(),
                 shape: body.shape,
             };
-            let lost = body.state.present && *age > FORGOTTEN;
+            let lost = body.state.present && since > FORGOTTEN;
             if lost && scans.saw_empty(frame, &placed) {
                 body.state.present = false;
             }
@@ -268,9 +310,19 @@ impl Controller {
     ) -> Result<Order> {
         let frame = Frame::at(robot.position.into(), told.heading);
         if let Some(ranges) = told.scan {
-            self.scan(&frame, ranges)?;
+            self.scan(told.time, &frame, ranges)?;
         }
+        self.date(told.time);
         let period = self.scenario.rules.control_period;
+        let late = self
+            .last
+            .is_some_and(|(before, _)| told.time - before > LATE * period);
+        if let Some((before, order)) = self.last
+            && let Some(twist) = order.twist
+            && (late || order.timing == Timing::Lost)
+        {
+            self.law.turning(twist, told.time - before);
+        }
         let command = self.law.command(&Situation {
             time: told.time,
             bodies: &self.bodies,
@@ -289,9 +341,6 @@ impl Controller {
         let (velocity, _) = point.limited_velocity::<f64>(reached);
         let wheels = self.scenario.differential.is_some();
         let trace = self.law.trace();
-        let late = self
-            .last
-            .is_some_and(|(before, _)| told.time - before > LATE * period);
         let to_goal = Vector2::from(self.scenario.goal) - robot.position;
         Ok(Order {
             force: command.force,
@@ -304,12 +353,12 @@ impl Controller {
             taken_over: trace.is_some_and(|trace| trace.taken_over),
             timing: if late { Timing::Late } else { Timing::Regular },
             arrived: to_goal.norm() <= self.scenario.rules.arrival_tolerance,
-            oldest: self.oldest(),
+            oldest: self.oldest(told.time),
         })
     }
 
     /// The rest of the last plan, for a robot that does not know where it is.
-    fn brake(&self) -> Order {
+    fn brake(&self, now: f64) -> Order {
         let zero = Vector2::zeros();
         let (velocity, arrived) = self
             .last
@@ -336,13 +385,13 @@ impl Controller {
             taken_over: false,
             timing: Timing::Lost,
             arrived,
-            oldest: self.oldest(),
+            oldest: self.oldest(now),
         }
     }
 
-    fn oldest(&self) -> f64 {
-        let people = self.bodies.iter().zip(&self.ages);
+    fn oldest(&self, now: f64) -> f64 {
+        let people = self.bodies.iter().zip(self.since(now));
         let present = people.filter(|(body, _)| body.state.present);
-        present.map(|(_, age)| *age).fold(0.0, f64::max)
+        present.map(|(_, since)| since).fold(0.0, f64::max)
     }
 }

@@ -7,6 +7,7 @@ use crate::error::{Failure, Result};
 use crate::lanes::{Lanes, Real};
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
+use crate::robots::differential::Twist;
 use crate::run::Interrupted;
 use crate::run::lane_rollout::run_scenes;
 use crate::run::options::Options;
@@ -93,6 +94,8 @@ pub(crate) trait Steering: Send {
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
     /// Heads for another goal from now on, in m.
     fn aim(&mut self, goal: [f64; 2]);
+    /// Tells a robot with two wheels what it was ordered last, and how long ago, in s.
+    fn turning(&mut self, ordered: Twist, since: f64);
     /// What parts around the law did in the last control period, if there are any.
     fn trace(&self) -> Option<Trace>;
 }
@@ -104,6 +107,10 @@ impl<L: Law<f64> + Send> Steering for L {
 
     fn aim(&mut self, goal: [f64; 2]) {
         Law::aim(self, goal);
+    }
+
+    fn turning(&mut self, ordered: Twist, since: f64) {
+        Law::turning(self, ordered, since);
     }
 
     fn trace(&self) -> Option<Trace> {

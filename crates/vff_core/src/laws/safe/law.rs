@@ -116,6 +116,14 @@ impl SafeLaw {
         }
     }
 
+    /// Takes the robot to turn as the rest of what it was ordered some time ago, in s, has it.
+    pub(crate) fn turning(&mut self, ordered: Twist, since: f64) {
+        self.turn_rate = match &self.twist_guard {
+            Some(guard) => guard.limits.turn_rate_after(ordered, since),
+            None => ordered.turn_rate,
+        };
+    }
+
     /// Force for the time until the next sample.
     pub(crate) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);

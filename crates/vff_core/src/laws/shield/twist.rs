@@ -205,6 +205,20 @@ impl TwistLimits {
         (slow.max(straight) - PERIOD_ROUNDING).ceil().max(0.0)
     }
 
+    /// Turn rate in rad/s some time in s after a twist was ordered, if nothing else was: it is taken up
+    /// within a period, and then falls evenly to rest.
+    pub(crate) fn turn_rate_after(&self, ordered: Twist, since: f64) -> f64 {
+        let braking = self.braking_periods(ordered) * self.period;
+        let gone = (since - self.period).max(0.0);
+        if gone == 0.0 {
+            return ordered.turn_rate;
+        }
+        if gone >= braking {
+            return 0.0;
+        }
+        ordered.turn_rate * (1.0 - gone / braking)
+    }
+
     /// The twist after one period of braking.
     fn braking(&self, twist: Twist) -> Twist {
         let periods = self.braking_periods(twist);
@@ -389,6 +403,24 @@ mod tests {
             people,
             walls: Walls::NONE,
         }
+    }
+
+    #[test]
+    fn a_turn_ends_as_the_plan_behind_it_does() {
+        let guard = guard();
+        let ordered = Twist {
+            speed: 0.0,
+            turn_rate: 4.0,
+        };
+        let (period, braking) = (guard.limits.period, guard.limits.braking(ordered));
+        assert_eq!(guard.limits.turn_rate_after(ordered, 0.5 * period), 4.0);
+        assert_eq!(guard.limits.turn_rate_after(ordered, period), 4.0);
+        let next = guard.limits.turn_rate_after(ordered, 2.0 * period);
+        assert!(
+            (next - braking.turn_rate).abs() < 1e-12,
+            "{next} {braking:?}"
+        );
+        assert_eq!(guard.limits.turn_rate_after(ordered, 60.0), 0.0);
     }
 
     #[test]
