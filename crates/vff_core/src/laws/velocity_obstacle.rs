@@ -6,6 +6,8 @@ mod lines;
 #[cfg(test)]
 mod tests;
 
+use std::cell::Cell;
+
 use best::Best;
 use lines::{Line, ON_THE_LIMIT, Reachable, where_circles_meet};
 
@@ -97,6 +99,8 @@ pub struct VelocityObstaclePlanner {
     max_acceleration: f64,
     cones: Vec<Cone>,
     lines: Vec<Line>,
+    /// The cone that forbade the last velocity.
+    blocking: Cell<usize>,
 }
 
 impl VelocityObstaclePlanner {
@@ -112,6 +116,7 @@ impl VelocityObstaclePlanner {
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
             lines: Vec::new(),
+            blocking: Cell::new(0),
         }
     }
 
@@ -169,7 +174,16 @@ impl VelocityObstaclePlanner {
             let time = cone.time_to_contact(velocity);
             time == f64::INFINITY || time > self.settings.horizon
         };
-        self.cones.iter().all(late) && !self.touches_on_the_way(situation, velocity)
+        // What forbids a velocity mostly forbids its neighbors.
+        let known = self.cones.get(self.blocking.get());
+        if known.is_some_and(|cone| !late(cone)) {
+            return false;
+        }
+        if let Some(blocking) = self.cones.iter().position(|cone| !late(cone)) {
+            self.blocking.set(blocking);
+            return false;
+        }
+        !self.touches_on_the_way(situation, velocity)
     }
 
     /// Whether the way to a new velocity itself touches an obstacle, or comes closer to one whose
@@ -339,20 +353,28 @@ impl VelocityObstaclePlanner {
             best.offer((usize::MAX, number), velocity);
         }
         let promising = best.promising(&self.lines);
-        for (rank, &(promise, index)) in promising.iter().enumerate() {
-            if best.is_better_than(promise) {
+        for (rank, line) in promising.iter().enumerate() {
+            if best.is_better_than(line.promise) {
                 break;
             }
+            let index = line.index;
             let own = self.lines[index].own(wanted, &reachable);
             for (number, velocity) in own.into_iter().enumerate() {
                 if let Some(velocity) = velocity {
                     best.offer((1 + index, number), velocity);
                 }
             }
-            for &(_, other) in &promising[..rank] {
-                let (later, earlier) = (index.max(other), index.min(other));
-                if let Some(velocity) = self.lines[later].crossing(&self.lines[earlier]) {
-                    best.offer((1 + later, best::OWN + earlier), velocity);
+            for other in &promising[..rank] {
+                let (later, earlier) = if index > other.index {
+                    (line, other.index)
+                } else {
+                    (other, index)
+                };
+                // What lies beyond the reachable part of either line need not be offered.
+                let on = &self.lines[later.index];
+                let crossing = on.crossing_within(&self.lines[earlier], later.chord);
+                if let Some(velocity) = crossing {
+                    best.offer((1 + later.index, best::OWN + earlier), velocity);
                 }
             }
         }

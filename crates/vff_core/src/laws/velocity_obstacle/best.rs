@@ -9,6 +9,17 @@ pub(super) const OWN: usize = 5;
 /// A promise is worth this much more than it says, relative to it: well above all roundings.
 const SLACK: f64 = 1e-6;
 
+/// A line that anything reachable lies on.
+#[derive(Clone, Copy)]
+pub(super) struct Promising {
+    /// What its velocities are worth at most.
+    pub promise: f64,
+    /// Its place among the lines.
+    pub index: usize,
+    /// Its reachable part.
+    pub chord: [f64; 2],
+}
+
 /// Place of a candidate in the order of all: the line, and its number there.
 type Place = (usize, usize);
 
@@ -70,15 +81,22 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Lines that anything reachable lies on, with what they promise at most, the most promising
-    /// first.
-    pub fn promising(&self, lines: &[Line]) -> Vec<(f64, usize)> {
+    /// Lines that anything reachable lies on, the most promising first.
+    pub fn promising(&self, lines: &[Line]) -> Vec<Promising> {
         let promise = |(index, line): (usize, &Line)| {
-            let ends = self.reachable.chord(line)?;
-            Some((self.promise(ends), index))
+            let chord = self.reachable.chord(line)?;
+            Some(Promising {
+                promise: self.promise(chord.map(|share| line.at(share))),
+                index,
+                chord,
+            })
         };
-        let mut found: Vec<_> = lines.iter().enumerate().filter_map(promise).collect();
-        found.sort_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        let mut found: Vec<Promising> = lines.iter().enumerate().filter_map(promise).collect();
+        let by_promise = |one: &Promising, other: &Promising| {
+            let promises = other.promise.total_cmp(&one.promise);
+            promises.then(one.index.cmp(&other.index))
+        };
+        found.sort_unstable_by(by_promise);
         found
     }
 
