@@ -317,7 +317,7 @@ def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, de
     def straight() -> _hrsafety.Obstacle:
         return _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
 
-    if obstacle.path is obstacle.segments is None:  # nearly always
+    if obstacle.path is None and obstacle.segments is None:  # nearly always
         native = straight()
     else:
         native = moving_body(obstacle, start, {"radius": radius, **limits}, straight)
