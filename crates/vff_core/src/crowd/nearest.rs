@@ -130,7 +130,11 @@ mod tests {
             let expected: Vec<u32> = expected.iter().map(|agent| agent.number).collect();
             for most in [0, 1, 4, 10, 1000] {
                 let found = nearest_of(&all, &robots, most);
-                assert_eq!(found, expected[..most.min(expected.len())], "{count} {most}");
+                assert_eq!(
+                    found,
+                    expected[..most.min(expected.len())],
+                    "{count} {most}"
+                );
             }
         }
     }

@@ -566,7 +566,11 @@ mod tests {
                 other.number != own.number && offset.dot(&offset) <= 1.2 * 1.2
             };
             seen.sort_unstable();
-            let all: Vec<u32> = agents.iter().filter(met).map(|other| other.number).collect();
+            let all: Vec<u32> = agents
+                .iter()
+                .filter(met)
+                .map(|other| other.number)
+                .collect();
             assert_eq!(seen, all);
         }
     }

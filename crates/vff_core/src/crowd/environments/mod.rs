@@ -174,7 +174,11 @@ fn check_size(world: &CrowdWorld, count: usize) -> Result<()> {
     let sightings = count.saturating_mul(world.sightings());
     for (found, most, what) in [
         (agents, MOST_AGENTS, "people and robots"),
-        (sightings, MOST_SIGHTINGS, "pairs of a robot under a law and somebody it may see"),
+        (
+            sightings,
+            MOST_SIGHTINGS,
+            "pairs of a robot under a law and somebody it may see",
+        ),
     ] {
         if found > most {
             let rule = format!("make at most {most} {what} together");
