@@ -6,6 +6,7 @@ import pickle
 import warnings
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -207,6 +208,18 @@ def test_bad_options_are_named() -> None:
             gym.CrowdVectorEnv(gym.circle_crossing(), **options)
     with pytest.raises(InvalidParameterError, match="hold a robot"):
         gym.CrowdEnv(nav.crowd.World())
+
+
+def test_environments_that_would_not_fit_into_memory_are_refused() -> None:
+    task = gym.bottleneck(people=20)
+    with pytest.raises(InvalidParameterError, match="num_envs must make at most 10000000 people and robots together"):
+        gym.CrowdVectorEnv(task, num_envs=2**20)
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    ends = [((3.0 * k, 20.0), (3.0 * k, 30.0)) for k in range(60)]
+    others = [nav.crowd.CrowdRobot(start=start, goal=goal, law=law) for start, goal in ends]
+    crowded = replace(task, world=replace(task.world, robots=[*task.world.robots, *others]))
+    with pytest.raises(InvalidParameterError, match="pairs of a robot under a law and somebody it may see together"):
+        gym.CrowdVectorEnv(crowded, num_envs=2100)
 
 
 def test_a_mask_is_needed_where_episodes_have_ended() -> None:

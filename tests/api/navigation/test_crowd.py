@@ -281,3 +281,15 @@ def test_the_interpreter_is_released() -> None:
         longest, last = max(longest, now - last), now
     worker.join()
     assert longest < 1.0
+
+
+def test_what_would_not_fit_into_memory_is_refused_before_any_is_taken() -> None:
+    person = nav.crowd.Person(start=(0.0, 0.0), route=[(1.0, 0.0)])
+    long = nav.crowd.World(people=[person], time_limit=4.9e5)
+    with pytest.raises(InvalidParameterError, match=r"worlds must hold at most .* agents times steps together"):
+        nav.crowd.simulate_crowds([long] * 11)
+    law = nav.OptimalReciprocalCollisionAvoidance()
+    ends = [((3.0 * k, 0.0), (3.0 * k, 9.0)) for k in range(3200)]
+    robots = [nav.crowd.CrowdRobot(start=start, goal=goal, law=law) for start, goal in ends]
+    with pytest.raises(InvalidParameterError, match="robots must see at most 10000000 people and robots together"):
+        nav.crowd.simulate_crowd(nav.crowd.World(robots=robots))
