@@ -75,13 +75,13 @@ pub fn moved(collision: &Collision<'_>, wanted: Wanted, interrupted: Interrupted
     Run::<3>::new(collision, wanted).finish(wanted, interrupted)
 }
 
-/// Whether `d = 0` stays where it is although the bodies close in.
+/// Whether `d = 0`, or `delta = 0`, stays where it is although the bodies close in.
 fn rests_at_touch(collision: &Collision<'_>) -> bool {
     let Some(pad) = collision.pad else {
         return false;
     };
-    let slope = pad.force(0.0)[1];
-    slope.is_infinite() || (slope == 0.0 && collision.region.force(0.0)[1] == 0.0)
+    let [slope, yielding] = [pad.force(0.0)[1], collision.region.force(0.0)[1]];
+    slope.is_infinite() || yielding.is_infinite() || (slope == 0.0 && yielding == 0.0)
 }
 
 /// `eps` and `d` shortly after the touch of a covering that starts infinitely stiff, whose damper is at rest.

@@ -3,7 +3,7 @@ use serde_json::Value;
 use super::reading::{collision, pad};
 use super::run::moved;
 use super::stored::stored;
-use super::{Body, Collision, Outcome, Region, Status, Wanted, simulate};
+use super::{Body, Collision, Outcome, Region, Status, Wanted, rest_of, simulate};
 use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Rate, Shape, Unloading};
 
 fn cases() -> Value {
@@ -398,5 +398,37 @@ fn loads_with_rate_converge_with_the_tolerance() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn a_region_that_starts_infinitely_stiff_yields() {
+    let pad = coverings()[0].clone().prepared().unwrap();
+    let collision = Collision {
+        robot: Body::free(8.0),
+        body: Body::free(40.0),
+        region: Region::Power {
+            stiffness: 1e4,
+            exponent: 0.8,
+        },
+        pad: Some(&pad),
+        closing_speed: 0.4,
+        stop: None,
+        horizon: 2.0,
+        tolerance: 1e-10,
+    };
+    let solved = moved(&collision, Wanted::default(), &|| false);
+    let rest = rest_of(
+        Some(&pad),
+        collision.region,
+        0.5 * collision.reduced_mass() * 0.16,
+    );
+    for (value, exact) in [
+        (solved.peak_force, rest.force),
+        (solved.peak_covering_compression, rest.compression),
+        (solved.peak_body_deflection, rest.deflection),
+        (solved.rebound_speed, 0.4),
+    ] {
+        assert!((value / exact - 1.0).abs() < 1e-6, "{value} {exact}");
     }
 }
