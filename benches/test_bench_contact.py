@@ -16,6 +16,8 @@ from hrsafety import contact
 
 FOAM = contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9)
 POWERS = contact.Rusch(a=15e3, p=0.5, b=2e5, q=5.0)
+# Exponents that are no products and roots.
+OTHER_POWERS = contact.Rusch(a=15e3, p=0.43, b=2e5, q=4.3)
 HAND: dict[str, Any] = {"region": 75e3, "limits": {"force": 280.0, "pressure": 380e4}}
 
 
@@ -111,6 +113,8 @@ def test_collisions(benchmark: Any) -> None:
         ("rusch", POWERS, (0.0, 0.0, 1.0)),
         ("gibson_ashby with rate", FOAM, (0.05, 0.02, 0.1)),
         ("rusch with rate", POWERS, (0.05, 0.02, 0.1)),
+        ("rusch of other exponents", OTHER_POWERS, (0.0, 0.0, 1.0)),
+        ("rusch of other exponents with rate", OTHER_POWERS, (0.05, 0.02, 0.1)),
     ):
         for region in (None, 25e3):
 

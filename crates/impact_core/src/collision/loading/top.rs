@@ -37,7 +37,7 @@ impl Loading<'_> {
             return;
         }
         let (mut low, mut high) = (*from, *to);
-        let near = 0.1 * self.collision.tolerance.cbrt() * (to.at - from.at);
+        let near = 0.01 * self.collision.tolerance.cbrt() * (to.at - from.at);
         let mut last: Option<Point> = None;
         for _ in 0..MOST_TRIALS {
             let width = high.at - low.at;
