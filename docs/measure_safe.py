@@ -1,12 +1,14 @@
 """Print what shield and yielding bring, or write it into the page on validation.
 
 ``python docs/measure_safe.py`` prints, ``--write`` replaces what stands between the marks of docs/validation.md;
-``--only shares`` are the shares of the suites, ``--only adversary`` the search for a fault. The recordings are those of
-``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv, the worlds of BARN those of ``HRSAFETY_BARN``.
+``--only shares`` are the shares of the suites, ``--only adversary`` the search for a fault, ``--only poses`` the
+arrivals of two wheels. The recordings are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv,
+the worlds of BARN those of ``HRSAFETY_BARN``.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -32,6 +34,11 @@ RANDOM, SEARCHES, EVALUATIONS = 20_000, 20, 300
 PURSUED_LAWS = ("field+shield", "orca+shield", "velocity_obstacle+shield")
 BARE = ("field", "orca", "velocity_obstacle")
 BARE_RANDOM = 1000
+POSES = 10_000
+LEAST_X, LEAST_Y, MOST_X, MOST_Y = -3.0, -3.0, 6.0, 3.0
+ROOM = [(LEAST_X, LEAST_Y), (MOST_X, LEAST_Y), (MOST_X, MOST_Y), (LEAST_X, MOST_Y), (LEAST_X, LEAST_Y)]
+TRAP, SCREEN = [(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)], [(4.5, 3), (4.5, 0.2)]
+GOAL = (5.3, 2.0)
 
 
 def say(*words: object) -> None:
@@ -101,8 +108,34 @@ def adversary() -> str:
     return "\n".join(lines) + "\n"
 
 
+def arrivals() -> str:
+    """Return the table of two wheels from random poses, each with the clearance at which a plan is certain."""
+    lines = head("law", "poses", "arrived", "nearest to a wall, mm", "slowest arrival, s")
+    walls = nav.StaticMap.from_polylines([TRAP, ROOM, SCREEN])
+    guide, robot = nav.Guide(box=((LEAST_X, LEAST_Y), (MOST_X, MOST_Y))), nav.DifferentialDriveRobot()
+    least = robot.radius + guide.margin + guide.spacing / math.sqrt(2.0)
+    generator, scenes = np.random.default_rng(11), list[nav.Scenario]()
+    while len(scenes) < POSES:
+        place, heading = generator.uniform((LEAST_X, LEAST_Y), (MOST_X, MOST_Y)), generator.uniform(-np.pi, np.pi)
+        if walls.clearance(place) > least and math.dist(place, GOAL) > 0.2:
+            scenes.append(
+                nav.Scenario(robot=robot, start=place, goal=GOAL, heading=heading, time_limit=60.0, rest_time=60.0)
+            )
+    say("poses")
+    law = nav.SafeNavigation(nav.VirtualForceField(), map=walls, guide=guide, shield=nav.Shield())
+    table = nav.simulate_many(scenes, [law])
+    arrived = int((table.outcome == "arrived").sum())
+    nearest, slowest = 1e3 * float(table.min_clearance.min()), float(np.nanmax(table.arrival_time))
+    lines.append(line("field+guide+shield", POSES, arrived, f"{nearest:.1f}", f"{slowest:.1f}"))
+    return "\n".join(lines) + "\n"
+
+
 if __name__ == "__main__":
     print_or_write(
         DOCS / "validation.md",
-        {"shares": ("shares of measure_safe.py", shares), "adversary": ("persons of measure_safe.py", adversary)},
+        {
+            "shares": ("shares of measure_safe.py", shares),
+            "adversary": ("persons of measure_safe.py", adversary),
+            "poses": ("poses of measure_safe.py", arrivals),
+        },
     )
