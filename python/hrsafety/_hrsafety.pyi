@@ -1243,7 +1243,7 @@ class SkirtSteps:
         """Advance by one firing period."""
 
     def run(self) -> None:
-        """Go on to the end."""
+        """Run to the end."""
 
     def recorded(self) -> _SkirtRunFields:
         """Return the fields of the test so far."""
@@ -1518,7 +1518,7 @@ class FollowerSteps:
         """Advance by one control period."""
 
     def run(self) -> None:
-        """Go on to the end."""
+        """Run to the end."""
 
     def recorded(self) -> dict[str, Any]:
         """Return the fields of the run so far."""

@@ -1,4 +1,4 @@
-//! A test of the skirt that Python steps, or lets go on to its end.
+//! A test of the skirt that Python steps, or lets run to its end.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -80,7 +80,7 @@ impl SkirtSteps {
         if moved { Ok(()) } else { Err(busy()) }
     }
 
-    /// Goes on to the end under the skirt's decisions.
+    /// Runs to the end under the skirt's decisions.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         here(py, Report::none(), |control| {
             let mut steps = self.0.lock().unwrap_or_else(PoisonError::into_inner);

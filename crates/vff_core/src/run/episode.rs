@@ -142,7 +142,7 @@ impl<P: Parts> Episode<P> {
         Ok(self)
     }
 
-    /// Goes on to the end under the law.
+    /// Runs to the end under the law.
     ///
     /// # Errors
     /// As [`Self::period`].

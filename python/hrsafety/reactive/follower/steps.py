@@ -156,7 +156,7 @@ class FollowerSteps:
         return self.observe()
 
     def finish(self) -> FollowerRun:
-        """Go on to the end under the law.
+        """Run to the end under the law.
 
         Returns
         -------

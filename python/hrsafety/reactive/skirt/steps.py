@@ -139,7 +139,7 @@ class SkirtSteps:
         return self.observe()
 
     def finish(self) -> SkirtRun:
-        """Go on to the end under the skirt's decisions.
+        """Run to the end under the skirt's decisions.
 
         Returns
         -------

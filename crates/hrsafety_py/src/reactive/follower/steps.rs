@@ -1,4 +1,4 @@
-//! A run of the follower that Python steps, or lets go on to its end.
+//! A run of the follower that Python steps, or lets run to its end.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -90,7 +90,7 @@ impl FollowerSteps {
         if moved { Ok(()) } else { Err(busy()) }
     }
 
-    /// Goes on to the end under the law.
+    /// Runs to the end under the law.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         here(py, Report::none(), |control| {
             let mut steps = self.steps.lock().unwrap_or_else(PoisonError::into_inner);

@@ -123,7 +123,7 @@ impl FollowerSteps {
         self.0.parts.decide(time, None, interrupted).map(|_| ())
     }
 
-    /// Goes on to the end under the law.
+    /// Runs to the end under the law.
     ///
     /// # Errors
     /// As [`Self::period`].

@@ -73,7 +73,7 @@ impl SkirtSteps {
         self.episode.period(action, interrupted)
     }
 
-    /// Goes on to the end under the skirt's decisions.
+    /// Runs to the end under the skirt's decisions.
     ///
     /// # Errors
     /// As [`Self::period`].
