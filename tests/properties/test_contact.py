@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from hrsafety import contact, impact
 
 SETTINGS = settings(max_examples=40, deadline=None)
+STEEP = contact.Rusch(a=1.5e4, p=0.5, b=2e5, q=5.0)
 LAWS = (
     contact.Linear(modulus=2.3e5),
     contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9, exponent=1.5),
