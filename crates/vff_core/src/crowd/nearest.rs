@@ -17,15 +17,15 @@ pub struct Nearest {
 impl Nearest {
     /// The nearest of those who are near, at most so many, by distance, then by number.
     #[inline(always)]
-    pub fn of(&mut self, near: Near<'_>, most: usize) -> &[u32] {
+    pub fn of(&mut self, near: &Near<'_>, most: usize) -> &[u32] {
         let count = near.len();
         self.distances.clear();
-        for others in near {
+        for others in near.clone() {
             let distances: [f64; WIDTH] = std::array::from_fn(|lane| others.distance.lane(lane));
             self.distances.extend_from_slice(&distances[..others.count]);
         }
         if count > MOST_RANKED || !self.rank(count) {
-            self.sort(&near, most);
+            self.sort(near, most);
         }
         self.order.truncate(most.min(count));
         &self.order
@@ -105,7 +105,7 @@ mod tests {
         let limits = (f64::INFINITY, 1.0);
         let near = neighbors.near(&own, limits, Unnoticed::Skipped, &mut list);
         let mut nearest = Nearest::default();
-        let order = nearest.of(near, most).iter();
+        let order = nearest.of(&near, most).iter();
         order
             .map(|index| near.get(*index as usize).0.number)
             .collect()
@@ -118,7 +118,14 @@ mod tests {
             // Some are equally far: half of the distances are whole numbers.
             let mut draw = |number: u32| {
                 let x = stream.uniform(-9.0, 9.0);
-                agent(number, if number % 2 == 0 { x.round() } else { x })
+                agent(
+                    number,
+                    if number.is_multiple_of(2) {
+                        x.round()
+                    } else {
+                        x
+                    },
+                )
             };
             let all: Vec<Agent> = (0..count).map(&mut draw).collect();
             let robots: Vec<Agent> = (0..2).map(|index| draw(FIRST_ROBOT + index)).collect();

@@ -326,7 +326,7 @@ pub const WIDTH: usize = 4;
 pub type Each = Lanes<WIDTH>;
 
 /// Those near a person.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Near<'a> {
     own: &'a Agent,
     period: Period,

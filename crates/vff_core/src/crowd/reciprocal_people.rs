@@ -104,7 +104,7 @@ impl ReciprocalPeople {
         } = room;
         let near = around.neighbors.near(&me, limits, Unnoticed::Skipped, list);
         let velocity: Vector2<Each> = Planar::<Each>::splat(me.velocity.into());
-        let nearest = nearest.of(near, self.max_neighbors);
+        let nearest = nearest.of(&near, self.max_neighbors);
         for block in nearest.chunks(WIDTH) {
             let others = near.among(block);
             let together = others.distance.lt(Each::splat(SHORTEST));

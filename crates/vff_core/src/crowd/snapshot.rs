@@ -62,7 +62,7 @@ impl Snapshot {
         };
         decisions.clear();
         decisions.resize(walkers.len(), Vector2::zeros());
-        pulp::Arch::new().dispatch(Decisions {
+        pulp::Arch::new().dispatch(Job {
             around: &around,
             walkers,
             model_of,
@@ -73,7 +73,7 @@ impl Snapshot {
 }
 
 /// The decisions of everybody, compiled once for each instruction set; their bits are the same for all.
-struct Decisions<'a, F> {
+struct Job<'a, F> {
     around: &'a Around<'a>,
     walkers: &'a mut [Option<Walker>],
     model_of: F,
@@ -81,7 +81,7 @@ struct Decisions<'a, F> {
     room: &'a mut Room,
 }
 
-impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Decisions<'_, F> {
+impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Job<'_, F> {
     type Output = ();
 
     #[inline(always)]
