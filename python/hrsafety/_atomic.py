@@ -6,6 +6,7 @@ import os
 import struct
 import tempfile
 import threading
+import time
 import tokenize
 import zipfile
 import zlib
@@ -24,6 +25,10 @@ DAMAGE = (
     *(NotImplementedError, RuntimeError, OverflowError, struct.error, tokenize.TokenError),
     *(zipfile.BadZipFile, zlib.error),
 )
+
+# How often, and how long in s, a process waits for another one that removes a shared lock.
+MOMENTS = 10
+MOMENT = 0.02
 
 # Folders that this process is writing into.
 _WRITTEN: set[Path] = set()
@@ -160,7 +165,9 @@ def only_writer(lock: Path, error: Callable[[str], Exception], part: tuple[int, 
             try:
                 yield
             finally:
-                # The file stays while other processes hold parts of it: they lock the same file.
+                # The file stays while other processes hold parts of it: they lock the same file. Of two that end
+                # together neither would have all of it with its own part still held.
+                _unlocked(file, part)
                 if part is None or _locked(file, None):
                     with suppress(OSError):
                         lock.unlink()
@@ -173,7 +180,7 @@ def _held(lock: Path, part: tuple[int, int] | None) -> Iterator[BinaryIO | None]
     """Yield the locked file, ``None`` if another process holds it."""
     while True:
         with _opened(lock) as file:
-            if not _locked(file, part):
+            if not _locked_in_time(file, part):
                 yield None
                 return
             # Another run may have ended, and removed the file, since it was opened.
@@ -188,6 +195,26 @@ def _opened(lock: Path) -> BinaryIO:
     except OSError as error:
         remedy = "choose a folder that can be written"
         raise StorageError(lock, error, kept="all that was there", remedy=remedy) from None
+
+
+def _locked_in_time(file: BinaryIO, part: tuple[int, int] | None) -> bool:
+    """Lock a file as `_locked`; of a shared one a process that ends holds all for a moment, which is waited for."""
+    locked = _locked(file, part)
+    for _ in range(0 if part is None else MOMENTS):
+        if locked:
+            break
+        time.sleep(MOMENT)
+        locked = _locked(file, part)
+    return locked
+
+
+def _unlocked(file: BinaryIO, part: tuple[int, int] | None) -> None:
+    """Free a part of a file; what is locked as a whole stays so until it is closed."""
+    with suppress(ModuleNotFoundError, OSError):
+        import fcntl
+
+        if part is not None:
+            fcntl.lockf(file, fcntl.LOCK_UN, part[1], part[0])
 
 
 def _locked(file: BinaryIO, part: tuple[int, int] | None) -> bool:
