@@ -1,4 +1,4 @@
-"""Ctrl-C while the core works: batches, one huge record, a bootstrap, a map of boundaries."""
+"""Ctrl-C while the core works: batches, one huge record, a bootstrap, maps."""
 
 from __future__ import annotations
 
@@ -62,6 +62,7 @@ STATIC = """
 depth = np.linspace(0.0, 0.01, 2_000_000)
 force = 24e3 * depth + np.sin(np.arange(len(depth)))
 """
+CELLS = "cells = np.random.default_rng(0).random((6000, 6000)) < 1e-4"
 WHEEL = """
 wheel = nav.HOLONOMIC_WHEELS[0]
 """
@@ -86,6 +87,8 @@ JOBS = {
     "one joint": (JOINT, DRIVEN),
     "bootstrap": (DROP, BOOTSTRAP),
     "boundary": (PARTS, BOUNDARY),
+    "distances of cells": (CELLS, "[nav.maps.distance_transform(cells) for _ in range(20)]"),
+    "a map of cells": (CELLS, "[nav.maps.StaticMap.from_grid(cells, resolution=0.05) for _ in range(40)]"),
     "static tests": (STATIC, "[impact.fit_static(force, depth) for _ in range(1000)]"),
     "open-loop tests": (WHEEL, "[nav.open_loop_tests(wheel, duration=3000.0, repeats=1) for _ in range(100)]"),
     "wheel": (WHEEL + TESTED, "[nav.identify_wheel(tests) for _ in range(1000)]"),
