@@ -1,8 +1,5 @@
 //! A law on a robot, told from Python what is seen.
 
-use std::sync::Mutex;
-
-use numeric::error::Failure;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,22 +10,20 @@ use vff_core::run::controller::{self, Observation, Order, Sighting};
 use vff_core::world::geometry::RobotState;
 
 use crate::arrays::Fields;
-use crate::errors::{CoreError, SimulationError};
+use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::maps::Lidar;
 use crate::parameters::Scenario;
-use crate::watch::{Report, here};
+use crate::stepped::Stepped;
 
 /// Number, position, velocity and instant of somebody who was measured.
 type Seen = (usize, [f64; 2], [f64; 2], Option<f64>);
 
+const BUSY: &str = "an update of this controller is under way; update it from one place";
+
 /// A law on a robot.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Controller(Mutex<controller::Controller>);
-
-fn busy() -> PyErr {
-    SimulationError::new_err("an update of this controller is under way; update it from one place")
-}
+pub struct Controller(Stepped<controller::Controller>);
 
 #[pymethods]
 impl Controller {
@@ -41,7 +36,7 @@ impl Controller {
     ) -> PyResult<Self> {
         let lidar = lidar.as_ref().map(|lidar| &lidar.0);
         let core = controller::Controller::new(scenario.0.clone(), &law.any, lidar, latency);
-        Ok(Self(Mutex::new(core.map_err(CoreError::from)?)))
+        Ok(Self(Stepped::new(core.map_err(CoreError::from)?, BUSY)))
     }
 
     /// Fields of what the robot is to do; `robot`: position and velocity.
@@ -76,19 +71,15 @@ impl Controller {
             gone: &gone,
             scan: ranges,
         };
-        let order = here(py, Report::none(), |control| {
-            let Ok(mut core) = self.0.try_lock() else {
-                return Ok(None);
-            };
-            let asked = || control.interrupted();
-            Ok::<_, Failure>(Some(core.update(&told, Stop(&asked))?))
+        let order = self.0.work(py, |core, interrupted| {
+            core.update(&told, Stop(interrupted))
         })?;
-        fields_of(py, &order.ok_or_else(busy)?)
+        fields_of(py, &order)
     }
 
     /// Who is there, as far as is known, in the order of the obstacles.
     fn present(&self) -> PyResult<Vec<bool>> {
-        Ok(self.0.try_lock().map_err(|_| busy())?.present().collect())
+        Ok(self.0.idle()?.present().collect())
     }
 }
 

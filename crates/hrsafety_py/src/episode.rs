@@ -1,38 +1,28 @@
 //! A run that Python steps.
 
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::Arc;
 
-use numeric::error::Failure;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::{Episode, Navigation, Outcome, Request};
 
 use crate::built::{AsBuilt, built_fields};
-use crate::errors::{CoreError, SimulationError};
+use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::run::trajectory_fields;
 use crate::situation::situation_fields;
-use crate::watch::{Report, here};
+use crate::stepped::Stepped;
 
 /// Wanted and commanded velocity, whether the law was taken over from, and the status.
 type Told = ([f64; 2], [f64; 2], bool, &'static str);
 
+/// What is said of a run that is being stepped.
+pub const BUSY: &str = "a step of this run is under way; step it from one place at a time";
+
 /// A run under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Run(Mutex<Episode<Navigation>>);
-
-impl Run {
-    /// The episode, unless another thread, or its own law, is at work on it.
-    fn idle(&self) -> PyResult<MutexGuard<'_, Episode<Navigation>>> {
-        self.0.try_lock().map_err(|_| busy())
-    }
-}
-
-/// Says that a run is being stepped.
-pub fn busy() -> PyErr {
-    SimulationError::new_err("a step of this run is under way; step it from one place at a time")
-}
+pub struct Run(Stepped<Episode<Navigation>>);
 
 #[pymethods]
 impl Run {
@@ -48,12 +38,12 @@ impl Run {
         let built = built.run(step, stop_on_contact);
         let scenario = Arc::new(scenario.0.clone());
         let episode = Episode::new(scenario, law.map(|law| &law.any), &built);
-        Ok(Self(Mutex::new(episode.map_err(CoreError::from)?)))
+        Ok(Self(Stepped::new(episode.map_err(CoreError::from)?, BUSY)))
     }
 
     /// Fields of what the controller sees.
     fn situation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        situation_fields(py, &self.idle()?.situation())
+        situation_fields(py, &self.0.idle()?.situation())
     }
 
     /// One control period under the law, a force in N or a velocity in m/s.
@@ -69,27 +59,22 @@ impl Run {
             (None, Some(velocity)) => Request::Velocity(velocity),
             (None, None) => Request::Law,
         };
-        let moved = here(py, Report::none(), |control| {
-            let Ok(mut episode) = self.0.try_lock() else {
-                return Ok(false);
-            };
-            episode.period(request, &|| control.interrupted())?;
-            Ok::<_, Failure>(true)
-        })?;
-        if moved { Ok(()) } else { Err(busy()) }
+        self.0.work(py, |episode, interrupted| {
+            episode.period(request, interrupted)
+        })
     }
 
     /// Present time in s, or when the run ended.
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        Ok(self.idle()?.time())
+        Ok(self.0.idle()?.time())
     }
 
     /// Wanted and commanded velocity of the last control period, whether the law was taken over from,
     /// and the status, if the law has parts around it.
     #[getter]
     fn trace(&self) -> PyResult<Option<Told>> {
-        let trace = self.idle()?.trace();
+        let trace = self.0.idle()?.trace();
         Ok(trace.map(|trace| {
             let word = trace.status.word();
             (
@@ -104,13 +89,13 @@ impl Run {
     /// The word for how it ended, if it has.
     #[getter]
     fn outcome(&self) -> PyResult<Option<&'static str>> {
-        Ok(self.idle()?.outcome().map(Outcome::word))
+        Ok(self.0.idle()?.outcome().map(Outcome::word))
     }
 
     /// Fields of the trajectory so far; `motors`: with what motors and controller know.
     #[pyo3(signature = (*, motors))]
     fn recorded<'py>(&self, py: Python<'py>, motors: bool) -> PyResult<Bound<'py, PyDict>> {
-        let episode = self.idle()?;
+        let episode = self.0.idle()?;
         let (summary, columns) = episode.recorded();
         let scenario = episode.scenario();
         let fields = if motors {

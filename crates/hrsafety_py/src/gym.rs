@@ -1,7 +1,5 @@
 //! Environments for learners: all of them are stepped by one call, into arrays of the caller.
 
-use std::sync::{Mutex, MutexGuard};
-
 use numeric::error::Failure;
 use numpy::{
     PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods,
@@ -14,9 +12,10 @@ use vff_core::crowd::environments::{
 use vff_core::crowd::metrics::ROBOT_METRICS;
 
 use crate::crowd::CrowdWorld;
-use crate::errors::{CoreError, SimulationError};
+use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::parameters::word;
+use crate::stepped::Stepped;
 use crate::watch::{Report, watched};
 
 /// Agents that are stepped without a look at signals: a tenth of a second at most.
@@ -117,30 +116,24 @@ fn settings_of(world: &CrowdWorld, given: &Keywords<'_>) -> PyResult<Settings> {
     })
 }
 
+const BUSY: &str = "a step of these environments is under way; step them from one place at a time";
+
 /// Environments side by side.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdEnvironments {
-    all: Mutex<Environments>,
+    all: Stepped<Environments>,
     /// Whether a step is short.
     short: bool,
 }
 
 impl CrowdEnvironments {
-    /// The environments, unless another thread is at work on them.
-    fn idle(&self) -> PyResult<MutexGuard<'_, Environments>> {
-        let busy = "a step of these environments is under way; step them from one place at a time";
-        self.all
-            .try_lock()
-            .map_err(|_| SimulationError::new_err(busy))
-    }
-
     /// Works without the interpreter; long work looks at signals.
     fn work(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Environments, &(dyn Fn() -> bool + Sync)) -> Result<(), Failure> + Send,
     ) -> PyResult<()> {
-        let mut guard = self.idle()?;
+        let mut guard = self.all.idle()?;
         let all: &mut Environments = &mut guard;
         if self.short {
             return Ok(py
@@ -171,14 +164,14 @@ impl CrowdEnvironments {
         let agents = world.core().people.len() + world.core().robots.len();
         let all = py.detach(|| Environments::new(settings, count, seed, threads));
         Ok(Self {
-            all: Mutex::new(all.map_err(CoreError::from)?),
+            all: Stepped::new(all.map_err(CoreError::from)?, BUSY),
             short: count.saturating_mul(agents) <= UNWATCHED,
         })
     }
 
     /// Numbers of an observation.
     fn size(&self) -> PyResult<usize> {
-        Ok(self.idle()?.settings().size())
+        Ok(self.all.idle()?.settings().size())
     }
 
     /// Starts episodes, where the mask says so if there is one.
@@ -209,7 +202,7 @@ impl CrowdEnvironments {
 
     /// Where everybody is in one of them.
     fn places(&self, index: usize) -> PyResult<Option<Places>> {
-        let all = self.idle()?;
+        let all = self.all.idle()?;
         let places = all.environment(index).map(|environment| {
             let simulation = environment.simulation();
             let mut robots = simulation

@@ -32,6 +32,7 @@ mod sensing;
 mod separation;
 mod signals;
 mod situation;
+mod stepped;
 mod watch;
 mod wheels;
 

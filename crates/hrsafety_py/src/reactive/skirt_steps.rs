@@ -1,7 +1,5 @@
 //! A test of the skirt that Python steps, or lets run to its end.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use numeric::error::{Failure, Given};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,22 +7,15 @@ use vff_core::lanes::Vector2;
 use vff_core::run::skirt::{Action, Direction, SkirtRecord, SkirtSteps as Steps, TestPlan};
 
 use crate::arrays::Fields;
-use crate::episode::busy;
+use crate::episode::BUSY;
 use crate::errors::CoreResult;
 use crate::reactive::percept_fields;
 use crate::reactive::skirt::{SkirtMotion, SkirtScene, UltrasonicSkirt, action_word};
-use crate::watch::{Report, here};
+use crate::stepped::Stepped;
 
 /// A test under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtSteps(Mutex<Steps>);
-
-impl SkirtSteps {
-    /// The test, unless another thread is at work on it.
-    fn idle(&self) -> PyResult<MutexGuard<'_, Steps>> {
-        self.0.try_lock().map_err(|_| busy())
-    }
-}
+pub struct SkirtSteps(Stepped<Steps>);
 
 /// Action of a word.
 fn action_of(given: &str) -> CoreResult<Action> {
@@ -57,12 +48,15 @@ impl SkirtSteps {
             motion: motion.0,
             seed,
         };
-        Ok(Self(Mutex::new(Steps::new(&skirt.0, &plan, index)?)))
+        Ok(Self(Stepped::new(
+            Steps::new(&skirt.0, &plan, index)?,
+            BUSY,
+        )))
     }
 
     /// Fields of what the skirt decides by.
     fn percept<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let steps = self.idle()?;
+        let steps = self.0.idle()?;
         percept_fields(py, steps.time(), &steps.percept())
     }
 
@@ -70,39 +64,30 @@ impl SkirtSteps {
     #[pyo3(signature = (*, action))]
     fn step(&self, py: Python<'_>, action: Option<&str>) -> PyResult<()> {
         let action = action.map(action_of).transpose()?;
-        let moved = here(py, Report::none(), |control| {
-            let Ok(mut steps) = self.0.try_lock() else {
-                return Ok(false);
-            };
-            steps.period(action, &|| control.interrupted())?;
-            Ok::<_, Failure>(true)
-        })?;
-        if moved { Ok(()) } else { Err(busy()) }
+        self.0
+            .work(py, |steps, interrupted| steps.period(action, interrupted))
     }
 
     /// Runs to the end under the skirt's decisions.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
-        here(py, Report::none(), |control| {
-            let mut steps = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            steps.run(&|| control.interrupted())
-        })
+        self.0.work(py, Steps::run)
     }
 
     /// Time of the firings so far in s.
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        Ok(self.idle()?.time())
+        Ok(self.0.idle()?.time())
     }
 
     /// Whether the test has ended.
     #[getter]
     fn finished(&self) -> PyResult<bool> {
-        Ok(self.idle()?.finished())
+        Ok(self.0.idle()?.finished())
     }
 
     /// Fields of the test so far.
     fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let steps = self.idle()?;
+        let steps = self.0.idle()?;
         let (course, rows) = steps.recorded();
         let fields = Fields::new(py);
         firings(&fields, rows, steps.percept().readings.len())?;

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import checked_seed, finite_pair, instance
-from hrsafety.errors import SimulationError
 from hrsafety.reactive.follower.impedance import VirtualImpedance
 from hrsafety.reactive.follower.runs import Follower, FollowerRun
 from hrsafety.reactive.follower.scenes import FollowerScene
-from hrsafety.reactive.percept import Percept, percept_of
+from hrsafety.reactive.percept import Percept
+from hrsafety.reactive.stepped import Stepped
 
 __all__ = ["FollowerSteps", "follow"]
 
 
-class FollowerSteps:
+class FollowerSteps(Stepped[FollowerRun]):
     """A run of the follower that is advanced from outside, one control period at a time.
 
     Stepped to its end without forces, a run has the same bits as `follow`.
@@ -65,7 +65,8 @@ class FollowerSteps:
     True
     """
 
-    __slots__ = ("_follower", "_native", "_scene")
+    __slots__ = ("_follower", "_scene")
+    _native: _hrsafety.FollowerSteps
 
     def __init__(
         self,
@@ -97,16 +98,6 @@ class FollowerSteps:
         return self._scene
 
     @property
-    def time(self) -> float:
-        """Time of the control periods so far, in s."""
-        return self._native.time
-
-    @property
-    def finished(self) -> bool:
-        """Whether the run has ended, by a touch or because its time is over."""
-        return self._native.finished
-
-    @property
     def record(self) -> FollowerRun:
         """The run so far: a row for each control period, and one for the end once it has come.
 
@@ -117,16 +108,6 @@ class FollowerSteps:
         for name in ("end_time", "least_clearance"):
             del found[name]
         return FollowerRun(**found, scene=self._scene, follower=self._follower)
-
-    def observe(self) -> Percept:
-        """Return what the law decides by now.
-
-        Returns
-        -------
-        Percept
-            The same until the next `step`.
-        """
-        return percept_of(self._native.percept())
 
     def step(self, force: npt.ArrayLike | None = None) -> Percept:
         """Advance by one control period, or to the end of the run.
@@ -150,36 +131,13 @@ class FollowerSteps:
         SimulationError
             If the run has ended, the state became non-finite, or another thread is stepping it.
         """
-        if self.finished:
-            raise SimulationError(f"the run has ended (t = {self.time:.6g} s); make other FollowerSteps")
+        self._check_under_way()
         self._native.step(force=None if force is None else finite_pair("force", force))
         return self.observe()
-
-    def finish(self) -> FollowerRun:
-        """Run to the end under the law.
-
-        Returns
-        -------
-        FollowerRun
-            The whole run.
-
-        Raises
-        ------
-        SimulationError
-            If the state became non-finite.
-        """
-        self._native.run()
-        return self.record
 
     def __repr__(self) -> str:
         """Return time and whether it has ended."""
         return f"FollowerSteps(follower={self._follower!r}, time={self.time:.6g}, finished={self.finished})"
-
-    def __reduce__(self) -> NoReturn:
-        """Refuse: a run under way is no value."""
-        raise SimulationError(
-            "FollowerSteps cannot be copied or pickled; make others with the same arguments and step them again"
-        )
 
 
 def follow(

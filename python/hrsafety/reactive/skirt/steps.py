@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
-
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import checked_seed, count, word
 from hrsafety._bounds import MOST_LAYOUTS
-from hrsafety.errors import InvalidParameterError, SimulationError
-from hrsafety.reactive.percept import Percept, percept_of
+from hrsafety.errors import InvalidParameterError
+from hrsafety.reactive.percept import Percept
 from hrsafety.reactive.skirt.ring import MOTION_DIRECTIONS, UltrasonicSkirt
 from hrsafety.reactive.skirt.runs import SkirtMotion, SkirtRun, SkirtScene, limited, native_parts
+from hrsafety.reactive.stepped import Stepped
 
 __all__ = ["SkirtSteps", "skirt_run"]
 
 
-class SkirtSteps:
+class SkirtSteps(Stepped[SkirtRun]):
     """One of the tests of `skirt_test` that is advanced from outside, one firing at a time.
 
     Stepped to its end without actions, it has the same bits as `skirt_run`.
@@ -57,7 +56,8 @@ class SkirtSteps:
     {'keep'}
     """
 
-    __slots__ = ("_course", "_native", "_skirt")
+    __slots__ = ("_course", "_skirt")
+    _native: _hrsafety.SkirtSteps
 
     def __init__(
         self,
@@ -88,29 +88,9 @@ class SkirtSteps:
         return self._skirt
 
     @property
-    def time(self) -> float:
-        """Time of the firings so far, in s."""
-        return self._native.time
-
-    @property
-    def finished(self) -> bool:
-        """Whether the test has ended, by a touch or because its time is over."""
-        return self._native.finished
-
-    @property
     def record(self) -> SkirtRun:
         """The test so far: a row for each firing."""
         return SkirtRun(skirt=self._skirt, course=self._course, **self._native.recorded())
-
-    def observe(self) -> Percept:
-        """Return what the skirt decides by now.
-
-        Returns
-        -------
-        Percept
-            The same until the next `step`.
-        """
-        return percept_of(self._native.percept())
 
     def step(self, action: str | None = None) -> Percept:
         """Advance by one firing period, or to the end of the test.
@@ -132,37 +112,14 @@ class SkirtSteps:
         SimulationError
             If the test has ended, the state became non-finite, or another thread is stepping it.
         """
-        if self.finished:
-            raise SimulationError(f"the test has ended (t = {self.time:.6g} s); make other SkirtSteps")
+        self._check_under_way()
         words = ("keep", "spin", *MOTION_DIRECTIONS)
         self._native.step(action=None if action is None else word("action", action, words))
         return self.observe()
 
-    def finish(self) -> SkirtRun:
-        """Run to the end under the skirt's decisions.
-
-        Returns
-        -------
-        SkirtRun
-            The whole test.
-
-        Raises
-        ------
-        SimulationError
-            If the state became non-finite.
-        """
-        self._native.run()
-        return self.record
-
     def __repr__(self) -> str:
         """Return time and whether it has ended."""
         return f"SkirtSteps(skirt={self._skirt!r}, time={self.time:.6g}, finished={self.finished})"
-
-    def __reduce__(self) -> NoReturn:
-        """Refuse: a test under way is no value."""
-        raise SimulationError(
-            "SkirtSteps cannot be copied or pickled; make others with the same arguments and step them again"
-        )
 
 
 def skirt_run(

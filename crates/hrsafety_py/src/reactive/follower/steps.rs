@@ -1,8 +1,5 @@
 //! A run of the follower that Python steps, or lets run to its end.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-use numeric::error::Failure;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::lanes::Vector2;
@@ -15,25 +12,18 @@ use vff_core::world::shape::Shape;
 
 use super::{Follower, Mover, VirtualImpedance};
 use crate::arrays::Fields;
-use crate::episode::busy;
+use crate::episode::BUSY;
 use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::reactive::percept_fields;
-use crate::watch::{Report, here};
+use crate::stepped::Stepped;
 
 /// A run under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct FollowerSteps {
-    steps: Mutex<Steps>,
+    steps: Stepped<Steps>,
     sensors: usize,
     obstacles: usize,
-}
-
-impl FollowerSteps {
-    /// The run, unless another thread is at work on it.
-    fn idle(&self) -> PyResult<MutexGuard<'_, Steps>> {
-        self.steps.try_lock().map_err(|_| busy())
-    }
 }
 
 #[pymethods]
@@ -65,7 +55,7 @@ impl FollowerSteps {
         let robot = Robot::new(&follower.with(law)).map_err(CoreError::from)?;
         let steps = Steps::new(&robot, scene, seed).map_err(CoreError::from)?;
         Ok(Self {
-            steps: Mutex::new(steps),
+            steps: Stepped::new(steps, BUSY),
             sensors: robot.sensors(),
             obstacles: count,
         })
@@ -73,46 +63,38 @@ impl FollowerSteps {
 
     /// Fields of what the law decides by.
     fn percept<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let steps = self.idle()?;
+        let steps = self.steps.idle()?;
         percept_fields(py, steps.time(), &steps.percept())
     }
 
     /// One control period under the law or a force in N.
     #[pyo3(signature = (*, force))]
     fn step(&self, py: Python<'_>, force: Option<[f64; 2]>) -> PyResult<()> {
-        let moved = here(py, Report::none(), |control| {
-            let Ok(mut steps) = self.steps.try_lock() else {
-                return Ok(false);
-            };
-            steps.period(force.map(Vector2::from), &|| control.interrupted())?;
-            Ok::<_, Failure>(true)
-        })?;
-        if moved { Ok(()) } else { Err(busy()) }
+        self.steps.work(py, |steps, interrupted| {
+            steps.period(force.map(Vector2::from), interrupted)
+        })
     }
 
     /// Runs to the end under the law.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
-        here(py, Report::none(), |control| {
-            let mut steps = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
-            steps.run(&|| control.interrupted())
-        })
+        self.steps.work(py, Steps::run)
     }
 
     /// Time of the control periods so far in s.
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        Ok(self.idle()?.time())
+        Ok(self.steps.idle()?.time())
     }
 
     /// Whether the run has ended.
     #[getter]
     fn finished(&self) -> PyResult<bool> {
-        Ok(self.idle()?.finished())
+        Ok(self.steps.idle()?.finished())
     }
 
     /// Fields of the run so far.
     fn recorded<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let steps = self.idle()?;
+        let steps = self.steps.idle()?;
         let (outcome, rows) = steps.recorded();
         let fields = Fields::new(py);
         samples(&fields, rows, self.sensors, self.obstacles)?;
