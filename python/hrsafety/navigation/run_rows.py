@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, Self
@@ -16,7 +17,7 @@ from hrsafety.tables import SHOWN_ROWS, Columns, Table, unit_suffix
 __all__ = ["RunRows"]
 
 
-class RunRows(Table):
+class RunRows(Table, ABC):
     """Base of tables of runs: which law, which scenario and which gains each row has."""
 
     __slots__ = ()
@@ -100,9 +101,9 @@ class RunRows(Table):
     def _head(self) -> tuple[Columns, int]:
         return self._columns(slice(SHOWN_ROWS)), len(self)
 
+    @abstractmethod
     def _columns(self, rows: slice) -> Columns:
         """Return the columns of some rows; names are written out for these only."""
-        raise NotImplementedError
 
     def _of_law(self, rows: slice) -> Columns:
         """Return law, scenario and seed of some rows."""

@@ -9,8 +9,8 @@ use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
-use crate::world::motion::{BodyState, Motion};
-use crate::world::obstacle::{Limits, Obstacle, Regions, Shape};
+use crate::world::motion::BodyState;
+use crate::world::obstacle::{Obstacle, Regions};
 use crate::world::region::{self, Sensing};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
@@ -79,7 +79,8 @@ impl Ultrasonic {
             latency: Some((round - 1) as f64 * period),
             ..Sensing::default()
         };
-        region::radii(&scenario.limits(), &self.point(), period, None, &sensing)
+        let point = Obstacle::point(self.max_speed);
+        region::radii(&scenario.limits(), &point, period, None, &sensing)
     }
 
     /// Distance from the center of the robot within which every sensor reads echoes along its
@@ -89,18 +90,6 @@ impl Ultrasonic {
         let forward = |mount: &Frame| mount.inward(mount.position).x;
         let mounts = self.array.mounts().iter();
         self.array.ranging().reach() + mounts.map(forward).fold(f64::INFINITY, f64::min)
-    }
-
-    /// What an echo is taken for.
-    fn point(&self) -> Obstacle {
-        Obstacle {
-            shape: Shape::Disc { radius: 0.0 },
-            motion: Motion::at_rest([0.0; 2]),
-            limits: Limits {
-                max_speed: Some(self.max_speed),
-                ..Limits::default()
-            },
-        }
     }
 }
 
@@ -119,7 +108,7 @@ impl Echoes {
     pub fn new(scenario: &Scenario, options: &Ultrasonic, index: u64) -> Result<Self> {
         let count = options.array.mounts().len();
         let placed = PlacedObstacle {
-            obstacle: options.point(),
+            obstacle: Obstacle::point(options.max_speed),
             regions: options.regions(scenario)?,
             contact_distance: scenario.limits().radius,
             stationary: false,
@@ -182,6 +171,7 @@ mod tests {
     use super::*;
     use crate::robots::HolonomicRobot;
     use crate::world::geometry::RobotState;
+    use crate::world::obstacle::Shape;
     use crate::world::scenario::Rules;
 
     fn echoes(firing: Firing, assumed_speed: f64) -> Echoes {

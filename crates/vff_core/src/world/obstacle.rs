@@ -76,6 +76,18 @@ impl Obstacle {
         })
     }
 
+    /// What a point of a scan or an echo is taken for: a point that may move at up to a speed in m/s.
+    pub(crate) fn point(max_speed: f64) -> Self {
+        Self {
+            shape: Shape::Disc { radius: 0.0 },
+            motion: Motion::at_rest([0.0; 2]),
+            limits: Limits {
+                max_speed: Some(max_speed),
+                ..Limits::default()
+            },
+        }
+    }
+
     /// A disc with any motion.
     ///
     /// # Errors

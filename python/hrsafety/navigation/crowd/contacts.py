@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.metrics.between import wrapped
+from hrsafety.navigation.metrics.between import until_arrival, wrapped
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 
@@ -46,11 +46,9 @@ def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     Contacts
         Numbers of people.
     """
-    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
-    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
-    if people.size == 0 or last < 1:
+    own, people = until_arrival(episode, arrival_time)
+    if people.size == 0 or len(own) < 2:
         return Contacts(0, 0, 0)
-    own, people = own[: last + 1], people[: last + 1]
     offset = wrapped(people - own[:, None], episode.period)
     distance = np.linalg.norm(offset, axis=2)
     touching = distance < episode.robot_radius + np.asarray(episode.person_radius)

@@ -10,7 +10,7 @@ from hrsafety._arguments import Array
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["CONTACT_BETWEEN", "Between", "doubts_between", "touched_between", "wrapped"]
+__all__ = ["CONTACT_BETWEEN", "Between", "doubts_between", "touched_between", "until_arrival", "wrapped"]
 
 CONTACT_BETWEEN = "contact_between_instants"
 
@@ -41,6 +41,13 @@ def wrapped(offset: Array, period: tuple[float, float]) -> Array:
     return found
 
 
+def until_arrival(episode: Episode, arrival_time: float) -> tuple[Array, Array]:
+    """Return places of the robot and of the people, instant by instant, as far as the arrival if there is one."""
+    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
+    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
+    return own[: last + 1], people[: last + 1]
+
+
 def touched_between(episode: Episode, arrival_time: float, time_to_collision: float) -> Between:
     """Return who touches a robot between instants only, up to its arrival.
 
@@ -61,9 +68,7 @@ def touched_between(episode: Episode, arrival_time: float, time_to_collision: fl
     # The step and the time are rounded each.
     if not time_to_collision <= episode.step * (1.0 + 1e-9):
         return Between(0, np.inf)
-    own, people = np.asarray(episode.position), np.asarray(episode.people, dtype=np.float64)
-    last = len(own) - 1 if np.isnan(arrival_time) else round(arrival_time / episode.step)
-    own, people = own[: last + 1], people[: last + 1]
+    own, people = until_arrival(episode, arrival_time)
     touch = episode.robot_radius + np.asarray(episode.person_radius)
     start = wrapped(people - own[:, None], episode.period)
     way = wrapped(np.diff(start, axis=0), episode.period)

@@ -303,6 +303,21 @@ struct Senses {
     seen: Vec<Body>,
 }
 
+impl Senses {
+    /// What they tell where the robot is, for a velocity in m/s that the law wants.
+    #[inline]
+    fn percept<S>(&self, place: &Place<S>, wanted: Vector2<f64>) -> Percept<'_> {
+        Percept {
+            pose: place.pose,
+            velocity: place.velocity,
+            wanted,
+            readings: self.sonar.readings(),
+            heard: self.ear.heard(),
+            bodies: &self.seen,
+        }
+    }
+}
+
 /// What a run of the follower consists of.
 pub(crate) struct FollowerParts<L, S, O> {
     place: Place<S>,
@@ -331,15 +346,7 @@ impl<L, S, O> FollowerParts<L, S, O> {
     /// What the law decides by.
     #[inline]
     pub(crate) fn percept(&self) -> Percept<'_> {
-        let (place, senses) = (&self.place, &self.senses);
-        Percept {
-            pose: place.pose,
-            velocity: place.velocity,
-            wanted: self.drive.velocity(),
-            readings: senses.sonar.readings(),
-            heard: senses.ear.heard(),
-            bodies: &senses.seen,
-        }
+        self.senses.percept(&self.place, self.drive.velocity())
     }
 }
 
@@ -367,14 +374,8 @@ where
     ) -> Result<bool> {
         let (place, senses) = (&self.place, &self.senses);
         // Its filters need every sample, whoever decides.
-        let forces = self.law.answer(&Percept {
-            pose: place.pose,
-            velocity: place.velocity,
-            wanted: self.drive.velocity(),
-            readings: senses.sonar.readings(),
-            heard: senses.ear.heard(),
-            bodies: &senses.seen,
-        });
+        let percept = senses.percept(place, self.drive.velocity());
+        let forces = self.law.answer(&percept);
         let force = request.unwrap_or(forces.attraction + forces.repulsion);
         self.drive.hold(&force);
         self.observer.sample(&Sample {

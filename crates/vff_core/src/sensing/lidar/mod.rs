@@ -9,8 +9,7 @@ use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
 use crate::world::map::{Beyond, MOST_POINTS, StaticMap, checked_kappa};
-use crate::world::motion::Motion;
-use crate::world::obstacle::{Limits, Obstacle, PlacedShape, Regions, Shape};
+use crate::world::obstacle::{Obstacle, PlacedShape, Regions};
 use crate::world::region::{self, Sensing};
 use crate::world::scenario::Scenario;
 
@@ -185,20 +184,8 @@ impl Lidar {
                 active_radius: limits.radius + self.influence,
             });
         }
-        let (point, period) = (self.point(), scenario.control_period());
+        let (point, period) = (Obstacle::point(self.max_speed), scenario.control_period());
         region::radii(&limits, &point, period, None, &Sensing::default())
-    }
-
-    /// What a boundary point is taken for.
-    fn point(&self) -> Obstacle {
-        Obstacle {
-            shape: Shape::Disc { radius: 0.0 },
-            motion: Motion::at_rest([0.0; 2]),
-            limits: Limits {
-                max_speed: Some(self.max_speed),
-                ..Limits::default()
-            },
-        }
     }
 }
 

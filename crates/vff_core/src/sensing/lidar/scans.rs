@@ -11,7 +11,7 @@ use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::map::MOST_POINTS;
 use crate::world::motion::BodyState;
-use crate::world::obstacle::PlacedShape;
+use crate::world::obstacle::{Obstacle, PlacedShape};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Streams of the noise of lidars, counted up from here, above those of sonars.
@@ -35,7 +35,7 @@ impl Scans {
         let options = options.clone().checked()?;
         let regions = options.regions(scenario)?;
         let placed = PlacedObstacle {
-            obstacle: options.point(),
+            obstacle: Obstacle::point(options.max_speed),
             regions,
             contact_distance: scenario.limits().radius,
             stationary: false,
