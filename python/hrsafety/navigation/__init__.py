@@ -32,8 +32,10 @@ from hrsafety.navigation.laws.planners import (
     VelocityObstacle,
 )
 from hrsafety.navigation.many import simulate_many
-from hrsafety.navigation.moving_rectangle import MovingRectangle
-from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import Regions, region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot

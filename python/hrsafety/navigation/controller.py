@@ -17,7 +17,8 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.navigation.obstacles import Human, Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario

@@ -9,8 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, Pair
-from hrsafety.navigation.moving_rectangle import Box, Mobile
-from hrsafety.navigation.obstacles import Disc, Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 
 __all__ = ["certainly_closed", "distance", "stands"]
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hrsafety import _hrsafety
 from hrsafety._arguments import instance, number
 from hrsafety._display import displayed
-from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 

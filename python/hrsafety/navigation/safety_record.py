@@ -17,8 +17,8 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.maps.guide import LocalGoal, Plan
-from hrsafety.navigation.moving_rectangle import Box, Mobile
-from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario

@@ -13,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, number, pair, sequence
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import scenario_warnings
-from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning

@@ -14,7 +14,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, flag, instance, number, numbers, own, points
 from hrsafety._bounds import MOST_BODIES, MOST_TABLE_ROWS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import RANGES

@@ -9,8 +9,10 @@ from typing import Protocol
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
-from hrsafety.navigation.moving_rectangle import Box, Mobile
-from hrsafety.navigation.obstacles import Human, Obstacle, Rectangle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human
+from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
+from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement

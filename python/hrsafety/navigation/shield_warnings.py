@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from hrsafety.navigation.laws.shield import Shield
-from hrsafety.navigation.obstacles import Rectangle
+from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.navigation.moving_rectangle import Box, Mobile, MovingRectangle
-from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile, MovingRectangle
+from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plotting import style
 

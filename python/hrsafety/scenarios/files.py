@@ -15,7 +15,7 @@ from hrsafety._arguments import readable
 from hrsafety._display import displayed
 from hrsafety.datasets import load_track
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.moving_rectangle import Mobile
+from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located
 from hrsafety.scenarios.laws import law_of, safe_of

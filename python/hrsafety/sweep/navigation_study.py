@@ -16,7 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import run_warnings
-from hrsafety.navigation.moving_rectangle import Mobile
+from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.run_table import RunTable

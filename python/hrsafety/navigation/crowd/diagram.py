@@ -14,7 +14,7 @@ from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
-from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.tables import Columns, Table
 
 __all__ = ["FundamentalDiagram", "fundamental_diagram", "weidmann_speed"]

@@ -11,7 +11,7 @@ from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, 
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
 from hrsafety.navigation.crowd.doubts import of_robots
-from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["WallShape", "World", "native_walls"]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, number, numbers, pair, points, sequence
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.obstacles import Rectangle
+from hrsafety.navigation.obstacles.standing import Rectangle
 
 __all__ = ["Cells", "Wall"]
 

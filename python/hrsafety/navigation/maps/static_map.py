@@ -28,7 +28,7 @@ from hrsafety.navigation.maps.parts import (
     items,
     outline,
 )
-from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 
 __all__ = ["StaticMap"]
 

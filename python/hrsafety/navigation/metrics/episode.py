@@ -25,7 +25,7 @@ from hrsafety._arguments import (
 )
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
-from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["Episode", "Recorded", "Wall"]

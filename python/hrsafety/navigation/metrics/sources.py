@@ -10,7 +10,8 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, numbers, whole_steps
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.obstacles import Disc, Human, Rectangle
+from hrsafety.navigation.obstacles.moving import Human
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["at_instants", "steps_of_run"]

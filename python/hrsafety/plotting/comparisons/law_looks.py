@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.declared import LAWS, Law
-from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, shapes, style
 from hrsafety.plotting.floor import CONTACT, handle

@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety._arguments import Pair, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
-from hrsafety.navigation.obstacles import Disc, Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import callback, instance
-from hrsafety.navigation.moving_rectangle import Box
-from hrsafety.navigation.obstacles import Obstacle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving_rectangle import Box
 from hrsafety.navigation.safety_record import SafetyDecision, SafetyRecord
 from hrsafety.plotting import floor, inputs, movies, shapes, style, walls
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.navigation.moving_rectangle import Mobile
-from hrsafety.navigation.obstacles import Human
+from hrsafety.navigation.obstacles.moving import Human
+from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.obstacles import Obstacle
+    from hrsafety.navigation.obstacles.base import Obstacle
     from hrsafety.navigation.scenario import Scenario
 
 __all__ = ["layout"]

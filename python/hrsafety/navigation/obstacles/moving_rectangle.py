@@ -12,8 +12,10 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, number, pair
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.motions import Path, Segment, frozen_path, frozen_segments, moving_body
-from hrsafety.navigation.obstacles import Human, MovingDisc, Obstacle, Rectangle
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.motions import Path, Segment, frozen_path, frozen_segments, moving_body
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.obstacles.standing import Rectangle
 
 __all__ = ["Box", "Mobile", "MovingRectangle"]
 

@@ -1,0 +1,1 @@
+"""Obstacles: discs and rectangles that stand or move, walking and recorded people."""
