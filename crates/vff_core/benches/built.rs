@@ -1,12 +1,10 @@
 //! Simulated time per second of computing, one thread: robots as built, wheels every millisecond.
 
+mod scenes;
+
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use vff_core::laws::VirtualForceField;
-use vff_core::laws::field::gains::Gains;
-use vff_core::laws::field::side::SideRules;
-use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::wheels::{differential_wheels, holonomic_wheels};
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
 use vff_core::run::AnyLaw;
@@ -16,22 +14,6 @@ use vff_core::world::scenario::{Rules, Scenario};
 
 const START: [f64; 2] = [3.99, 0.6];
 const GOAL: [f64; 2] = [0.0, 0.6];
-
-fn law() -> AnyLaw {
-    let gains = Gains {
-        attractive: 3.0,
-        repulsive: 20.0,
-        detour: 17.0,
-        ratio: 0.25,
-    };
-    let rules = SideRules {
-        pass_behind: true,
-        hysteresis: f64::INFINITY,
-    };
-    VirtualForceField::new(gains, Stabilizing::Off, rules)
-        .unwrap()
-        .into()
-}
 
 fn disc() -> Vec<Obstacle> {
     let limits = Limits {
@@ -51,6 +33,7 @@ fn runs(criterion: &mut Criterion) {
     let omni = Scenario::new(HolonomicRobot::default(), START, GOAL, disc(), rules).unwrap();
     let two = DifferentialDriveRobot::default();
     let two = Scenario::for_differential(two, START, GOAL, disc(), rules).unwrap();
+    let law: AnyLaw = scenes::law("off").into();
     let mut group = criterion.benchmark_group("built");
     for (name, scenario, wheels) in [
         ("point mass", &omni, None),
@@ -62,7 +45,7 @@ fn runs(criterion: &mut Criterion) {
             wheels,
             ..Built::default()
         };
-        let run = || simulate_built(scenario, &law(), &built, &|| false);
+        let run = || simulate_built(scenario, &law, &built, &|| false);
         let milliseconds = (1000.0 * run().unwrap().0.end_time).round();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
         group.throughput(Throughput::Elements(milliseconds as u64));

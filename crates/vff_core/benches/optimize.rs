@@ -9,7 +9,6 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::laws::field::gains::Gains;
 use vff_core::robots::HolonomicRobot;
-use vff_core::run::metrics::Weights;
 use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Outcome, run_batch};
 use vff_core::search::{
     Bounds, GainOptions, GainProblem, GlobalMethod, GlobalOptions, GridOptions, LocalOptions,
@@ -20,12 +19,6 @@ use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::{Limits, Obstacle};
 use vff_core::world::scenario::{Rules, Scenario};
 
-const THIRDS: Weights = Weights {
-    arrival_time: 1.0 / 3.0,
-    avoidance: 1.0 / 3.0,
-    energy_saving: 1.0 / 3.0,
-};
-
 /// The gains of the source.
 const PUBLISHED: [f64; 4] = [4.3, 20.3, 240.7, 0.68];
 
@@ -34,7 +27,7 @@ fn problem() -> GainProblem {
     let scenarios = [1, 2, 3].map(scenes::configuration).to_vec();
     let options = GainOptions {
         run: Options::default(),
-        weights: THIRDS,
+        weights: scenes::THIRDS,
         objectives: vec![Objective {
             metric: Metric::Performance,
             over: Over::Mean,
@@ -164,11 +157,8 @@ fn episodes(criterion: &mut Criterion) {
                 step: 0.06,
                 ..Options::default()
             },
-            weights: THIRDS,
-            descent: false,
             threads: Some(threads),
-            width: None,
-            instructions: Instructions::Widest,
+            ..scenes::one_thread()
         };
         let law = scenes::law("off");
         run_batch(

@@ -8,7 +8,6 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::laws::VirtualForceField;
 use vff_core::laws::field::gains::Gains;
-use vff_core::run::metrics::Weights;
 use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Width, run_batch, simulate};
 use vff_core::world::scenario::Scenario;
 
@@ -18,18 +17,10 @@ fn batch(
     width: Width,
     instructions: Instructions,
 ) -> BatchTable {
-    let third = 1.0 / 3.0;
     let options = BatchOptions {
-        run: Options::default(),
-        weights: Weights {
-            arrival_time: third,
-            avoidance: third,
-            energy_saving: third,
-        },
-        descent: false,
-        threads: Some(1),
         width: Some(width),
         instructions,
+        ..scenes::one_thread()
     };
     let scenarios = std::slice::from_ref(scenario);
     run_batch(

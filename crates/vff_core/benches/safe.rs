@@ -1,22 +1,19 @@
 //! Safe navigation: episodes of twelve drifting discs on one thread, and single decisions of shield and
 //! yielding among twelve people.
 
+mod scenes;
+
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use numeric::random::Stream;
 use vff_core::lanes::Vector2;
-use vff_core::laws::VirtualForceField;
-use vff_core::laws::field::gains::Gains;
-use vff_core::laws::field::side::SideRules;
-use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{Guard, Limits, Person, Shield, Status, View, Walls};
 use vff_core::laws::yielding::{Outlook, Passerby, Yielder, Yielding};
 use vff_core::robots::HolonomicRobot;
-use vff_core::run::metrics::Weights;
-use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Instructions, Options, run_batch};
+use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Options, run_batch};
 use vff_core::world::geometry::RobotState;
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::{Limits as Regions, Obstacle};
@@ -56,19 +53,7 @@ fn drifting(fastest: f64) -> Vec<Scenario> {
 }
 
 fn field() -> AnyLaw {
-    let gains = Gains {
-        attractive: 3.0,
-        repulsive: 20.0,
-        detour: 17.0,
-        ratio: 0.25,
-    };
-    let rules = SideRules {
-        pass_behind: true,
-        hysteresis: f64::INFINITY,
-    };
-    VirtualForceField::new(gains, Stabilizing::Off, rules)
-        .unwrap()
-        .into()
+    scenes::law("off").into()
 }
 
 fn guarded(yields: bool) -> AnyLaw {
@@ -86,24 +71,15 @@ fn guarded(yields: bool) -> AnyLaw {
     .into()
 }
 
-fn run(scenes: &[Scenario], law: &AnyLaw) -> BatchTable {
-    let third = 1.0 / 3.0;
+fn run(worlds: &[Scenario], law: &AnyLaw) -> BatchTable {
     let options = BatchOptions {
         run: Options {
             stop_on_contact: true,
             ..Options::default()
         },
-        weights: Weights {
-            arrival_time: third,
-            avoidance: third,
-            energy_saving: third,
-        },
-        descent: false,
-        threads: Some(1),
-        width: None,
-        instructions: Instructions::Widest,
+        ..scenes::one_thread()
     };
-    run_batch(scenes, law, &law.gains(), &options, &|| false, &|_| ()).unwrap()
+    run_batch(worlds, law, &law.gains(), &options, &|| false, &|_| ()).unwrap()
 }
 
 fn episodes(criterion: &mut Criterion) {
@@ -114,13 +90,13 @@ fn episodes(criterion: &mut Criterion) {
         ("shield", guarded(false), 1.5),
         ("shield and yielding", guarded(true), 1.5),
     ] {
-        let scenes = drifting(fastest);
-        let table = run(&scenes, &law);
+        let worlds = drifting(fastest);
+        let table = run(&worlds, &law);
         let bits = |sum: u64, time: &f64| sum.wrapping_mul(31).wrapping_add(time.to_bits());
         let (times, energies) = (table.arrival_time.iter(), table.energy.iter());
         println!("{name}: {:x}", times.chain(energies).fold(0, bits));
         group.bench_function(name, |bencher| {
-            bencher.iter(|| run(black_box(&scenes), &law));
+            bencher.iter(|| run(black_box(&worlds), &law));
         });
     }
     group.finish();

@@ -7,6 +7,8 @@ use vff_core::laws::field::gains::Gains;
 use vff_core::laws::field::side::SideRules;
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::robots::HolonomicRobot;
+use vff_core::run::metrics::Weights;
+use vff_core::run::{BatchOptions, Instructions, Options};
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::{Limits, Obstacle};
 use vff_core::world::scenario::{Rules, Scenario};
@@ -64,6 +66,25 @@ pub fn always_active() -> Scenario {
         disc([2.4, -2.1], [-0.06, 0.0]),
         disc([5.5, 0.2], [0.0, 0.06]),
     ])
+}
+
+/// All three goals weigh the same.
+pub const THIRDS: Weights = Weights {
+    arrival_time: 1.0 / 3.0,
+    avoidance: 1.0 / 3.0,
+    energy_saving: 1.0 / 3.0,
+};
+
+/// Runs on one thread.
+pub fn one_thread() -> BatchOptions {
+    BatchOptions {
+        run: Options::default(),
+        weights: THIRDS,
+        descent: false,
+        threads: Some(1),
+        width: None,
+        instructions: Instructions::Widest,
+    }
 }
 
 /// The law in a mode of the stabilizing force.
