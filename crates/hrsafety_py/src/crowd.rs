@@ -4,7 +4,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
-use vff_core::crowd::neighbors::Period;
+use vff_core::crowd::grid::Period;
 use vff_core::crowd::pedestrian::{Groupings, Walker};
 use vff_core::crowd::snapshot::{Setting, Snapshot};
 use vff_core::crowd::walls::Wall;

@@ -5,10 +5,10 @@ use numeric::parallel::{Work, each_run};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::crowd::grid::Period;
 use vff_core::crowd::metrics::{
     self, Kind, KnownArrival, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole, Without,
 };
-use vff_core::crowd::neighbors::Period;
 use vff_core::crowd::walls::Wall;
 use vff_core::world::shape::PlacedShape;
 

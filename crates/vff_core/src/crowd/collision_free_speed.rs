@@ -2,7 +2,8 @@
 //! numbers of `JuPedSim`. People behind walls count, too.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Each, Unnoticed};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2, Zero};

@@ -7,7 +7,8 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Each, Unnoticed};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2};

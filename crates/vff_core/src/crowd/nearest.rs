@@ -1,6 +1,7 @@
 //! The nearest of those who are near a person.
 
-use crate::crowd::neighbors::{Each, Near, WIDTH};
+use crate::crowd::neighbors::Near;
+use crate::crowd::others::{Each, WIDTH};
 use crate::lanes::{Real, Zero};
 
 /// Up to so many are ranked by comparing everybody with everybody.
@@ -79,7 +80,8 @@ impl Nearest {
 mod tests {
     use super::*;
     use crate::crowd::agent::{Agent, FIRST_ROBOT};
-    use crate::crowd::neighbors::{Grid, Neighbors, Period, Unnoticed};
+    use crate::crowd::grid::{Grid, Period};
+    use crate::crowd::neighbors::{Neighbors, Unnoticed};
     use crate::lanes::Vector2;
 
     fn agent(number: u32, x: f64) -> Agent {

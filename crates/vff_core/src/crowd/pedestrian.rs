@@ -1,8 +1,10 @@
 //! What a pedestrian model knows and answers.
 
 use crate::crowd::agent::{Agent, SHORTEST};
+use crate::crowd::grid::Period;
 use crate::crowd::nearest::Nearest;
-use crate::crowd::neighbors::{Each, Neighbors, Period};
+use crate::crowd::neighbors::Neighbors;
+use crate::crowd::others::Each;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};

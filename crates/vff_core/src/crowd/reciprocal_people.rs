@@ -4,7 +4,8 @@
 //! the same for any shape. Half-planes of walls are never violated.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Each, Unnoticed, WIDTH};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::others::{Each, WIDTH};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;

@@ -1,8 +1,9 @@
 //! Decisions of everybody from the same snapshot.
 
 use crate::crowd::agent::Agent;
+use crate::crowd::grid::{Grid, Period};
 use crate::crowd::models::Model;
-use crate::crowd::neighbors::{Grid, Neighbors, Period};
+use crate::crowd::neighbors::Neighbors;
 use crate::crowd::pedestrian::{Around, Fellows, Pedestrian, Room, Walker};
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;

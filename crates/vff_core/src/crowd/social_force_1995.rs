@@ -4,7 +4,8 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Each, Others, Unnoticed};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::others::{Each, Others};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Mask, Planar, Real, Vector2};

@@ -4,7 +4,8 @@
 //! `kappa g` times the difference of their velocities along the tangent. Friction at walls brakes, as printed.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::{Each, Unnoticed};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
