@@ -1,0 +1,187 @@
+//! What is counted of a motion step: arrival, contacts, least distances, energy, path.
+
+use super::{BOUND_MARGIN, Runs};
+use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::run::options::Clock;
+use crate::run::outcome::CONTACT_SPEED;
+use crate::run::scene::{World, body_at};
+use crate::world::geometry::Body;
+
+impl<W: World<R>, R: Real> Runs<W, R> {
+    /// Counts a sample of the force.
+    #[inline(always)]
+    pub fn count_sample(&mut self) {
+        let one = R::splat(1.0);
+        self.force_evaluations += R::select(self.running, one, R::zero());
+    }
+
+    /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
+    /// the currents are looked at afterwards.
+    #[inline(always)]
+    pub fn account(
+        &mut self,
+        bodies: &[Body<W::Number>],
+        before: Vector2<R>,
+        time: W::Number,
+        record: bool,
+    ) {
+        let speeds = self.wheels.speeds(self.velocity);
+        let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
+        self.wheel_speeds = speeds;
+        if record {
+            self.currents = currents;
+        }
+        let [first, second, third] = currents;
+        let squared = first * first + second * second + third * third;
+        let way = self.speed * R::splat(self.clock.step);
+        if self.near_goal {
+            let to_goal = self.goal - self.position;
+            let tolerance = self.scenario.common().rules.arrival_tolerance;
+            let near = to_goal.dot(&to_goal).le(R::splat(tolerance * tolerance));
+            let arrived = self.running & near;
+            if arrived.any() {
+                self.arrive(before, time, arrived, squared, way);
+            }
+        }
+        self.squared_current += R::select(self.running, squared, R::zero());
+        self.path += R::select(self.running, way, R::zero());
+        for (index, body) in bodies.iter().enumerate() {
+            if self.watched[index] {
+                self.watch(index, body, time, self.running);
+            }
+        }
+        if self.walls.is_some() {
+            self.watch_walls(time.wide(), self.running);
+        }
+    }
+
+    /// Least distance and contact of some lanes with the maps.
+    #[inline(never)]
+    pub(super) fn watch_walls(&mut self, time: R, lanes: R::Mask) {
+        if let Some(walls) = &mut self.walls {
+            self.touched |= walls.watch(self.position, self.speed, time, lanes);
+        }
+    }
+
+    /// Least distance and contact of some lanes with an obstacle.
+    #[inline(always)]
+    pub(super) fn watch<B: Wide<R>>(
+        &mut self,
+        index: usize,
+        body: &Body<B>,
+        time: B,
+        lanes: R::Mask,
+    ) {
+        let here = B::wide_mask(body.state.present);
+        if !here.any() {
+            return;
+        }
+        let lanes = lanes & here;
+        let offset = body.offset(self.position);
+        let squared = offset.distance_squared;
+        let least = &mut self.min_distance_squared[index];
+        *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
+        let reach = self.reach[index];
+        let touching = lanes & squared.le((reach * reach).wide());
+        if touching.any() {
+            self.touch(index, time.wide(), touching, offset.vector);
+        }
+    }
+
+    /// Finds out what cannot happen before the next sample, so that it need not be looked for:
+    /// nothing moves farther than its largest speed takes it.
+    #[inline(always)]
+    pub fn look_ahead(&mut self, bodies: &[Body<W::Number>]) {
+        let Clock {
+            interval,
+            steps_per_sample,
+            ..
+        } = self.clock;
+        if steps_per_sample == 1 {
+            return;
+        }
+        let common = self.scenario.common();
+        let own = common.robot.max_speed;
+        let to_goal = self.goal - self.position;
+        let reach = common.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
+        let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
+        self.near_goal = (near & self.running).any();
+        let number = W::Number::splat;
+        for (index, body) in bodies.iter().enumerate() {
+            let speed = self.speed_bound[index];
+            let way = (number(own) + speed) * number(interval) + number(BOUND_MARGIN);
+            // Within a contact the robot may turn toward the obstacle, however near they have been.
+            let reach = self.reach[index].wide();
+            let least = self.min_distance_squared[index].sqrt().max(reach) + way.wide();
+            let squared = body.offset(self.position).distance_squared;
+            let here = W::Number::wide_mask(body.state.present);
+            let near = squared.lt(least * least) | !here;
+            self.watched[index] = (near & self.running).any();
+        }
+    }
+
+    #[cold]
+    fn touch(&mut self, index: usize, time: R, touching: R::Mask, offset: Vector2<R>) {
+        let toward = self.velocity.dot(&offset).lt(R::zero());
+        let moving = R::splat(CONTACT_SPEED).lt(self.velocity.dot(&self.velocity).sqrt());
+        let fault = touching & toward & moving;
+        self.at_fault[index] = R::select(fault, R::splat(1.0), self.at_fault[index]);
+        for lane in 0..R::WIDTH {
+            if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
+                let speed = self.speed.lane(lane);
+                self.contact_time[index] = self.contact_time[index].replace(lane, time.lane(lane));
+                self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
+                self.touched = true;
+            }
+        }
+    }
+
+    /// Ends the runs of lanes that entered the circle around the goal in this step, at the
+    /// instant of entry, linear inside the step.
+    #[cold]
+    #[inline(never)]
+    fn arrive(
+        &mut self,
+        before: Vector2<R>,
+        time: W::Number,
+        arrived: R::Mask,
+        squared: R,
+        way: R,
+    ) {
+        let tolerance = self.scenario.common().rules.arrival_tolerance;
+        let after = self.position;
+        let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
+        let (from, to) = (length(self.goal - before), length(self.goal - after));
+        let share = (from - R::splat(tolerance)) / (from - to);
+        let entry = before + (after - before) * share;
+        self.position = Vector2::select(arrived, entry, after);
+        self.squared_current += R::select(arrived, squared * share, R::zero());
+        self.path += R::select(arrived, way * share, R::zero());
+        for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
+            let step = self.clock.step;
+            let instant = (time.wide().lane(lane) - step) + share.lane(lane) * step;
+            self.arrival_time = self.arrival_time.replace(lane, instant);
+            self.end_time = self.end_time.replace(lane, instant);
+            // Only this lane is watched at its own instant.
+            let others = (0..R::WIDTH).filter(|other| *other != lane);
+            let only = others.fold(R::Mask::splat(true), Mask::without);
+            let world = self.scenario.clone();
+            for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
+                self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
+            }
+            self.watch_walls(R::splat(instant), only);
+        }
+        self.running = self.running & !arrived;
+    }
+
+    /// Whether any robot is in the active region of an obstacle.
+    #[inline(always)]
+    pub fn feels_any(&self, bodies: &[Body<W::Number>]) -> bool {
+        bodies.iter().any(|body| {
+            let reach = body.regions.active_radius;
+            let squared = body.offset(self.position).distance_squared;
+            let here = W::Number::wide_mask(body.state.present);
+            (here & squared.lt((reach * reach).wide())).any()
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! How runs end that do not arrive: at rest, caught, at a contact, or with numbers that are none.
+
+use super::{BOUND_MARGIN, Runs};
+use crate::error::{Failure, Result};
+use crate::lanes::{Mask, Real, Vector2, Wide};
+use crate::run::scene::World;
+use crate::world::geometry::Body;
+
+/// A robot slower than this is at rest, in m/s.
+const REST_SPEED: f64 = 1e-3;
+
+impl<W: World<R>, R: Real> Runs<W, R> {
+    /// Ends the runs of lanes that have been at rest for too long.
+    #[inline(always)]
+    pub fn rest(&mut self, time: W::Number) {
+        let still = self.speed.lt(R::splat(REST_SPEED));
+        self.moved = R::select(still, self.moved, time.wide());
+        let rest_time = self.scenario.common().rules.rest_time;
+        let long = R::splat(rest_time).le(time.wide() - self.moved);
+        let ended = self.running & long;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of lanes that stand in a critical region for good: obstacle and robot at
+    /// rest, and nothing else that moves.
+    #[inline(always)]
+    pub fn end_hopeless(&mut self, bodies: &[Body<W::Number>], time: W::Number) {
+        let still = self.running & self.speed.lt(R::splat(REST_SPEED));
+        let still = still & time.wide().ge(R::splat(self.all_stand_from));
+        if still.any() {
+            self.end_caught(bodies, time, still);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn end_caught(&mut self, bodies: &[Body<W::Number>], time: W::Number, still: R::Mask) {
+        // Braked within one control period, it goes no farther than that.
+        let way = self.speed * R::splat(self.clock.interval) + R::splat(BOUND_MARGIN);
+        let mut caught = R::Mask::none();
+        for body in bodies {
+            let distance = body.offset(self.position).distance_squared.sqrt();
+            caught = caught | (distance + way).lt(body.regions.critical_radius.wide());
+        }
+        let ended = still & caught;
+        if ended.any() {
+            self.stopped = self.stopped | ended;
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of lanes that have touched an obstacle.
+    #[inline(always)]
+    pub fn stop_at_contact(&mut self, time: W::Number) {
+        if self.touched {
+            self.touched = false;
+            self.stop_touched(time);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn stop_touched(&mut self, time: W::Number) {
+        let mut touched = R::Mask::none();
+        for contact in &self.contact_time {
+            touched = touched | contact.le(time.wide());
+        }
+        if let Some(walls) = &self.walls {
+            touched = touched | walls.contact_time.le(time.wide());
+        }
+        let ended = self.running & touched;
+        if ended.any() {
+            self.end(ended, time);
+        }
+    }
+
+    /// Ends the runs of some lanes.
+    pub fn end(&mut self, lanes: R::Mask, time: W::Number) {
+        self.end_time = R::select(lanes, time.wide(), self.end_time);
+        self.running = self.running & !lanes;
+    }
+
+    /// When the run of the first lane ended, in s.
+    pub fn first_end(&self) -> f64 {
+        self.end_time.lane(0)
+    }
+
+    #[inline(always)]
+    pub fn check_finite(&self, time: W::Number) -> Result<()> {
+        let limit = R::splat(f64::INFINITY);
+        let finite = |vector: Vector2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
+        self.check(finite(self.position) & finite(self.velocity), time)
+    }
+
+    /// A force whose magnitude overflows has no direction left.
+    #[inline(always)]
+    pub fn check_force(&self, force: Vector2<R>, time: W::Number) -> Result<()> {
+        let sound = force.dot(&force).lt(R::splat(f64::INFINITY));
+        self.check(sound, time)
+    }
+
+    #[inline(always)]
+    fn check(&self, sound: R::Mask, time: W::Number) -> Result<()> {
+        let lost = self.running & !sound;
+        if lost.any() {
+            let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
+            let time = time.wide().lane(run);
+            return Err(Failure::NonFinite { run, time });
+        }
+        Ok(())
+    }
+}
