@@ -1,11 +1,12 @@
 //! Runs: control period, integrators, outcomes; one run, or many at once.
 
+pub(crate) mod any_law;
 mod batch;
 pub mod built;
 pub mod controller;
 mod episode;
 pub mod follower;
-pub(crate) mod group;
+mod group;
 mod lane_rollout;
 pub(crate) mod lane_scenes;
 pub mod metrics;
@@ -24,10 +25,10 @@ pub mod skirt;
 mod table;
 mod walls;
 
+pub use any_law::AnyLaw;
 pub use batch::{BatchOptions, run_batch};
 pub use episode::Episode;
 pub(crate) use episode::Parts;
-pub use group::AnyLaw;
 pub use navigation::{Navigation, Request};
 pub(crate) use options::Clock;
 pub use options::{Integrator, Kept, Options};
@@ -36,7 +37,8 @@ pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use group::{Group, Steering};
+pub(crate) use any_law::Steering;
+pub(crate) use group::Group;
 pub(crate) use nominal::{Ways, nominal_runs};
 pub(crate) use plan::{Key, Plan, key_of};
 pub(crate) use table::min_clearance;

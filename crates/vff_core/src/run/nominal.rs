@@ -6,7 +6,8 @@ use numeric::threads::try_map;
 
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::group::{Driven, Group};
+use crate::run::any_law::Driven;
+use crate::run::group::Group;
 use crate::run::metrics::Nominal;
 use crate::run::outcome::RunTotals;
 use crate::run::plan::{Key, Plan, key_of};

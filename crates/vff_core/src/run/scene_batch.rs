@@ -4,7 +4,8 @@ use numeric::threads::{map, team, try_map};
 
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::group::{Driven, Group, Keep, SceneGroup};
+use crate::run::any_law::Driven;
+use crate::run::group::{Group, Keep, SceneGroup};
 use crate::run::lane_scenes::{agree, fits};
 use crate::run::metrics::{Nominal, Weights, score};
 use crate::run::nominal::Ways;

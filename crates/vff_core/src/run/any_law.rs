@@ -1,0 +1,346 @@
+//! Laws of any kind whose gain sets can be run, and the kernels that are compiled for them.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use crate::error::{Failure, Result};
+use crate::lanes::Lanes;
+use crate::laws::trace::Trace;
+use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
+use crate::robots::differential::Twist;
+use crate::run::Interrupted;
+use crate::run::group::{Group, Keep, SceneGroup};
+use crate::run::options::Options;
+use crate::run::outcome::RunSummary;
+use crate::run::plan::{Plan, Width};
+use crate::run::record::{DescentCounter, Trajectory, TrajectoryRecorder};
+use crate::run::rollout::{Member, run_team};
+use crate::run::walls::Maps;
+use crate::world::map::StaticMap;
+use crate::world::scenario::Scenario;
+
+/// A law of any kind up to its gains.
+///
+/// The kernels of a law are compiled where it is turned into this, that is in this crate, or for
+/// laws of other crates there.
+#[derive(Clone)]
+pub struct AnyLaw(Arc<dyn Driven>);
+
+impl From<&AnyLaw> for AnyLaw {
+    fn from(law: &AnyLaw) -> Self {
+        law.clone()
+    }
+}
+
+impl AnyLaw {
+    /// A law of another crate, whose gain sets run one after the other.
+    #[must_use]
+    pub fn one_by_one<F: LawFamily + Send + 'static>(law: F) -> Self {
+        Self::driven_by::<_, One>(law)
+    }
+
+    pub(crate) fn driven_by<F: LawFamily + Send + 'static, K: Kernels<F>>(law: F) -> Self {
+        Self(Arc::new(Driver::<F, K>(law, PhantomData)))
+    }
+
+    pub(crate) fn driven(&self) -> &dyn Driven {
+        &*self.0
+    }
+
+    /// Returns nothing if the law can reach the goal of a scenario.
+    ///
+    /// # Errors
+    /// It keeps to regions, and the goal lies in the active region of an obstacle that stands.
+    pub(crate) fn suits(&self, scenario: &Scenario) -> Result<()> {
+        if self.0.takes_any_goal() {
+            return Ok(());
+        }
+        scenario.with_free_goal()
+    }
+
+    /// What it knows to stand, beside the obstacles of a scenario.
+    pub(crate) fn map(&self) -> Option<&StaticMap> {
+        self.0.map()
+    }
+
+    /// Words for the gains, in their order.
+    #[must_use]
+    pub fn gain_names(&self) -> &'static [&'static str] {
+        self.0.gain_names()
+    }
+
+    /// The gains, in that order.
+    #[must_use]
+    pub fn gains(&self) -> Vec<f64> {
+        self.0.gains()
+    }
+
+    /// Returns the law if its gains are allowed.
+    ///
+    /// # Errors
+    /// Names the gain that is not.
+    pub fn checked(self) -> Result<Self> {
+        self.0.check_gains(&self.0.gains())?;
+        Ok(self)
+    }
+}
+
+/// A law of any kind at work on one robot.
+pub(crate) trait Steering: Send {
+    /// Force for the time until the next sample.
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
+    /// Heads for another goal from now on, in m.
+    fn aim(&mut self, goal: [f64; 2]);
+    /// Tells a robot with two wheels what it was ordered last, and how long ago, in s.
+    fn turning(&mut self, ordered: Twist, since: f64);
+    /// What parts around the law did in the last control period, if there are any.
+    fn trace(&self) -> Option<Trace>;
+}
+
+impl<L: Law<f64> + Send> Steering for L {
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        Law::command(self, situation)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        Law::aim(self, goal);
+    }
+
+    fn turning(&mut self, ordered: Twist, since: f64) {
+        Law::turning(self, ordered, since);
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        Law::trace(self)
+    }
+}
+
+/// A law whose gain sets can be run.
+pub(crate) trait Driven: Send + Sync {
+    /// Words for the gains, in their order.
+    fn gain_names(&self) -> &'static [&'static str];
+    /// Its own gains, in that order.
+    fn gains(&self) -> Vec<f64>;
+    /// Gains that act on a robot without obstacles, ascending.
+    fn free_gains(&self) -> &'static [usize];
+    /// Returns the gains if the law allows them.
+    fn check_gains(&self, gains: &[f64]) -> Result<()>;
+    /// Runs gain sets and hands every run over.
+    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// Whether it can run scenes side by side.
+    fn takes_scenes(&self) -> bool;
+    /// Runs scenes that agree in robot and rules, and hands every run over.
+    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()>;
+    /// What it asks for at first, with its own gains.
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
+    /// Every force term with its own gains; `None` for laws that are no sum of terms.
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
+    /// Whether it chooses a velocity, and so knows no regions.
+    fn chooses_velocities(&self) -> bool;
+    /// Whether it can reach a goal in the active region of an obstacle that stands.
+    fn takes_any_goal(&self) -> bool;
+    /// Whether it steers a robot with two wheels by velocities.
+    fn steers_by_velocity(&self) -> bool;
+    /// What it knows to stand, beside the obstacles of a scenario.
+    fn map(&self) -> Option<&StaticMap>;
+    /// It at work in a scenario, with its own gains, to be asked once a control period.
+    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
+        self.steering_with(&self.gains(), scenario, true)
+    }
+    /// The same with other gains; `record`: the Lyapunov function is wanted too.
+    fn steering_with(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Steering>>;
+    /// One run with its own gains and everything recorded.
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)>;
+}
+
+/// A law and the kernels that are compiled for it.
+struct Driver<F, K>(F, PhantomData<fn() -> K>);
+
+/// Kernels that are compiled for a law.
+pub(crate) trait Kernels<F: LawFamily>: 'static {
+    /// Whether there is one for scenes side by side.
+    const SCENES: bool = false;
+    /// Runs gain sets in the kernel that suits the plan.
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// Runs scenes side by side, if there is such a kernel.
+    fn run_scenes(_law: &F, _group: &SceneGroup<'_>, _keep: Keep<'_>) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// One, four and eight gain sets side by side, with and without the Lyapunov function.
+pub(crate) struct EveryWidth;
+
+impl<F: LawFamily> Kernels<F> for EveryWidth
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    const SCENES: bool = true;
+
+    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch(law, keep)
+    }
+
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        // One job for each kind of run: in one body an unoptimized build would need more stack
+        // than a thread has.
+        match (group.plan.width, group.plan.descent) {
+            (Width::One, false) => group.dispatch::<F, f64, (), false>(law, keep),
+            (Width::One, true) => group.dispatch::<F, f64, DescentCounter<f64>, true>(law, keep),
+            (Width::Four, false) => group.dispatch::<F, Lanes<4>, (), false>(law, keep),
+            (Width::Eight | Width::Sixteen, false) => {
+                group.dispatch::<F, Lanes<8>, (), false>(law, keep)
+            }
+            (_, true) => group.dispatch::<F, Lanes<8>, DescentCounter<Lanes<8>>, true>(law, keep),
+        }
+    }
+}
+
+/// One and eight gain sets side by side, for laws without a Lyapunov function.
+pub(crate) struct OneAndEight;
+
+impl<F: LawFamily> Kernels<F> for OneAndEight
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    const SCENES: bool = true;
+
+    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch(law, keep)
+    }
+
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        match group.plan.width {
+            Width::One => group.dispatch::<F, f64, (), false>(law, keep),
+            _ => group.dispatch::<F, Lanes<8>, (), false>(law, keep),
+        }
+    }
+}
+
+/// One after the other, for laws that think longer than a robot moves.
+pub(crate) struct One;
+
+impl<F: LawFamily> Kernels<F> for One {
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch::<F, f64, (), false>(law, keep)
+    }
+}
+
+impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
+    fn gain_names(&self) -> &'static [&'static str] {
+        self.0.gain_names()
+    }
+
+    fn gains(&self) -> Vec<f64> {
+        self.0.gains()
+    }
+
+    fn free_gains(&self) -> &'static [usize] {
+        self.0.free_gains()
+    }
+
+    fn check_gains(&self, gains: &[f64]) -> Result<()> {
+        self.0.check_gains(gains)
+    }
+
+    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        if (group.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        let exact = group.scenario.measurement.is_none();
+        let plan = Plan {
+            shortcuts: group.plan.shortcuts && exact && self.0.keeps_to_regions(),
+            ..*group.plan
+        };
+        let group = &Group {
+            plan: &plan,
+            ..*group
+        };
+        K::run(&self.0, group, keep)
+    }
+
+    fn takes_scenes(&self) -> bool {
+        K::SCENES
+    }
+
+    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        if (group.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        K::run_scenes(&self.0, group, keep)
+    }
+
+    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
+        let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
+        Ok(Law::command(&mut law, situation))
+    }
+
+    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
+        self.0.terms(scenario, situation)
+    }
+
+    fn chooses_velocities(&self) -> bool {
+        self.0.chooses_velocities()
+    }
+
+    fn takes_any_goal(&self) -> bool {
+        self.0.takes_any_goal()
+    }
+
+    fn steers_by_velocity(&self) -> bool {
+        self.0.steers_by_velocity()
+    }
+
+    fn map(&self) -> Option<&StaticMap> {
+        self.0.map()
+    }
+
+    fn steering_with(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Steering>> {
+        Ok(if record {
+            Box::new(self.0.with_gains::<f64, true>(gains, scenario)?)
+        } else {
+            Box::new(self.0.with_gains::<f64, false>(gains, scenario)?)
+        })
+    }
+
+    fn record(
+        &self,
+        scenario: &Scenario,
+        options: &Options,
+        interrupted: Interrupted<'_>,
+    ) -> Result<(RunSummary, Trajectory)> {
+        let mut team = [Member {
+            law: self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?,
+            recorder: TrajectoryRecorder::keeping(options.kept, scenario),
+        }];
+        let mut summary = None;
+        run_team(
+            scenario,
+            (&mut team, false),
+            (
+                &Plan::single(*options),
+                &Maps::of_law(scenario, self.0.map()),
+            ),
+            interrupted,
+            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
+        )?;
+        let [member] = team;
+        let summary = summary.ok_or(Failure::Interrupted)?;
+        Ok((summary, member.recorder.finish()))
+    }
+}
