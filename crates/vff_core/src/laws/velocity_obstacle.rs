@@ -357,24 +357,20 @@ impl VelocityObstaclePlanner {
             if best.is_better_than(line.promise) {
                 break;
             }
-            let index = line.index;
-            let own = self.lines[index].own(wanted, &reachable);
+            let own = line.line.own(wanted, &reachable);
             for (number, velocity) in own.into_iter().enumerate() {
                 if let Some(velocity) = velocity {
-                    best.offer((1 + index, number), velocity);
+                    best.offer((1 + line.index, number), velocity);
                 }
             }
             for other in &promising[..rank] {
-                let (later, earlier) = if index > other.index {
-                    (line, other.index)
+                let (later, earlier) = if line.index > other.index {
+                    (line, other)
                 } else {
-                    (other, index)
+                    (other, line)
                 };
-                // What lies beyond the reachable part of either line need not be offered.
-                let on = &self.lines[later.index];
-                let crossing = on.crossing_within(&self.lines[earlier], later.chord);
-                if let Some(velocity) = crossing {
-                    best.offer((1 + later.index, best::OWN + earlier), velocity);
+                if let Some(velocity) = later.line.crossing(&earlier.line) {
+                    best.offer((1 + later.index, best::OWN + earlier.index), velocity);
                 }
             }
         }

@@ -16,8 +16,8 @@ pub(super) struct Promising {
     pub promise: f64,
     /// Its place among the lines.
     pub index: usize,
-    /// Its reachable part.
-    pub chord: [f64; 2],
+    /// The line.
+    pub line: Line,
 }
 
 /// Place of a candidate in the order of all: the line, and its number there.
@@ -30,6 +30,8 @@ pub(super) struct Best<'a> {
     situation: &'a Situation<'a, f64>,
     reachable: Reachable,
     aim: Vector,
+    /// What it is worth by the first number: whatever promises less is not looked at.
+    least: f64,
     found: Option<((f64, f64), Place, Vector)>,
 }
 
@@ -44,6 +46,7 @@ impl<'a> Best<'a> {
             situation,
             reachable,
             aim,
+            least: f64::NEG_INFINITY,
             found: None,
         }
     }
@@ -52,14 +55,19 @@ impl<'a> Best<'a> {
         self.found.map(|(_, _, velocity)| velocity)
     }
 
-    /// Takes a velocity if it is reachable, better than the one before, and free.
+    /// Takes a velocity if it is reachable, better than the one before, and free. Most are far out
+    /// of reach, which their squares tell.
     #[inline]
     pub fn offer(&mut self, place: Place, velocity: Vector) {
-        if self
-            .found
-            .is_some_and(|(known, ..)| self.at_most(velocity) < known.0)
-            || !self.reachable.holds(velocity)
-        {
+        if self.reachable.may_hold(velocity) && self.at_most(velocity) >= self.least {
+            self.take(place, velocity);
+        }
+    }
+
+    /// The same for a velocity that is not far out of reach and may be worth enough.
+    #[inline(never)]
+    fn take(&mut self, place: Place, velocity: Vector) {
+        if !self.reachable.holds(velocity) {
             return;
         }
         let worth = self.planner.worth(self.situation, self.aim, velocity);
@@ -68,6 +76,7 @@ impl<'a> Best<'a> {
             .is_none_or(|(known, earlier, _)| worth > known || (worth == known && place < earlier));
         if better && self.planner.free(self.situation, velocity) {
             self.found = Some((worth, place, velocity));
+            self.least = worth.0;
         }
     }
 
@@ -76,7 +85,7 @@ impl<'a> Best<'a> {
     fn at_most(&self, velocity: Vector) -> f64 {
         match self.planner.settings.selection {
             Selection::ToGoal => velocity.dot(&self.aim),
-            Selection::Fastest { .. } => f64::INFINITY,
+            Selection::Fastest { .. } => self.planner.rank(velocity.dot(&velocity).sqrt()),
             Selection::TimeAndRisk { .. } => -self.planner.time_left(self.situation, velocity),
         }
     }
@@ -84,11 +93,11 @@ impl<'a> Best<'a> {
     /// Lines that anything reachable lies on, the most promising first.
     pub fn promising(&self, lines: &[Line]) -> Vec<Promising> {
         let promise = |(index, line): (usize, &Line)| {
-            let chord = self.reachable.chord(line)?;
+            let ends = self.reachable.chord(line)?;
             Some(Promising {
-                promise: self.promise(chord.map(|share| line.at(share))),
+                promise: self.promise(ends),
                 index,
-                chord,
+                line: *line,
             })
         };
         let mut found: Vec<Promising> = lines.iter().enumerate().filter_map(promise).collect();

@@ -23,8 +23,9 @@ pub(super) struct Reachable {
 }
 
 impl Reachable {
-    #[inline]
     pub fn holds(&self, velocity: Vector) -> bool {
+        let beyond =
+            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
         !beyond(velocity, self.max_speed) && !beyond(velocity - self.velocity, self.change)
     }
 
@@ -35,9 +36,15 @@ impl Reachable {
         ]
     }
 
-    /// The part of a line that is reachable, generously, by its first and last share; `None` without
-    /// one.
-    pub fn chord(&self, line: &Line) -> Option<[f64; 2]> {
+    /// Whether it is not far beyond what is reachable.
+    #[inline]
+    pub fn may_hold(&self, velocity: Vector) -> bool {
+        let near = |vector: Vector, limit: f64| vector.dot(&vector) <= limit * limit * FAR_BEYOND;
+        near(velocity, self.max_speed) & near(velocity - self.velocity, self.change)
+    }
+
+    /// Ends of the part of a line that is reachable, generously; `None` without one.
+    pub fn chord(&self, line: &Line) -> Option<[Vector; 2]> {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for (center, radius) in self.circles() {
             let offset = line.from - center;
@@ -52,19 +59,9 @@ impl Reachable {
             let half = square.sqrt();
             (low, high) = (low.max(foot - half), high.min(foot + half));
         }
-        (low <= high).then_some([low, high])
+        let at = |share: f64| line.from + line.along * share;
+        (low <= high).then(|| [at(low), at(high)])
     }
-}
-
-/// Whether a vector is longer than a limit.
-#[inline]
-fn beyond(vector: Vector, limit: f64) -> bool {
-    let (square, bound) = (vector.dot(&vector), limit * limit);
-    // Far from the limit the squares tell as much as the lengths.
-    if square < bound {
-        return false;
-    }
-    square > bound * FAR_BEYOND || square.sqrt() > limit * (1.0 + ON_THE_LIMIT)
 }
 
 /// Velocities from a point on along a direction of length 1.
@@ -99,31 +96,15 @@ impl Line {
         [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
     }
 
-    /// Its velocity at a distance from its first one.
-    #[inline]
-    pub fn at(&self, share: f64) -> Vector {
-        self.from + self.along * share
-    }
-
     /// Where it crosses the whole line of another one.
     #[inline]
     pub fn crossing(&self, other: &Self) -> Option<Vector> {
-        self.crossing_within(other, [f64::NEG_INFINITY, f64::INFINITY])
-    }
-
-    /// The same on a part of this line.
-    #[inline]
-    pub fn crossing_within(&self, other: &Self, [low, high]: [f64; 2]) -> Option<Vector> {
         let sine = self.along.perp(&other.along);
         if sine == 0.0 {
             return None;
         }
         let share = (other.from - self.from).perp(&other.along) / sine;
-        // Also where the share is not a number.
-        if share < low || share > high {
-            return None;
-        }
-        Some(self.at(share))
+        Some(self.from + self.along * share)
     }
 }
 
