@@ -29,6 +29,16 @@ pub struct Sensing {
 }
 
 impl Sensing {
+    /// All as a measurement has it.
+    #[must_use]
+    pub fn by(measurement: Option<Measurement>) -> Self {
+        Self {
+            measurement,
+            latency: None,
+            position_error: None,
+        }
+    }
+
     /// Largest difference in m between the known and the true distance of a robot from an obstacle.
     ///
     /// The known distance is that of two measured positions. Each lies at most the error bound from
@@ -178,10 +188,7 @@ mod tests {
         let wall = Obstacle::rectangle([0.0; 2], [1.4, 0.6], 0.0, Limits::default()).unwrap();
         let measured = |noisy| {
             let found = Measurement::new(0.025, Distribution::Uniform, noisy).unwrap();
-            Sensing {
-                measurement: Some(found.late(0.1).unwrap()),
-                ..Sensing::default()
-            }
+            Sensing::by(Some(found.late(0.1).unwrap()))
         };
         let error = 0.025 * std::f64::consts::SQRT_2;
         for (obstacle, noisy, slack) in [

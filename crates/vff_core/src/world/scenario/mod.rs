@@ -125,10 +125,7 @@ impl Scenario {
         rules: Rules,
         measurement: Option<Measurement>,
     ) -> Result<Self> {
-        let sensing = Sensing {
-            measurement,
-            ..Sensing::default()
-        };
+        let sensing = Sensing::by(measurement);
         let known = (&rules, &sensing);
         match robot {
             Mover::Holonomic(robot) => {
@@ -198,10 +195,7 @@ impl Scenario {
                 (robot.reference(), robot.checked()?.limits(), Some(robot))
             }
         };
-        let sensing = Sensing {
-            measurement,
-            ..Sensing::default()
-        };
+        let sensing = Sensing::by(measurement);
         let placed = obstacles.map(|(obstacle, speed_bound, stationary)| {
             Ok(PlacedObstacle {
                 stationary,
@@ -231,10 +225,7 @@ impl Scenario {
     pub fn measured(mut self, measurement: Option<Measurement>, seed: u64) -> Result<Self> {
         if measurement != self.measurement {
             let (robot, rules) = (self.limits(), self.rules);
-            let sensing = Sensing {
-                measurement,
-                ..Sensing::default()
-            };
+            let sensing = Sensing::by(measurement);
             let obstacles = self.obstacles.into_iter().map(|placed| placed.obstacle);
             let ends = [self.start, self.goal];
             (self.obstacles, self.blocked) = place_all(&robot, ends, obstacles, &rules, &sensing)?;
@@ -255,10 +246,7 @@ impl Scenario {
             max_speed,
             ..self.limits()
         };
-        let sensing = Sensing {
-            measurement: self.measurement,
-            ..Sensing::default()
-        };
+        let sensing = Sensing::by(self.measurement);
         let obstacles = self.obstacles.iter().map(|placed| placed.obstacle.clone());
         let ends = [self.start, self.goal];
         (slowed.obstacles, slowed.blocked) =
