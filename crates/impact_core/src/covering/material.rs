@@ -357,6 +357,16 @@ impl Material {
             Self::Table(table) => table.kinks(),
         }
     }
+
+    /// Strain beyond which the law has no kink.
+    #[must_use]
+    pub fn last_kink(&self) -> f64 {
+        match self {
+            Self::Linear { .. } | Self::Rusch { .. } | Self::Avalle { .. } => 0.0,
+            Self::GibsonAshby(law) => law.plateau_end(),
+            Self::Table(table) => table.end(),
+        }
+    }
 }
 
 /// `x^exponent`, without logarithms where the exponent is a whole number or a half more than one, up to 8.

@@ -367,7 +367,8 @@ impl Pad {
             let [at_start, slope] = self.force(start);
             let steep = slope + self.covering.bottoming.stiffness;
             let from = (start, at_start, steep);
-            return Some(inverse::beyond(force, from, bound, |d| self.force(d)));
+            let until = (material.last_kink() * thickness, bound);
+            return Some(inverse::beyond(force, from, until, |d| self.force(d)));
         }
         Some(inverse::largest(force, bound, |d| self.force(d)))
     }
