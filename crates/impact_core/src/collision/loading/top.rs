@@ -1,7 +1,8 @@
 //! Largest loads between two points of a curve.
 
+use super::Loading;
+use super::plane::Point;
 use super::variable::Variable;
-use super::{Loading, Point};
 
 /// Most steps towards a top.
 const MOST_TRIALS: usize = 12;
@@ -30,8 +31,15 @@ impl Top {
 }
 
 impl Loading<'_> {
-    /// Offers the load at the end of a step, and what peaks within it.
-    pub fn offer(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Top) {
+    /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
+    pub fn offer(&self, variable: Variable, ends: [&Point; 2], tops: &mut [Top; 2]) {
+        let count = if self.curved { 2 } else { 1 };
+        for (load, top) in tops.iter_mut().take(count).enumerate() {
+            self.offer_load(variable, ends, load, top);
+        }
+    }
+
+    fn offer_load(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Top) {
         top.offer(to.loads[load][0], to.state[1]);
         if !(from.loads[load][1] > 0.0 && to.loads[load][1] < 0.0) {
             return;
