@@ -4,7 +4,7 @@ use super::reading::{collision, pad};
 use super::run::moved;
 use super::stored::stored;
 use super::{Body, Collision, Outcome, Region, Status, Wanted, rest_of, simulate};
-use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Rate, Shape, Unloading};
+use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Unloading};
 
 fn cases() -> Value {
     serde_json::from_str(include_str!("../../../../tests/golden/contact_cases.json")).unwrap()
@@ -200,23 +200,39 @@ fn coverings() -> Vec<Covering> {
         .collect()
 }
 
+/// A rigid region, and one of each law that yields.
+const REGIONS: [Region; 4] = [
+    Region::Rigid,
+    Region::Spring {
+        stiffness: 25e3,
+        cubic: 0.0,
+    },
+    Region::Spring {
+        stiffness: 25e3,
+        cubic: 1e8,
+    },
+    Region::Power {
+        stiffness: 1e6,
+        exponent: 1.5,
+    },
+];
+
+/// A collision of free bodies.
+fn free(pad: &Pad, region: Region, closing_speed: f64) -> Collision<'_> {
+    Collision {
+        robot: Body::free(8.0),
+        body: Body::free(40.0),
+        region,
+        pad: Some(pad),
+        closing_speed,
+        stop: None,
+        horizon: 2.0,
+        tolerance: 1e-10,
+    }
+}
+
 #[test]
 fn loads_from_stored_energy_are_those_of_the_motion() {
-    let regions = [
-        Region::Rigid,
-        Region::Spring {
-            stiffness: 25e3,
-            cubic: 0.0,
-        },
-        Region::Spring {
-            stiffness: 25e3,
-            cubic: 1e8,
-        },
-        Region::Power {
-            stiffness: 1e6,
-            exponent: 1.5,
-        },
-    ];
     let moving = Wanted {
         nodes: true,
         ..Wanted::default()
@@ -224,18 +240,9 @@ fn loads_from_stored_energy_are_those_of_the_motion() {
     let (mut exact, mut all) = (0, 0);
     for covering in coverings() {
         let pad = covering.prepared().unwrap();
-        for region in regions {
+        for region in REGIONS {
             for closing_speed in [0.05, 0.4, 1.5] {
-                let collision = Collision {
-                    robot: Body::free(8.0),
-                    body: Body::free(40.0),
-                    region,
-                    pad: Some(&pad),
-                    closing_speed,
-                    stop: None,
-                    horizon: 2.0,
-                    tolerance: 1e-10,
-                };
+                let collision = free(&pad, region, closing_speed);
                 all += 1;
                 if stored(&collision).is_none() {
                     continue;
@@ -281,21 +288,6 @@ fn loads_of(outcome: &Outcome) -> [(&'static str, f64); 8] {
 
 #[test]
 fn loads_with_rate_and_loss_are_those_of_the_motion_in_time() {
-    let regions = [
-        Region::Rigid,
-        Region::Spring {
-            stiffness: 25e3,
-            cubic: 0.0,
-        },
-        Region::Spring {
-            stiffness: 25e3,
-            cubic: 1e8,
-        },
-        Region::Power {
-            stiffness: 1e6,
-            exponent: 1.5,
-        },
-    ];
     let behaviors = [
         ([0.05, 0.02, 0.1], [1.0, 1.0]),
         ([0.3, 0.1, 10.0], [0.5, 1.5]),
@@ -318,18 +310,9 @@ fn loads_with_rate_and_loss_are_those_of_the_motion_in_time() {
                 ..covering.clone()
             };
             let pad = covering.prepared().unwrap();
-            for region in regions {
+            for region in REGIONS {
                 for closing_speed in [0.05, 0.4, 1.5] {
-                    let collision = Collision {
-                        robot: Body::free(8.0),
-                        body: Body::free(40.0),
-                        region,
-                        pad: Some(&pad),
-                        closing_speed,
-                        stop: None,
-                        horizon: 2.0,
-                        tolerance: 1e-10,
-                    };
+                    let collision = free(&pad, region, closing_speed);
                     all += 1;
                     let Some(found) = stored(&collision) else {
                         continue;
@@ -367,23 +350,11 @@ fn loads_with_rate_converge_with_the_tolerance() {
         })
         .collect();
     for pad in &pads {
-        for region in [
-            Region::Rigid,
-            Region::Spring {
-                stiffness: 25e3,
-                cubic: 0.0,
-            },
-        ] {
+        for region in &REGIONS[..2] {
             let of = |tolerance| {
                 let collision = Collision {
-                    robot: Body::free(8.0),
-                    body: Body::free(40.0),
-                    region,
-                    pad: Some(pad),
-                    closing_speed: 0.4,
-                    stop: None,
-                    horizon: 2.0,
                     tolerance,
+                    ..free(pad, *region, 0.4)
                 };
                 stored(&collision).unwrap_or_else(|| panic!("{tolerance:e} {collision:?}"))
             };
@@ -404,19 +375,14 @@ fn loads_with_rate_converge_with_the_tolerance() {
 #[test]
 fn a_region_that_starts_infinitely_stiff_yields() {
     let pad = coverings()[0].clone().prepared().unwrap();
-    let collision = Collision {
-        robot: Body::free(8.0),
-        body: Body::free(40.0),
-        region: Region::Power {
+    let collision = free(
+        &pad,
+        Region::Power {
             stiffness: 1e4,
             exponent: 0.8,
         },
-        pad: Some(&pad),
-        closing_speed: 0.4,
-        stop: None,
-        horizon: 2.0,
-        tolerance: 1e-10,
-    };
+        0.4,
+    );
     let solved = moved(&collision, Wanted::default(), &|| false);
     let rest = rest_of(
         Some(&pad),
