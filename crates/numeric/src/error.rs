@@ -138,15 +138,22 @@ impl Failure {
     }
 }
 
+/// The error of a number, away from the loops over rows that check them.
+#[cold]
+fn refused(name: &str, requirement: &'static str, value: f64) -> Failure {
+    Failure::invalid(name, requirement, Given::Number(value))
+}
+
 /// Returns the number if it is finite.
 ///
 /// # Errors
 /// It is not finite.
+#[inline]
 pub fn finite(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(Failure::invalid(name, "be finite", Given::Number(value)))
+        Err(refused(name, "be finite", value))
     }
 }
 
@@ -154,15 +161,12 @@ pub fn finite(name: &str, value: f64) -> Result<f64> {
 ///
 /// # Errors
 /// It is not finite or not above zero.
+#[inline]
 pub fn positive(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err(Failure::invalid(
-            name,
-            "be finite and positive",
-            Given::Number(value),
-        ))
+        Err(refused(name, "be finite and positive", value))
     }
 }
 
@@ -170,15 +174,12 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
 ///
 /// # Errors
 /// It is not finite or below zero.
+#[inline]
 pub fn not_negative(name: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
-        Err(Failure::invalid(
-            name,
-            "be finite and not negative",
-            Given::Number(value),
-        ))
+        Err(refused(name, "be finite and not negative", value))
     }
 }
 
