@@ -92,20 +92,29 @@ pub struct Peak {
     pub time: f64,
 }
 
+impl Peak {
+    /// Below every value.
+    pub const NONE: Self = Self {
+        value: f64::NEG_INFINITY,
+        time: 0.0,
+    };
+
+    /// Takes a value that is larger.
+    pub fn offer(&mut self, value: f64, time: f64) {
+        if value > self.value {
+            *self = Self { value, time };
+        }
+    }
+}
+
 /// Largest value in an interval, ends included; the function gives value, first and second
 /// derivative.
 pub fn maximum(function: impl Fn(f64) -> [f64; 3], from: f64, to: f64, pieces: usize) -> Peak {
-    let peak = |time: f64| Peak {
-        value: function(time)[0],
-        time,
+    let mut best = Peak {
+        value: function(from)[0],
+        time: from,
     };
-    let mut best = peak(from);
-    let mut offer = |time: f64| {
-        let other = peak(time);
-        if other.value > best.value {
-            best = other;
-        }
-    };
+    let mut offer = |time: f64| best.offer(function(time)[0], time);
     let slope = |time: f64| {
         let [_, first, second] = function(time);
         [first, second]

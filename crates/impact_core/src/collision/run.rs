@@ -13,7 +13,8 @@ use super::step::{Step, step};
 use super::stored::stored;
 use super::{Collision, Region};
 use crate::covering::Pad;
-use loads::{Best, PEAKS};
+use crate::roots::Peak;
+use loads::PEAKS;
 
 /// Most steps of a collision.
 const MOST_STEPS: usize = 200_000;
@@ -112,7 +113,7 @@ struct Run<'a, const N: usize> {
     state: State<N>,
     rates: State<N>,
     local: Local,
-    peaks: [Best; PEAKS],
+    peaks: [Peak; PEAKS],
     nodes: Option<Vec<Node>>,
     evaluations: usize,
 }
@@ -178,7 +179,7 @@ impl<'a, const N: usize> Run<'a, N> {
             state,
             rates,
             local,
-            peaks: [Best::NONE; PEAKS],
+            peaks: [Peak::NONE; PEAKS],
             evaluations: 1,
         }
     }

@@ -4,11 +4,12 @@
 //! region together, so the time to the largest one is the integral of `deps/eps'`. That holds on the way back of
 //! every covering, with the work that unloading returns, and on the way in of one without rate.
 
-use super::loading::{Top, Turn, first_exponent, smooth_power, turn_of};
+use super::loading::{Turn, first_exponent, smooth_power, turn_of};
 use super::outcome::{Outcome, Status};
 use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Pad, Shape};
+use crate::roots::Peak;
 
 /// Positive nodes of Kronrod's rule of 15 points on [-1, 1] with their weights, and those of Gauss's rule of 7.
 #[rustfmt::skip]
@@ -182,7 +183,7 @@ fn turned(collision: &Collision<'_>) -> Option<Turn> {
         return None;
     }
     let time = column.time(compression, mass, total / speed, collision.tolerance)?;
-    let top = |value: f64| Top { value, time };
+    let top = |value: f64| Peak { value, time };
     Some(Turn {
         compression,
         time,

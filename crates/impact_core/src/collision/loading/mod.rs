@@ -18,16 +18,15 @@ mod variable;
 
 use std::cell::Cell;
 
-pub use top::Top;
 pub use variable::smooth_power;
 
 use super::curve::{EVALUATIONS, step};
 use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Pad, Shape};
+use crate::roots::Peak;
 use plane::{Point, Scales};
 use steps::{Progress, finer_than_usual};
-use top::NO_TOP;
 use variable::{DEPTH, Variable};
 
 /// Most evaluations of the forces.
@@ -45,9 +44,9 @@ pub struct Turn {
     /// When, in s.
     pub time: f64,
     /// Largest force, in N.
-    pub force: Top,
+    pub force: Peak,
     /// Largest pressure at the apex of a curved contact, in Pa; that of a flat one is not looked for.
-    pub pressure: Top,
+    pub pressure: Peak,
     /// Evaluations of the forces.
     pub evaluations: usize,
 }
@@ -129,7 +128,7 @@ impl Loading<'_> {
     }
 
     fn travel(&mut self) -> Option<Turn> {
-        let mut tops = [NO_TOP; 2];
+        let mut tops = [Peak::NONE; 2];
         let mut now = self.touch();
         while self.evaluations.get() < MOST_EVALUATIONS {
             self.choose(&mut now);
@@ -166,7 +165,7 @@ impl Loading<'_> {
         None
     }
 
-    fn turn(&self, point: &Point, [force, pressure]: [Top; 2]) -> Turn {
+    fn turn(&self, point: &Point, [force, pressure]: [Peak; 2]) -> Turn {
         Turn {
             compression: point.depth,
             time: point.state[1],

@@ -1,7 +1,8 @@
 //! Which variable the next step is over, how far it goes, and whether it is good.
 
+use super::Loading;
+use super::plane::Point;
 use super::variable::{DEPTH, Variable};
-use super::{Loading, plane::Point};
 
 /// Share of the kinetic energy at which the variable changes.
 const EARLY: f64 = 0.83;
@@ -18,6 +19,7 @@ const DOUBT: f64 = 10.0;
 /// Shares of what is left of a variable: the first step towards the turn, and the longest over the compression.
 const FIRST_TO_TURN: f64 = 0.3;
 const LONGEST: f64 = 0.33;
+
 /// How far the motion is.
 pub(super) struct Progress {
     pub(super) variable: Variable,

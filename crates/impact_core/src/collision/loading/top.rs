@@ -3,43 +3,21 @@
 use super::Loading;
 use super::plane::Point;
 use super::variable::Variable;
+use crate::roots::Peak;
 
 /// Most steps towards a top.
 const MOST_TRIALS: usize = 12;
 
-/// A value with its time.
-#[derive(Clone, Copy, Debug)]
-pub struct Top {
-    /// The value.
-    pub value: f64,
-    /// When, in s.
-    pub time: f64,
-}
-
-/// Below every value.
-pub const NO_TOP: Top = Top {
-    value: f64::NEG_INFINITY,
-    time: 0.0,
-};
-
-impl Top {
-    fn offer(&mut self, value: f64, time: f64) {
-        if value > self.value {
-            *self = Self { value, time };
-        }
-    }
-}
-
 impl Loading<'_> {
     /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
-    pub fn offer(&self, variable: Variable, ends: [&Point; 2], tops: &mut [Top; 2]) {
+    pub fn offer(&self, variable: Variable, ends: [&Point; 2], tops: &mut [Peak; 2]) {
         let count = if self.curved { 2 } else { 1 };
         for (load, top) in tops.iter_mut().take(count).enumerate() {
             self.offer_load(variable, ends, load, top);
         }
     }
 
-    fn offer_load(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Top) {
+    fn offer_load(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Peak) {
         top.offer(to.loads[load][0], to.state[1]);
         if !(from.loads[load][1] > 0.0 && to.loads[load][1] < 0.0) {
             return;

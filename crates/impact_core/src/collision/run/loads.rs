@@ -7,30 +7,6 @@ use super::super::step::Step;
 use super::{Region, Run};
 use crate::covering::Shape;
 
-/// A value with its time.
-#[derive(Clone, Copy)]
-pub struct Best {
-    /// The value.
-    pub value: f64,
-    /// When, in s.
-    pub time: f64,
-}
-
-impl Best {
-    /// Below every value.
-    pub const NONE: Self = Self {
-        value: f64::NEG_INFINITY,
-        time: 0.0,
-    };
-
-    /// Keeps the larger one.
-    fn offer(&mut self, value: f64, time: f64) {
-        if value > self.value {
-            *self = Self { value, time };
-        }
-    }
-}
-
 /// Peaks: force, `eps`, `delta`, `d`, apex pressure, acceleration of the body.
 pub const PEAKS: usize = 6;
 
