@@ -152,21 +152,9 @@ impl Column<'_> {
     }
 }
 
-/// Whether the law and the way back of a covering have a closed form.
-fn returns_known(pad: &Pad, compression: f64) -> bool {
-    let lossless = pad.covering.unloading.retained == 1.0;
-    let flat = matches!(pad.covering.shape, Shape::Flat { .. });
-    lossless || (flat && compression <= pad.bottom())
-}
-
 /// Where the compression turns: from the energy, or from the motion where the rate counts.
 fn turned(collision: &Collision<'_>) -> Option<Turn> {
     let (pad, region) = (collision.pad, collision.region);
-    let column = Column {
-        pad,
-        region,
-        largest_work: None,
-    };
     if pad.is_some_and(|pad| !pad.covering.rate.is_none()) {
         return turn_of(collision);
     }
@@ -182,6 +170,11 @@ fn turned(collision: &Collision<'_>) -> Option<Turn> {
     if !(compression > 0.0 && total.is_finite() && bounded) {
         return None;
     }
+    let column = Column {
+        pad,
+        region,
+        largest_work: None,
+    };
     let time = column.time(compression, mass, total / speed, collision.tolerance)?;
     let top = |value: f64| Peak { value, time };
     Some(Turn {
@@ -201,13 +194,15 @@ fn turned(collision: &Collision<'_>) -> Option<Turn> {
 #[must_use]
 pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
     let (pad, region) = (collision.pad, collision.region);
-    if pad.is_some_and(|pad| pad.covering.damping > 0.0) {
+    let lossy = pad.is_some_and(|pad| pad.covering.unloading.retained < 1.0);
+    let rated = pad.is_some_and(|pad| !pad.covering.rate.is_none());
+    // What unloading returns has a closed form for a flat covering, as far as its bottom.
+    let known = |pad: &Pad| !lossy || matches!(pad.covering.shape, Shape::Flat { .. });
+    if pad.is_some_and(|pad| pad.covering.damping > 0.0 || !known(pad)) {
         return None;
     }
     let turn = turned(collision)?;
-    let lossy = pad.is_some_and(|pad| pad.covering.unloading.retained < 1.0);
-    let rated = pad.is_some_and(|pad| !pad.covering.rate.is_none());
-    if pad.is_some_and(|pad| !returns_known(pad, turn.compression)) {
+    if lossy && pad.is_some_and(|pad| turn.compression > pad.bottom()) {
         return None;
     }
     let (mass, speed) = (collision.reduced_mass(), collision.closing_speed);
