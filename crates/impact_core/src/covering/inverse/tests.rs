@@ -182,8 +182,8 @@ fn a_step_over_a_kink_is_not_the_last_one() {
     let pieces = [(0.1, 1.0, 0.1), (0.2, 1.01, 10.0), (kink, 4.01, steep)];
     let end = (kink + more, 4.01 + more * steep, last);
     let law = |x: f64| {
-        let pieces = pieces.into_iter().chain([end]);
-        let (from, value, slope) = pieces.filter(|(from, ..)| *from <= x).last().unwrap();
+        let mut pieces = pieces.into_iter().chain([end]);
+        let (from, value, slope) = pieces.rfind(|(from, ..)| *from <= x).unwrap();
         [value + slope * (x - from), slope]
     };
     let found = beyond(target, pieces[0], (end.0, f64::INFINITY), law);
