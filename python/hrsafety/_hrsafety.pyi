@@ -293,8 +293,7 @@ class Hunt:
     ) -> Self: ...
     def sweep(
         self,
-        property: str,
-        limit: float,
+        property: tuple[str, float],
         *,
         episodes: int,
         seed: int,
@@ -305,8 +304,7 @@ class Hunt:
 
     def worst(
         self,
-        property: str,
-        limit: float,
+        property: tuple[str, float],
         *,
         episodes: int,
         seed: int,

@@ -36,19 +36,21 @@ impl Hunt {
 }
 
 /// A property by its word and its limit.
-fn property_of(word: &str, limit: f64) -> PyResult<search::Property> {
-    match word {
-        "at_fault" => Ok(search::Property::NotAtFault),
-        "clearance" => Ok(search::Property::Clearance(limit)),
-        "arrival" => Ok(search::Property::Arrival),
-        "speed" => Ok(search::Property::Speed(limit)),
-        _ => {
-            let rule = "be one of \"at_fault\", \"clearance\", \"arrival\", \"speed\"";
-            Err(InvalidParameterError::new_err((
-                "property",
-                rule,
-                word.to_owned(),
-            )))
+#[derive(FromPyObject)]
+struct Limited(String, f64);
+
+impl Limited {
+    fn property(self) -> PyResult<search::Property> {
+        let Self(word, limit) = self;
+        match word.as_str() {
+            "at_fault" => Ok(search::Property::NotAtFault),
+            "clearance" => Ok(search::Property::Clearance(limit)),
+            "arrival" => Ok(search::Property::Arrival),
+            "speed" => Ok(search::Property::Speed(limit)),
+            _ => {
+                let rule = "be one of \"at_fault\", \"clearance\", \"arrival\", \"speed\"";
+                Err(InvalidParameterError::new_err(("property", rule, word)))
+            }
         }
     }
 }
@@ -92,19 +94,17 @@ impl Hunt {
     }
 
     /// Columns of episodes against random pursuers.
-    #[pyo3(signature = (property, limit, *, episodes, seed, threads, progress))]
-    #[allow(clippy::too_many_arguments)] // each by name
+    #[pyo3(signature = (property, *, episodes, seed, threads, progress))]
     fn sweep<'py>(
         &self,
         py: Python<'py>,
-        property: &str,
-        limit: f64,
+        property: Limited,
         episodes: usize,
         seed: u64,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let property = property_of(property, limit)?;
+        let property = property.property()?;
         let law = self.law.get();
         let report = Report::new(progress.as_ref(), episodes);
         let found = watched_law(py, (law, threads), report, |control| {
@@ -119,19 +119,17 @@ impl Hunt {
     }
 
     /// Numbers of the worst pursuer that CMA-ES finds, and the margin against him.
-    #[pyo3(signature = (property, limit, *, episodes, seed, threads, progress))]
-    #[allow(clippy::too_many_arguments)] // each by name
+    #[pyo3(signature = (property, *, episodes, seed, threads, progress))]
     fn worst(
         &self,
         py: Python<'_>,
-        property: &str,
-        limit: f64,
+        property: Limited,
         episodes: usize,
         seed: u64,
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<f64>, f64)> {
-        let property = property_of(property, limit)?;
+        let property = property.property()?;
         let law = self.law.get();
         let report = Report::new(progress.as_ref(), episodes);
         let found = watched_law(py, (law, threads), report, |control| {

@@ -230,14 +230,14 @@ def falsify(
     if callable(property):
         found, worst = _own(hunt, property, runs, start, heard)
     elif how == "cma_es":
-        numbers, margin = hunt.worst(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
+        numbers, margin = hunt.worst((kind, limit), episodes=runs, seed=start, threads=team, progress=heard)
         if math.isnan(margin):
             raise SimulationError("the search for the worst person has no result")
         worst = _pursuit(hunt.replay(seed=start, index=0, numbers=numbers))
         values = (margin, worst.min_clearance, worst.arrival_time, worst.end_time)
         found = {name: np.array([value]) for name, value in zip(COLUMNS, values, strict=True)}
     else:
-        columns = hunt.sweep(kind, limit, episodes=runs, seed=start, threads=team, progress=heard)
+        columns = hunt.sweep((kind, limit), episodes=runs, seed=start, threads=team, progress=heard)
         swept = cast(Mapping[str, Array], columns)
         found = {name: swept[name] for name in COLUMNS}
         worst = _pursuit(hunt.replay(seed=start, index=int(np.argmin(found["margin"])), numbers=None))
