@@ -2137,6 +2137,7 @@ def contact_exceedance(
     draws: int,
     seed: int,
     threads: int | None,
+    progress: Callable[[int, int], object] | None,
 ) -> dict[str, Any]: ...
 def contact_holonomic_mass(
     *, mass: float, inertia: float, point: tuple[float, float], direction: tuple[float, float]

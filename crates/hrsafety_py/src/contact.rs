@@ -284,7 +284,7 @@ pub fn contact_column(
 
 /// Chance that a speed is not allowed: share, ends of its interval, quantiles of the allowed speed, count.
 #[pyfunction]
-#[pyo3(signature = (shared, numbers, inputs, *, speed, draws, seed, threads))]
+#[pyo3(signature = (shared, numbers, inputs, *, speed, draws, seed, threads, progress))]
 #[allow(clippy::too_many_arguments)] // the names of Python's keywords
 pub fn contact_exceedance(
     py: Python<'_>,
@@ -295,6 +295,7 @@ pub fn contact_exceedance(
     draws: usize,
     seed: u64,
     threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
     let setup = shared.setup()?;
     let row = single(numbers)?;
@@ -304,16 +305,14 @@ pub fn contact_exceedance(
         let place = place.ok_or_else(|| unknown("inputs", name))?;
         uncertain.push((place, distribution(name, kind, values)?));
     }
-    let found = watched(py, Report::none(), |control: &Control<'_>| {
-        let interrupted = || control.interrupted();
-        exceedance(
-            &setup,
-            &row,
-            &uncertain,
-            speed,
-            (draws, seed, threads),
-            &interrupted,
-        )
+    let report = Report::new(progress.as_ref(), draws);
+    let found = watched(py, report, |control: &Control<'_>| {
+        let work = Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|more| control.count(more),
+        };
+        exceedance(&setup, &row, &uncertain, speed, (draws, seed), work)
     })?;
     let fields = Fields::new(py);
     fields.value("probability", found.probability)?;

@@ -136,8 +136,8 @@ fn main() {
             &row(GIBSON),
             &uncertain,
             0.5,
-            (1_000_000, 1, Some(1)),
-            &never,
+            (1_000_000, 1),
+            alone,
         ));
     });
 }

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import checked_seed, count, number, positive, thread_count, word
+from hrsafety._arguments import callback, checked_seed, count, number, positive, thread_count, word
 from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, implausible_numbers, not_checked
@@ -73,6 +73,7 @@ def probability(
     draws: int = 100_000,
     seed: int = 0,
     threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
     **uncertain: float | Mapping[str, object],
 ) -> Exceedance:
     """Return the chance that a closing speed is not allowed.
@@ -95,6 +96,8 @@ def probability(
         The same seed gives the same bits for any number of threads.
     threads : int or None
         Number of threads; all cores when ``None``.
+    progress : callable or None
+        Called now and then as ``progress(done, total)`` with numbers of draws.
     **uncertain : float or mapping
         Numbers by name, as for `allowed_speeds`: ``stiffness``, ``force_limit``, ``thickness``, ...
 
@@ -155,6 +158,7 @@ def probability(
         draws=count("draws", draws, most=MOST_DRAWS),
         seed=checked_seed("seed", seed),
         threads=thread_count(threads),
+        progress=callback("progress", progress),
     )
     found |= {name: tuple(found[name]) for name in ("interval", "quantiles")}
     doubts = (*not_checked(missing), *implausible_numbers(pad, str(shared["region"]), values))

@@ -22,7 +22,7 @@ LONG: tuple[Callable[..., Any], ...] = (
     *(nav.simulate_many, nav.simulate_batch, nav.compare, nav.optimize_gains, nav.gain_sensitivity),
     *(nav.gains.pareto_front, nav.metrics.falsify, nav.metrics.evaluate_many, nav.crowd.simulate_crowds),
     *(nav.tracking.track_batch, nav.sensing.calibration_study, nav.robots.open_loop_tests),
-    *(impact.metrics_batch, contact.batch, contact.allowed_speeds),
+    *(impact.metrics_batch, impact.identify_foam, contact.batch, contact.allowed_speeds, contact.probability),
     *(reactive.experiment, reactive.skirt_test, reactive.smallest_skirt, reactive.locate_batch),
     *(reactive.sound.jittered_fixes, arms.workspace, scenarios.crossings, sweep.run),
 )
@@ -52,6 +52,29 @@ def test_progress_counts_from_nothing_to_all(name: str) -> None:
     assert seen == [(0, 3), (1, 3), (2, 3), (3, 3)]
     with pytest.raises(InvalidParameterError, match="progress must be callable or None"):
         CALLS[name]("often")  # type: ignore[arg-type]  # on purpose
+
+
+def test_resamplings_and_draws_are_counted_to_all() -> None:
+    time, depth = np.arange(0.0, 0.3, 0.001), np.linspace(0.0, 0.01, 11)
+    drop = impact.identification.drop_trajectory(
+        time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
+    )
+    scattered = np.round(drop, 4)
+    chance: dict[str, Any] = {"speed": 0.2, "robot_mass": 4.0, "region": 75e3, "limits": {"force": 140.0}}
+    for told, call, total in (
+        ("bootstrap", lambda tell: impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, **tell), 20),
+        ("draws", lambda tell: contact.probability(**chance, body_mass={"lognormal": [1.0, 0.2]}, **tell), 5000),
+    ):
+        seen: list[tuple[int, int]] = []
+        alone = call({told: total})
+        heard = call({told: total, "progress": lambda done, of: seen.append((done, of))})
+        assert seen[-1] == (total, total)
+        assert seen == sorted(seen)
+        assert repr(heard) == repr(alone)
+        with pytest.raises(InvalidParameterError, match="progress must be callable or None"):
+            call({told: total, "progress": "often"})
+    # Nothing is counted where nothing is resampled.
+    impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, progress=lambda *_: pytest.fail("told"))
 
 
 def test_workspace_in_blocks_is_that_in_one(monkeypatch: pytest.MonkeyPatch) -> None:

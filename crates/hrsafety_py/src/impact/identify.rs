@@ -3,6 +3,7 @@
 use impact_core::identify::{
     self, DriveConstants, Drop, DropContact, DropModel, FoamFitSettings, Tube,
 };
+use numeric::parallel::Work;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -48,6 +49,7 @@ pub fn identify_foam<'py>(
         bootstrap: given.take("bootstrap")?,
         seed: given.take("seed")?,
     };
+    let progress: Option<Py<PyAny>> = given.take("progress")?;
     given.done()?;
     let mut signals = Vec::with_capacity(drops.len());
     for (time, position) in &drops {
@@ -57,9 +59,16 @@ pub fn identify_foam<'py>(
         });
     }
     let (force, compression) = (static_force.as_slice()?, static_compression.as_slice()?);
-    let fit = watched(py, Report::none(), |control| {
-        let interrupted = || control.interrupted();
-        identify::identify_foam_until(force, compression, &signals, &settings, &interrupted)
+    // A fit without resampling has nothing to count.
+    let told = progress.as_ref().filter(|_| settings.bootstrap > 0);
+    let report = Report::new(told, settings.bootstrap);
+    let fit = watched(py, report, |control| {
+        let work = Work {
+            threads: Some(1),
+            interrupted: &|| control.interrupted(),
+            progress: &|more| control.count(more),
+        };
+        identify::identify_foam_until(force, compression, &signals, &settings, work)
     })?;
     let fields = Fields::new(py);
     fields.value("stiffness", fit.stiffness)?;

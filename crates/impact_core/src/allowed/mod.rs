@@ -12,6 +12,7 @@
 mod base;
 mod numeric;
 mod probability;
+mod quantile;
 mod row;
 mod rows;
 #[cfg(test)]

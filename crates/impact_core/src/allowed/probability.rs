@@ -1,9 +1,11 @@
 //! Chance that a speed is not allowed where inputs are uncertain.
 
+use numeric::parallel::Work;
 use numeric::random::Stream;
-use numeric::threads::{Interrupted, map, on_threads};
+use numeric::threads::{map, on_threads};
 
 use super::Governs;
+use super::quantile::quantiles;
 use super::row::{Row, Setup, is_of_law};
 use crate::error::{Failure, Given, Result, at_most, finite, positive};
 
@@ -151,14 +153,15 @@ pub fn exceedance(
     row: &Row,
     inputs: &[(usize, Distribution)],
     speed: f64,
-    (draws, seed, threads): (usize, u64, Option<usize>),
-    interrupted: Interrupted<'_>,
+    (draws, seed): (usize, u64),
+    work: Work<'_>,
 ) -> Result<Probability> {
     at_most("draws", draws, MOST_DRAWS)?;
     let block = |index: usize| -> Result<Vec<f64>> {
-        if interrupted() {
+        if (work.interrupted)() {
             return Err(Failure::Interrupted);
         }
+        let count = BLOCK.min(draws - index * BLOCK);
         let mut stream = Stream::new(seed, index as u64);
         let mut spare = None;
         let mut row = *row;
@@ -167,7 +170,7 @@ pub fn exceedance(
         } else {
             setup.material(&row)?
         };
-        (0..BLOCK.min(draws - index * BLOCK))
+        let speeds = (0..count)
             .map(|_| {
                 for (place, distribution) in inputs {
                     row.0[*place] = distribution.draw(&mut stream, &mut spare);
@@ -178,14 +181,16 @@ pub fn exceedance(
                 }
                 Ok(found.speed)
             })
-            .collect()
+            .collect();
+        (work.progress)(count);
+        speeds
     };
     let mut speeds: Vec<f64> = Vec::with_capacity(draws);
-    for part in on_threads(threads, || Ok(map(draws.div_ceil(BLOCK), block)))? {
+    for part in on_threads(work.threads, || Ok(map(draws.div_ceil(BLOCK), block)))? {
         speeds.extend(part?);
     }
     let exceeded = speeds.iter().filter(|allowed| **allowed < speed).count();
-    let quantiles = [0.05, 0.5, 0.95].map(|share| quantile(&mut speeds, share));
+    let quantiles = quantiles(&speeds, [0.05, 0.5, 0.95], work.interrupted)?;
     Ok(Probability {
         probability: exceeded as f64 / draws as f64,
         interval: clopper_pearson(exceeded, draws),
@@ -193,21 +198,6 @@ pub fn exceedance(
         exceeded,
         draws,
     })
-}
-
-/// Value that a share of some numbers stays below, between neighbors by a line.
-fn quantile(values: &mut [f64], share: f64) -> f64 {
-    let place = share * (values.len() - 1) as f64;
-    // Within the length.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let index = place.floor() as usize;
-    let (_, at, above) = values.select_nth_unstable_by(index, f64::total_cmp);
-    let next = above.iter().copied().fold(f64::INFINITY, f64::min);
-    if next.is_finite() {
-        *at + (place - index as f64) * (next - *at)
-    } else {
-        *at
-    }
 }
 
 /// 95 % interval of a share after Clopper and Pearson (1934).

@@ -12,7 +12,7 @@ use crate::error::{Failure, Given, Result, positive};
 use crate::parameters::GRAVITY;
 use crate::signal::check_time;
 use measured::Tests;
-use numeric::threads::Interrupted;
+use numeric::parallel::Work;
 
 /// Deviation of the positions before it is known, in m.
 const FIRST_DEVIATION: f64 = 1e-4;
@@ -115,10 +115,16 @@ pub fn identify_foam(
     drops: &[Drop<'_>],
     settings: &FoamFitSettings,
 ) -> Result<FoamFit> {
-    identify_foam_until(static_force, static_compression, drops, settings, &|| false)
+    let work = Work {
+        threads: Some(1),
+        interrupted: &|| false,
+        progress: &|_| (),
+    };
+    identify_foam_until(static_force, static_compression, drops, settings, work)
 }
 
-/// The same unless the caller asks to stop, which is looked at between the repeats of the bootstrap.
+/// The same unless the caller asks to stop, which is looked at between the repeats of the bootstrap; each of them is
+/// progress.
 ///
 /// # Errors
 /// Also that the caller asked to stop.
@@ -127,7 +133,7 @@ pub fn identify_foam_until(
     static_compression: &[f64],
     drops: &[Drop<'_>],
     settings: &FoamFitSettings,
-    interrupted: Interrupted<'_>,
+    work: Work<'_>,
 ) -> Result<FoamFit> {
     positive("moving_mass", settings.moving_mass)?;
     positive("gravity", settings.gravity)?;
@@ -150,7 +156,7 @@ pub fn identify_foam_until(
         settings: *settings,
         force_deviation: line.residual_deviation.max(f64::EPSILON * line.slope),
         position_deviation: FIRST_DEVIATION,
-        interrupted,
+        interrupted: work.interrupted,
     };
     let first = tests.first_bounce();
     let start = first.minimize(first.start(line.slope))?.parameters;
@@ -162,7 +168,7 @@ pub fn identify_foam_until(
     let covariance = tests.covariance(&found);
     let interval = tests.interval(&found.parameters, &covariance)?;
     let bootstrap_interval = (settings.bootstrap > 0)
-        .then(|| tests.bootstrap(&found, interrupted))
+        .then(|| tests.bootstrap(&found, work))
         .transpose()?;
     Ok(FoamFit {
         stiffness: found.parameters[0],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_seed, columns, count, flag, number, vector, word
+from hrsafety._arguments import Array, callback, checked_seed, columns, count, flag, number, vector, word
 from hrsafety._bounds import MOST_RESAMPLES, MOST_SWINGS
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -231,6 +231,7 @@ def identify_foam(
     contact: Contact = "unilateral",
     bootstrap: int = 0,
     seed: int = 0,
+    progress: Callable[[int, int], object] | None = None,
 ) -> FoamFit:
     """Return stiffness, damping ratio and friction of a foam from static and drop tests.
 
@@ -258,6 +259,8 @@ def identify_foam(
         Number of resamplings for `FoamFit.bootstrap_interval`; 0 for none.
     seed : int
         Seed of the resampling.
+    progress : callable or None
+        Called now and then as ``progress(done, total)`` with numbers of resamplings.
 
     Returns
     -------
@@ -309,6 +312,7 @@ def identify_foam(
             attached=word("contact", contact, _CONTACTS) == "attached",
             bootstrap=count("bootstrap", bootstrap, least=0, most=MOST_RESAMPLES),
             seed=checked_seed("seed", seed),
+            progress=callback("progress", progress),
         )
     except InvalidParameterError as error:
         # What made the fit fail is most often a unit.

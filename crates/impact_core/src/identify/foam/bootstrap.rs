@@ -5,23 +5,19 @@ use numeric::random::Stream;
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
 use crate::error::{Failure, Result};
-use numeric::threads::Interrupted;
+use numeric::parallel::Work;
 
 /// Residuals that the bootstrap keeps together: rounding repeats itself while the slide is slow.
 const RUN: usize = 8;
 
 impl Tests<'_> {
     /// Percentile intervals of refits to the fitted curves with resampled residuals.
-    pub(super) fn bootstrap(
-        &self,
-        found: &Minimum,
-        interrupted: Interrupted<'_>,
-    ) -> Result<[[f64; 2]; 3]> {
+    pub(super) fn bootstrap(&self, found: &Minimum, work: Work<'_>) -> Result<[[f64; 2]; 3]> {
         let repeats = self.settings.bootstrap;
         let mut values = [0, 1, 2].map(|_| Vec::with_capacity(repeats));
         let mut stream = Stream::new(self.settings.seed, 0);
         for repeat in 0..repeats {
-            if interrupted() {
+            if (work.interrupted)() {
                 return Err(Failure::Interrupted);
             }
             stream.set_stream(repeat as u64);
@@ -31,6 +27,7 @@ impl Tests<'_> {
             for (values, value) in values.iter_mut().zip(&refit.parameters) {
                 values.push(*value);
             }
+            (work.progress)(1);
         }
         let outside = 0.5 * (1.0 - self.settings.confidence);
         Ok(values.map(|mut values| {
