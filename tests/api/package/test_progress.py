@@ -61,18 +61,18 @@ def test_resamplings_and_draws_are_counted_to_all() -> None:
     )
     scattered = np.round(drop, 4)
     chance: dict[str, Any] = {"speed": 0.2, "robot_mass": 4.0, "region": 75e3, "limits": {"force": 140.0}}
-    for told, call, total in (
-        ("bootstrap", lambda tell: impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, **tell), 20),
-        ("draws", lambda tell: contact.probability(**chance, body_mass={"lognormal": [1.0, 0.2]}, **tell), 5000),
-    ):
-        seen: list[tuple[int, int]] = []
-        alone = call({told: total})
-        heard = call({told: total, "progress": lambda done, of: seen.append((done, of))})
-        assert seen[-1] == (total, total)
+    calls: dict[str, tuple[Callable[..., Any], int]] = {
+        "bootstrap": (lambda **told: impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, **told), 20),
+        "draws": (lambda **told: contact.probability(**chance, body_mass={"lognormal": [1.0, 0.2]}, **told), 5000),
+    }
+    for name, (call, total) in calls.items():
+        seen: list[int] = []
+        heard = call(**{name: total}, progress=lambda done, of, seen=seen: seen.append(done if of > 0 else -1))
+        assert seen[-1] == total
         assert seen == sorted(seen)
-        assert repr(heard) == repr(alone)
+        assert repr(heard) == repr(call(**{name: total}))
         with pytest.raises(InvalidParameterError, match="progress must be callable or None"):
-            call({told: total, "progress": "often"})
+            call(**{name: total}, progress="often")
     # Nothing is counted where nothing is resampled.
     impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, progress=lambda *_: pytest.fail("told"))
 

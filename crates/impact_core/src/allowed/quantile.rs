@@ -6,8 +6,8 @@ use crate::error::{Failure, Result};
 
 /// Numbers between two questions whether to stop.
 const PIECE: usize = 1 << 18;
-/// Upper bits by which numbers are counted: sign, exponent and eight bits of the fraction.
-const BITS: u32 = 20;
+/// Upper bits by which numbers are counted: sign, exponent and four bits of the fraction.
+const BITS: u32 = 16;
 
 /// Values that shares of some numbers stay below, between neighbors by a line.
 ///
@@ -58,7 +58,7 @@ fn rising(value: f64) -> u64 {
 }
 
 /// The class that a number is counted in.
-#[allow(clippy::cast_possible_truncation)] // of 20 bits
+#[allow(clippy::cast_possible_truncation)] // of 16 bits
 fn class(value: f64) -> usize {
     (rising(value) >> (64 - BITS)) as usize
 }
