@@ -45,26 +45,59 @@ const RESULT: [(usize, [f64; 3]); 8] = [
     (11, [0.04471061572777259, 0.02265179219836082, -0.022355307863886294]),
 ];
 
-/// Steps between evaluations of the rates.
+/// Evaluations of the rates in a step.
 pub const EVALUATIONS: usize = 11;
 
-/// State after a step of some length, and its error over the scales.
+/// Nodes of three more stages, after the end of a step, and their weights, for what is within it.
+const INNER_NODES: [f64; 3] = [0.1, 0.2, 7.0 / 9.0];
+#[rustfmt::skip]
+#[allow(clippy::unreadable_literal)] // likewise
+const INNER_STAGES: [&[(usize, f64)]; 3] = [
+    &[(0, 0.056167502283047954), (6, 0.25350021021662483), (7, -0.2462390374708025), (8, -0.12419142326381637), (9, 0.15329179827876568), (10, 0.00820105229563469), (11, 0.007567897660545699), (12, -0.008298)],
+    &[(0, 0.03183464816350214), (5, 0.028300909672366776), (6, 0.053541988307438566), (7, -0.05492374857139099), (10, -0.00010834732869724932), (11, 0.0003825710908356584), (12, -0.00034046500868740456), (13, 0.1413124436746325)],
+    &[(0, -0.42889630158379194), (5, -4.697621415361164), (6, 7.683421196062599), (7, 4.06898981839711), (8, 0.3567271874552811), (12, -0.0013990241651590145), (13, 2.9475147891527724), (14, -9.15095847217987)],
+];
+/// Weights of the stages in the upper terms of the polynomial of order 7 within a step.
+#[rustfmt::skip]
+#[allow(clippy::unreadable_literal)] // likewise
+const INNER: [(usize, [f64; 4]); 12] = [
+    (0, [-8.428938276109013, 10.427508642579134, 19.985053242002433, -25.69393346270375]),
+    (5, [0.5667149535193777, 242.28349177525817, -387.0373087493518, -154.18974869023643]),
+    (6, [-3.0689499459498917, 165.20045171727028, -189.17813819516758, -231.5293791760455]),
+    (7, [2.38466765651207, -374.5467547226902, 527.8081592054236, 357.6391179106141]),
+    (8, [2.117034582445028, -22.113666853125306, -11.57390253995963, 93.40532418362432]),
+    (9, [-0.871391583777973, 7.733432668472264, 6.8812326946963, -37.45832313645163]),
+    (10, [2.2404374302607883, -30.674084731089398, -1.0006050966910838, 104.0996495089623]),
+    (11, [0.6315787787694688, -9.332130526430229, 0.7777137798053443, 29.8402934266605]),
+    (12, [-0.08899033645133331, 15.697238121770845, -2.778205752353508, -43.53345659001114]),
+    (13, [18.148505520854727, -31.139403219565178, -60.19669523126412, 96.32455395918828]),
+    (14, [-9.194632392478356, -9.35292435884448, 84.32040550667716, -39.17726167561544]),
+    (15, [-4.436036387594894, 35.81684148639408, 11.99229113618279, -149.72683625798564]),
+];
+
+/// A step that was taken.
+pub struct Step {
+    from: [f64; 2],
+    length: f64,
+    slopes: [[f64; 2]; 12],
+    /// State at its end.
+    pub state: [f64; 2],
+    /// Its error over the scales.
+    pub error: f64,
+}
+
+/// A step of some length.
 #[inline]
 pub fn step(
     rates: impl Fn(f64, [f64; 2]) -> [f64; 2],
     (at, state, first): (f64, [f64; 2], [f64; 2]),
     length: f64,
     scales: [f64; 2],
-) -> ([f64; 2], f64) {
+) -> Step {
     let mut slopes = [[0.0; 2]; 12];
     slopes[0] = first;
     for (index, (weights, node)) in STAGES.iter().zip(NODES).enumerate() {
-        let mut sum = [0.0; 2];
-        for &(place, weight) in *weights {
-            sum[0] += weight * slopes[place][0];
-            sum[1] += weight * slopes[place][1];
-        }
-        let inner = [state[0] + length * sum[0], state[1] + length * sum[1]];
+        let inner = moved(state, length, weights, &slopes);
         slopes[index + 1] = rates(at + node * length, inner);
     }
     let mut sums = [[0.0; 2]; 3];
@@ -86,15 +119,86 @@ pub fn step(
     } else {
         length.abs() * high / (high + 0.01 * low).sqrt()
     };
-    (
-        [state[0] + length * result[0], state[1] + length * result[1]],
+    Step {
+        from: state,
+        length,
+        slopes,
+        state: [state[0] + length * result[0], state[1] + length * result[1]],
         error,
-    )
+    }
+}
+
+/// A state moved along the slopes of some stages.
+#[inline]
+fn moved(state: [f64; 2], length: f64, weights: &[(usize, f64)], slopes: &[[f64; 2]]) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for &(place, weight) in weights {
+        sum[0] += weight * slopes[place][0];
+        sum[1] += weight * slopes[place][1];
+    }
+    [state[0] + length * sum[0], state[1] + length * sum[1]]
+}
+
+/// States within a step.
+pub struct Inside {
+    from: [f64; 2],
+    terms: [[f64; 2]; 7],
+}
+
+impl Inside {
+    /// Evaluations of the rates for it.
+    pub const EVALUATIONS: usize = INNER_NODES.len();
+
+    /// Of a step from some place with the rates at its end.
+    pub fn of(
+        rates: impl Fn(f64, [f64; 2]) -> [f64; 2],
+        at: f64,
+        step: &Step,
+        last: [f64; 2],
+    ) -> Self {
+        let Step {
+            from,
+            length,
+            state,
+            ..
+        } = *step;
+        let mut slopes = [[0.0; 2]; 16];
+        slopes[..12].copy_from_slice(&step.slopes);
+        slopes[12] = last;
+        for (index, (weights, node)) in INNER_STAGES.iter().zip(INNER_NODES).enumerate() {
+            let inner = moved(from, length, weights, &slopes);
+            slopes[13 + index] = rates(at + node * length, inner);
+        }
+        let mut terms = [[0.0; 2]; 7];
+        for entry in 0..2 {
+            let change = state[entry] - from[entry];
+            let ends = [slopes[0][entry], last[entry]].map(|slope| length * slope);
+            terms[0][entry] = change;
+            terms[1][entry] = ends[0] - change;
+            terms[2][entry] = 2.0 * change - (ends[1] + ends[0]);
+            for (place, weights) in INNER {
+                for (term, weight) in terms[3..].iter_mut().zip(weights) {
+                    term[entry] += length * weight * slopes[place][entry];
+                }
+            }
+        }
+        Self { from, terms }
+    }
+
+    /// State at a share of the step.
+    pub fn at(&self, share: f64) -> [f64; 2] {
+        let mut found = [0.0; 2];
+        for (index, term) in self.terms.iter().enumerate().rev() {
+            let factor = if index % 2 == 0 { share } else { 1.0 - share };
+            found = [(found[0] + term[0]) * factor, (found[1] + term[1]) * factor];
+        }
+        [self.from[0] + found[0], self.from[1] + found[1]]
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::step;
+    use super::{Inside, step};
 
     /// A quarter of a circle in steps of equal length.
     fn turned(count: u32) -> ([f64; 2], f64) {
@@ -103,9 +207,9 @@ mod tests {
         let (mut state, mut worst) = ([1.0, 0.0], 0.0_f64);
         for _ in 0..count {
             let first = rates(0.0, state);
-            let (next, error) = step(rates, (0.0, state, first), length, [1.0; 2]);
-            worst = worst.max(error);
-            state = next;
+            let taken = step(rates, (0.0, state, first), length, [1.0; 2]);
+            worst = worst.max(taken.error);
+            state = taken.state;
         }
         (state, worst)
     }
@@ -134,7 +238,29 @@ mod tests {
     #[test]
     fn a_right_side_of_the_variable_alone_is_integrated() {
         let rates = |x: f64, _: [f64; 2]| [8.0 * x.powi(7), 3.0 * x * x];
-        let (state, _) = step(rates, (0.0, [0.0; 2], [0.0; 2]), 1.0, [1.0; 2]);
+        let state = step(rates, (0.0, [0.0; 2], [0.0; 2]), 1.0, [1.0; 2]).state;
         assert!((state[0] - 1.0).abs() < 1e-13 && (state[1] - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn states_within_a_step_are_of_order_seven() {
+        let rates = |_, [x, y]: [f64; 2]| [-y, x];
+        let error = |length: f64| {
+            let from = [1.0, 0.0];
+            let taken = step(rates, (0.0, from, rates(0.0, from)), length, [1.0; 2]);
+            let inside = Inside::of(rates, 0.0, &taken, rates(length, taken.state));
+            assert_eq!(inside.at(0.0), from);
+            assert!((inside.at(1.0)[0] - taken.state[0]).abs() < 1e-15);
+            let off = |k: u32| {
+                let share = f64::from(k) / 8.0;
+                let [x, y] = inside.at(share);
+                let (sine, cosine) = (share * length).sin_cos();
+                (x - cosine).hypot(y - sine)
+            };
+            (1..8).map(off).fold(0.0, f64::max)
+        };
+        let order = (error(1.0) / error(0.5)).log2();
+        assert!((7.0..9.5).contains(&order), "{order}");
+        assert!(error(0.5) < 1e-8);
     }
 }

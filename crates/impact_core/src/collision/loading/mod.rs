@@ -20,7 +20,7 @@ use std::cell::Cell;
 
 pub use variable::smooth_power;
 
-use super::curve::{EVALUATIONS, step};
+use super::curve::{EVALUATIONS, Inside, Step, step};
 use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Pad, Shape};
@@ -74,7 +74,7 @@ struct Loading<'a> {
 }
 
 impl Loading<'_> {
-    fn walk(&self, variable: Variable, from: &Point, length: f64) -> ([f64; 2], f64) {
+    fn walk(&self, variable: Variable, from: &Point, length: f64) -> Step {
         // The end of a step is evaluated as well.
         self.evaluations
             .set(self.evaluations.get() + EVALUATIONS + 1);
@@ -85,6 +85,14 @@ impl Loading<'_> {
         };
         let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
         step(rates, (from.at, from.state, from.rates), length, scales)
+    }
+
+    /// States within a step from one point to the next.
+    fn inside(&self, variable: Variable, taken: &Step, [from, to]: [&Point; 2]) -> Inside {
+        self.evaluations
+            .set(self.evaluations.get() + Inside::EVALUATIONS);
+        let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
+        Inside::of(rates, from.at, taken, to.rates)
     }
 
     /// The same place of the plane over a variable.
@@ -133,8 +141,9 @@ impl Loading<'_> {
         while self.evaluations.get() < MOST_EVALUATIONS {
             self.choose(&mut now);
             let reach = self.reach(&now);
-            let (state, error) = self.walk(now.variable, &now.point, reach.length);
-            let growth = match self.judged(&now, &reach, state, error) {
+            let taken = self.walk(now.variable, &now.point, reach.length);
+            let state = taken.state;
+            let growth = match self.judged(&now, &reach, state, taken.error) {
                 Ok(growth) => growth,
                 Err(factor) => {
                     now.length = reach.length * factor;
@@ -153,7 +162,7 @@ impl Loading<'_> {
             if next.depth >= self.pad.bound() {
                 return None;
             }
-            self.offer(now.variable, [&now.point, &next], &mut tops);
+            self.offer((now.variable, &taken), [&now.point, &next], &mut tops);
             now.point = next;
             now.length = reach.length * growth;
             match reach.last {

@@ -3,6 +3,7 @@
 use super::Loading;
 use super::plane::Point;
 use super::variable::Variable;
+use crate::collision::curve::Step;
 use crate::roots::Peak;
 
 /// Most steps towards a top.
@@ -10,19 +11,26 @@ const MOST_TRIALS: usize = 12;
 
 impl Loading<'_> {
     /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
-    pub fn offer(&self, variable: Variable, ends: [&Point; 2], tops: &mut [Peak; 2]) {
+    pub fn offer(&self, over: (Variable, &Step), ends: [&Point; 2], tops: &mut [Peak; 2]) {
         let count = if self.curved { 2 } else { 1 };
         for (load, top) in tops.iter_mut().take(count).enumerate() {
-            self.offer_load(variable, ends, load, top);
+            self.offer_load(over, ends, load, top);
         }
     }
 
-    fn offer_load(&self, variable: Variable, [from, to]: [&Point; 2], load: usize, top: &mut Peak) {
+    fn offer_load(
+        &self,
+        (variable, taken): (Variable, &Step),
+        [from, to]: [&Point; 2],
+        load: usize,
+        top: &mut Peak,
+    ) {
         top.offer(to.loads[load][0], to.state[1]);
         if !(from.loads[load][1] > 0.0 && to.loads[load][1] < 0.0) {
             return;
         }
         let (mut low, mut high) = (*from, *to);
+        let inside = self.inside(variable, taken, [from, to]);
         let near = 0.01 * self.collision.tolerance.cbrt() * (to.at - from.at);
         let mut last: Option<Point> = None;
         for _ in 0..MOST_TRIALS {
@@ -43,7 +51,8 @@ impl Loading<'_> {
                 top.offer(value + 0.5 * rate * more, time);
                 return;
             }
-            let (state, _) = self.walk(variable, from, at - from.at);
+            self.evaluations.set(self.evaluations.get() + 1);
+            let state = inside.at((at - from.at) / (to.at - from.at));
             let found = self.point(variable, at, state);
             top.offer(found.loads[load][0], found.state[1]);
             if found.loads[load][1] > 0.0 {
