@@ -78,7 +78,8 @@ const INNER: [(usize, [f64; 4]); 12] = [
 /// A step that was taken.
 pub struct Step {
     from: [f64; 2],
-    length: f64,
+    /// Its length.
+    pub length: f64,
     slopes: [[f64; 2]; 12],
     /// State at its end.
     pub state: [f64; 2],
@@ -185,14 +186,22 @@ impl Inside {
         Self { from, terms }
     }
 
-    /// State at a share of the step.
-    pub fn at(&self, share: f64) -> [f64; 2] {
-        let mut found = [0.0; 2];
+    /// State at a share of the step, and its rates over the share.
+    pub fn at(&self, share: f64) -> [[f64; 2]; 2] {
+        let (mut moved, mut rates) = ([0.0; 2], [0.0; 2]);
         for (index, term) in self.terms.iter().enumerate().rev() {
-            let factor = if index % 2 == 0 { share } else { 1.0 - share };
-            found = [(found[0] + term[0]) * factor, (found[1] + term[1]) * factor];
+            let (factor, change) = if index % 2 == 0 {
+                (share, 1.0)
+            } else {
+                (1.0 - share, -1.0)
+            };
+            for entry in 0..2 {
+                let sum = moved[entry] + term[entry];
+                rates[entry] = rates[entry] * factor + sum * change;
+                moved[entry] = sum * factor;
+            }
         }
-        [self.from[0] + found[0], self.from[1] + found[1]]
+        [[self.from[0] + moved[0], self.from[1] + moved[1]], rates]
     }
 }
 
@@ -249,13 +258,17 @@ mod tests {
             let from = [1.0, 0.0];
             let taken = step(rates, (0.0, from, rates(0.0, from)), length, [1.0; 2]);
             let inside = Inside::of(rates, 0.0, &taken, rates(length, taken.state));
-            assert_eq!(inside.at(0.0), from);
-            assert!((inside.at(1.0)[0] - taken.state[0]).abs() < 1e-15);
+            assert_eq!(inside.at(0.0)[0], from);
+            assert!((inside.at(1.0)[0][0] - taken.state[0]).abs() < 1e-15);
+            assert!((inside.at(1.0)[1][0] + length * taken.state[1]).abs() < 1e-15);
             let off = |k: u32| {
                 let share = f64::from(k) / 8.0;
-                let [x, y] = inside.at(share);
+                let [[x, y], [over_x, over_y]] = inside.at(share);
                 let (sine, cosine) = (share * length).sin_cos();
-                (x - cosine).hypot(y - sine)
+                let defect = (over_x + length * y).hypot(over_y - length * x);
+                let error = (x - cosine).hypot(y - sine);
+                assert!(error < 2.0 * defect, "{defect:e} {error:e}");
+                error
             };
             (1..8).map(off).fold(0.0, f64::max)
         };

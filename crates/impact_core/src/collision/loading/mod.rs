@@ -78,13 +78,18 @@ impl Loading<'_> {
         // The end of a step is evaluated as well.
         self.evaluations
             .set(self.evaluations.get() + EVALUATIONS + 1);
-        let time = self.size / self.collision.closing_speed;
-        let scales = match variable {
-            Variable::Depth { .. } => [1.0, time],
-            Variable::Pace { .. } => [from.depth, time],
-        };
+        let scales = self.scales_of(variable, from);
         let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
         step(rates, (from.at, from.state, from.rates), length, scales)
+    }
+
+    /// Sizes of the state, for its errors.
+    fn scales_of(&self, variable: Variable, from: &Point) -> [f64; 2] {
+        let time = self.size / self.collision.closing_speed;
+        match variable {
+            Variable::Depth { .. } => [1.0, time],
+            Variable::Pace { .. } => [from.depth, time],
+        }
     }
 
     /// States within a step from one point to the next.

@@ -3,7 +3,7 @@
 use super::Loading;
 use super::plane::Point;
 use super::variable::Variable;
-use crate::collision::curve::Step;
+use crate::collision::curve::{Inside, Step};
 use crate::roots::Peak;
 
 /// Most steps towards a top.
@@ -51,9 +51,7 @@ impl Loading<'_> {
                 top.offer(value + 0.5 * rate * more, time);
                 return;
             }
-            self.evaluations.set(self.evaluations.get() + 1);
-            let state = inside.at((at - from.at) / (to.at - from.at));
-            let found = self.point(variable, at, state);
+            let found = self.tried(variable, (from, taken), &inside, at);
             top.offer(found.loads[load][0], found.state[1]);
             if found.loads[load][1] > 0.0 {
                 low = found;
@@ -62,6 +60,30 @@ impl Loading<'_> {
             }
             last = Some(found);
         }
+    }
+}
+
+impl Loading<'_> {
+    /// A point within a step: of its polynomial, if that keeps the rates there, else of a step of its own.
+    fn tried(
+        &self,
+        variable: Variable,
+        (from, taken): (&Point, &Step),
+        inside: &Inside,
+        at: f64,
+    ) -> Point {
+        self.evaluations.set(self.evaluations.get() + 1);
+        let [state, change] = inside.at((at - from.at) / taken.length);
+        let found = self.point(variable, at, state);
+        let scales = self.scales_of(variable, from);
+        let defect = |entry: usize| {
+            (change[entry] - taken.length * found.rates[entry]).abs() / scales[entry]
+        };
+        if defect(0).max(defect(1)) <= self.collision.tolerance {
+            return found;
+        }
+        let own = self.walk(variable, from, at - from.at);
+        self.point(variable, at, own.state)
     }
 }
 
