@@ -132,11 +132,15 @@ mod tests {
                 let found = quantiles(&values, shares, &|| false).unwrap();
                 values.sort_by(f64::total_cmp);
                 for (share, found) in shares.into_iter().zip(found) {
-                    let place = share * (count - 1) as f64;
-                    let below = place.floor();
-                    let [at, next] = [below, (below + 1.0).min((count - 1) as f64)]
-                        .map(|place| values[place as usize]);
-                    assert_eq!(found, at + (place - below) * (next - at));
+                    let place = share * f64::from(count - 1);
+                    // Of an index.
+                    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                    let index = place as usize;
+                    let next = values[(index + 1).min(values.len() - 1)];
+                    assert_eq!(
+                        found,
+                        values[index] + place.fract() * (next - values[index])
+                    );
                 }
             }
         }

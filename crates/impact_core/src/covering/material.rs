@@ -5,18 +5,14 @@
 
 use std::sync::Arc;
 
+use super::gibson_ashby::GibsonAshby;
+use super::powers::{MOST_EXPONENT, power, raised, within};
 use super::quadrature::unit_integral;
 use super::table::Table;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
-/// Largest exponent of a law: beyond it stresses are no numbers any more.
-const MOST_EXPONENT: f64 = 100.0;
-/// Largest whole exponent that is a product.
-const MOST_PRODUCTS: u32 = 8;
 /// Strains at which a law is asked whether it falls.
 const LOOKS: usize = 2000;
-/// Exponents as near to 1 as this, but not 1, lose digits in the closed form.
-const NEAR_ONE: f64 = 1e-3;
 
 /// Stress over strain.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,95 +52,6 @@ pub enum Material {
     Table(Arc<Table>),
 }
 
-/// `E e` up to `e_y = s_p/E`, the plateau `s_p` up to `e_p = e_D (1 - D^(-1/m))`, then
-/// `s_p/D (e_D/(e_D - e))^m`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GibsonAshby {
-    /// `E`, in Pa.
-    pub modulus: f64,
-    /// `s_p`, in Pa.
-    pub plateau: f64,
-    /// `e_D`.
-    pub lock: f64,
-    /// `D`.
-    pub d: f64,
-    /// `m`.
-    pub m: f64,
-    plateau_end: f64,
-    /// `s_p/D e_D^m (e_D - e_p)^(1-m)`, in Pa.
-    dense_scale: f64,
-}
-
-impl GibsonAshby {
-    /// Strain `e_y` at which the plateau starts.
-    #[must_use]
-    pub fn yield_strain(&self) -> f64 {
-        self.plateau / self.modulus
-    }
-
-    /// A law from its numbers: `E` and `s_p` in Pa, `e_D`, `D`, `m`.
-    #[must_use]
-    pub fn new([modulus, plateau, lock, d, m]: [f64; 5]) -> Self {
-        let share = if m == 1.0 { 1.0 / d } else { d.powf(-1.0 / m) };
-        let plateau_end = lock * (1.0 - share);
-        let first = lock - plateau_end;
-        let rest = if m == 1.0 { 1.0 } else { first.powf(1.0 - m) };
-        Self {
-            modulus,
-            plateau,
-            lock,
-            d,
-            m,
-            plateau_end,
-            dense_scale: plateau / d * raised(lock, m) * rest,
-        }
-    }
-
-    /// Strain `e_p` at which the plateau ends.
-    #[must_use]
-    pub fn plateau_end(&self) -> f64 {
-        self.plateau_end
-    }
-
-    /// Stress of densification, and its slope.
-    #[must_use]
-    pub fn dense(&self, strain: f64) -> [f64; 2] {
-        let left = self.lock - strain;
-        let stress = self.plateau / self.d * raised(self.lock / left, self.m);
-        [stress, self.m * stress / left]
-    }
-
-    /// Logarithm of the share that the strain has left of what was left at `e_p`.
-    fn length(&self, strain: f64) -> f64 {
-        ((self.lock - self.plateau_end) / (self.lock - strain)).ln()
-    }
-
-    /// Work above `e_p`, without what the strain before it adds.
-    fn dense_work(&self, strain: f64) -> f64 {
-        // With r = e_D - e = first exp(-l): int r^-m = first^(1-m) expm1((m-1) l)/(m-1).
-        self.dense_scale * growth(self.m - 1.0, self.length(strain))
-    }
-
-    /// Integral of the work above `e_p`, without what the strain before it adds.
-    fn dense_work_integral(&self, strain: f64) -> f64 {
-        let (m, length) = (self.m, self.length(strain));
-        let twice = if (m - 1.0).abs() < NEAR_ONE && m != 1.0 {
-            length * unit_integral(|y| growth(m - 1.0, y * length) * (-y * length).exp())
-        } else if m == 1.0 {
-            // int l exp(-l) = 1 - exp(-l) (1 + l).
-            -(-length).exp_m1() - length * (-length).exp()
-        } else {
-            (growth(m - 2.0, length) + (-length).exp_m1()) / (m - 1.0)
-        };
-        self.dense_scale * (self.lock - self.plateau_end) * twice
-    }
-}
-
-/// `expm1(a x)/a`, its limit `x` at `a = 0`.
-fn growth(a: f64, x: f64) -> f64 {
-    if a == 0.0 { x } else { (a * x).exp_m1() / a }
-}
-
 impl Material {
     /// The law if its numbers are possible and it does not fall before a strain.
     ///
@@ -153,7 +60,7 @@ impl Material {
     pub fn checked(self, until: f64) -> Result<Self> {
         match &self {
             Self::Linear { modulus } => drop(positive("modulus", *modulus)?),
-            Self::GibsonAshby(law) => check_gibson(law)?,
+            Self::GibsonAshby(law) => law.check()?,
             Self::Rusch { a, p, b, q } => check_rusch([*a, *p, *b, *q])?,
             Self::Avalle {
                 plateau,
@@ -274,7 +181,7 @@ impl Material {
         }
         match self {
             Self::Linear { modulus } => 0.5 * modulus * strain * strain,
-            Self::GibsonAshby(law) => gibson_work(law, strain),
+            Self::GibsonAshby(law) => law.work(strain),
             Self::Rusch { a, p, b, q } => {
                 strain
                     * (power(*a, *p, strain)[0] / (p + 1.0) + power(*b, *q, strain)[0] / (q + 1.0))
@@ -311,7 +218,7 @@ impl Material {
         let square = strain * strain;
         match self {
             Self::Linear { modulus } => modulus * square * strain / 6.0,
-            Self::GibsonAshby(law) => gibson_work_integral(law, strain),
+            Self::GibsonAshby(law) => law.work_integral(strain),
             Self::Rusch { a, p, b, q } => {
                 let part = |factor, exponent: f64| {
                     power(factor, exponent, strain)[0] / ((exponent + 1.0) * (exponent + 2.0))
@@ -367,114 +274,6 @@ impl Material {
             Self::Table(table) => table.end(),
         }
     }
-}
-
-/// `x^exponent`, without logarithms where the exponent is a whole number or a half more than one, up to 8.
-fn raised(x: f64, exponent: f64) -> f64 {
-    if exponent == 1.0 {
-        return x;
-    }
-    // Saturates; what is too large is no product.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let whole = exponent as u32;
-    let rest = exponent - f64::from(whole);
-    if whole > MOST_PRODUCTS || !(rest == 0.0 || rest == 0.5) {
-        return x.powf(exponent);
-    }
-    let product = product(x, whole);
-    if rest == 0.0 {
-        product
-    } else {
-        product * x.sqrt()
-    }
-}
-
-/// `x^count` by squares.
-fn product(x: f64, count: u32) -> f64 {
-    let (mut result, mut square, mut left) = (1.0, x, count);
-    while left > 0 {
-        if left % 2 == 1 {
-            result *= square;
-        }
-        square *= square;
-        left /= 2;
-    }
-    result
-}
-
-/// `factor x^exponent` and its slope.
-pub(super) fn power(factor: f64, exponent: f64, x: f64) -> [f64; 2] {
-    if factor == 0.0 {
-        return [0.0; 2];
-    }
-    if exponent == 1.0 {
-        return [factor * x, factor];
-    }
-    let value = factor * raised(x, exponent);
-    if x == 0.0 {
-        let slope = if exponent < 1.0 { f64::INFINITY } else { 0.0 };
-        return [value, slope];
-    }
-    [value, exponent * value / x]
-}
-
-/// Work and its integral up to the end of the plateau.
-fn gibson_works_before(law: &GibsonAshby, strain: f64) -> [f64; 2] {
-    let start = law.yield_strain();
-    let elastic = strain.min(start);
-    let mut once = 0.5 * law.modulus * elastic * elastic;
-    let mut twice = once * elastic / 3.0;
-    if strain > start {
-        let length = strain.min(law.plateau_end) - start;
-        twice += length * (once + 0.5 * law.plateau * length);
-        once += law.plateau * length;
-    }
-    [once, twice]
-}
-
-fn gibson_work(law: &GibsonAshby, strain: f64) -> f64 {
-    let [once, _] = gibson_works_before(law, strain);
-    if strain > law.plateau_end {
-        once + law.dense_work(strain)
-    } else {
-        once
-    }
-}
-
-fn gibson_work_integral(law: &GibsonAshby, strain: f64) -> f64 {
-    let [once, twice] = gibson_works_before(law, strain);
-    if strain > law.plateau_end {
-        twice + (once * (strain - law.plateau_end) + law.dense_work_integral(strain))
-    } else {
-        twice
-    }
-}
-
-fn within(name: &str, value: f64, most: f64) -> Result<f64> {
-    if value <= most {
-        Ok(value)
-    } else {
-        let rule = format!("be at most {most}");
-        Err(Failure::invalid(name, rule, Given::Number(value)))
-    }
-}
-
-fn check_gibson(law: &GibsonAshby) -> Result<()> {
-    positive("modulus", law.modulus)?;
-    positive("plateau", law.plateau)?;
-    positive("lock", law.lock)?;
-    within("lock", law.lock, 1.0)?;
-    within("m", positive("m", law.m)?, MOST_EXPONENT)?;
-    if finite("D", law.d)? <= 1.0 {
-        return Err(Failure::invalid("D", "be above 1", Given::Number(law.d)));
-    }
-    let (start, end) = (law.yield_strain(), law.plateau_end());
-    if start >= end {
-        let rule = format!("give a strain of yield plateau/modulus below the plateau's end {end}");
-        return Err(Failure::invalid("plateau", rule, Given::Number(start))
-            .mended_by("a lower plateau or a higher modulus"));
-    }
-    Ok(())
 }
 
 fn check_rusch([a, p, b, q]: [f64; 4]) -> Result<()> {

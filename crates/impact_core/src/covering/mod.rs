@@ -3,15 +3,18 @@
 //! Force at compression `d` is `F(d) R U`: the columns of the law over the contact with the backing that
 //! acts from `e_b T` on, a factor of the rate, and one of unloading.
 
+mod gibson_ashby;
 mod inverse;
 mod material;
+mod powers;
 mod quadrature;
 mod shape;
 mod table;
 #[cfg(test)]
 mod tests;
 
-pub use material::{GibsonAshby, Material};
+pub use gibson_ashby::GibsonAshby;
+pub use material::Material;
 pub use shape::Shape;
 pub use table::Table;
 

@@ -14,7 +14,8 @@
 
 use std::f64::consts::PI;
 
-use super::material::{Material, power};
+use super::material::Material;
+use super::powers::power;
 use super::quadrature::unit_integral;
 use crate::error::{Result, positive};
 
