@@ -15,6 +15,7 @@ mod probability;
 mod quantile;
 mod row;
 mod rows;
+mod setup;
 #[cfg(test)]
 mod tests;
 mod thickness;
@@ -24,8 +25,9 @@ pub use numeric::{SCANNED, numeric_speed};
 pub use probability::{
     Distribution, Interval, Probability, clopper_pearson, exceedance, normal_probability,
 };
-pub use row::{Kind, Law, NAMES, Outline, RegionKind, Row, Setup};
+pub use row::{Kind, Law, NAMES, Outline, RegionKind, Row};
 pub use rows::{BOTTOMED, Columns, Given, LOADS, RISING, collide_rows, speed_rows, thickness_rows};
+pub use setup::Setup;
 pub use thickness::{Thickness, ThicknessStatus, least_thickness};
 
 use crate::collision::{Region, reduced_mass};

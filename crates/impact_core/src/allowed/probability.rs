@@ -6,7 +6,8 @@ use numeric::threads::{map, on_threads};
 
 use super::Governs;
 use super::quantile::quantiles;
-use super::row::{Row, Setup, is_of_law};
+use super::row::{Row, is_of_law};
+use super::setup::Setup;
 use crate::error::{Failure, Given, Result, at_most, finite, positive};
 
 /// Draws of one stream.

@@ -2,16 +2,10 @@
 
 use std::sync::Arc;
 
-use numeric::threads::Interrupted;
-
-use super::{
-    Allowed, Contact, Limits, SpeedStatus, Stored, Thickness, least_thickness, numeric_speed,
-};
-use crate::collision::{Body, Collision, Outcome, Region, Stop, Wanted, simulate};
-use crate::covering::{
-    Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Table, Unloading,
-};
-use crate::error::{Failure, Given as Shown, Result, positive};
+use super::Limits;
+use crate::collision::{Body, Region};
+use crate::covering::{GibsonAshby, Material, Table};
+use crate::error::{Result, positive};
 
 /// Count of the numbers of a row.
 pub const COUNT: usize = 34;
@@ -147,34 +141,12 @@ pub(super) fn is_of_law(place: usize) -> bool {
 /// What energies and compressions at limits do not depend on.
 pub(super) const MASSES: [usize; 2] = [ROBOT_MASS, BODY_MASS];
 
-/// What is known of rows that differ in their masses only.
-#[derive(Clone, Debug)]
-pub struct Known {
-    pad: Option<Pad>,
-    /// Energy of the bare region at the force limit in J, NaN without one.
-    bare_energy: f64,
-    stored: Stored,
-    /// Whether the stored energy is all there is.
-    at_rest: bool,
-    area: Option<f64>,
-    limits: Limits,
-}
-
-/// How rows are made into contacts.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// What all rows share.
-    pub kind: Kind,
-    /// Relative tolerance of simulations.
-    pub tolerance: f64,
-}
-
-fn given(value: f64) -> Option<f64> {
+pub(super) fn given(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
 impl Row {
-    fn check_masses(&self) -> Result<()> {
+    pub(super) fn check_masses(&self) -> Result<()> {
         for place in MASSES {
             if self.0[place] != f64::INFINITY {
                 positive(CALLED[place], self.0[place])?;
@@ -183,7 +155,7 @@ impl Row {
         Ok(())
     }
 
-    fn limits(&self) -> Limits {
+    pub(super) fn limits(&self) -> Limits {
         Limits {
             force: given(self.0[FORCE_LIMIT]),
             pressure: given(self.0[PRESSURE_LIMIT]),
@@ -191,7 +163,7 @@ impl Row {
         }
     }
 
-    fn region(&self, kind: RegionKind) -> Result<Region> {
+    pub(super) fn region(&self, kind: RegionKind) -> Result<Region> {
         match kind {
             RegionKind::Rigid => Region::Rigid,
             RegionKind::Spring => Region::Spring {
@@ -206,7 +178,7 @@ impl Row {
         .checked()
     }
 
-    fn material(&self, law: &Law) -> Result<Material> {
+    pub(super) fn material(&self, law: &Law) -> Result<Material> {
         let number = |place: usize| self.0[FIRST_MATERIAL + place];
         let material = match law {
             Law::Linear => Material::Linear { modulus: number(0) },
@@ -238,241 +210,11 @@ impl Row {
             .map_err(|failure| failure.within("covering.material"))
     }
 
-    fn body(&self, [mass, damping, stiffness]: [usize; 3]) -> Body {
+    pub(super) fn body(&self, [mass, damping, stiffness]: [usize; 3]) -> Body {
         Body {
             mass: self.0[mass],
             damping: self.0[damping],
             stiffness: self.0[stiffness],
         }
-    }
-}
-
-impl Setup {
-    /// The law of a row, for rows that share its numbers.
-    ///
-    /// # Errors
-    /// A number of the law is out of its range.
-    pub fn material(&self, row: &Row) -> Result<Option<Material>> {
-        let law = self.kind.covering.as_ref();
-        law.map(|(law, _)| row.material(law)).transpose()
-    }
-
-    /// The covering of a row.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn pad(&self, row: &Row, fixed: Option<&Material>) -> Result<Option<Pad>> {
-        let Some((law, outline)) = &self.kind.covering else {
-            return Ok(None);
-        };
-        let number = |place: usize| row.0[place];
-        let covering = Covering {
-            material: match fixed {
-                Some(material) => material.clone(),
-                None => row.material(law)?,
-            },
-            thickness: number(THICKNESS),
-            shape: match outline {
-                Outline::Flat => Shape::Flat { area: number(AREA) },
-                Outline::Curved => Shape::Curved {
-                    radii: [
-                        number(RADIUS),
-                        given(number(SECOND_RADIUS)).unwrap_or(number(RADIUS)),
-                    ],
-                },
-                Outline::Cylinder => Shape::Cylinder {
-                    radius: number(RADIUS),
-                    length: number(LENGTH),
-                },
-            },
-            damping: number(DAMPING),
-            rate: Rate {
-                base: number(RATE_BASE),
-                slope: number(RATE_SLOPE),
-                reference: number(RATE_REFERENCE),
-            },
-            unloading: Unloading {
-                retained: number(RETAINED),
-                exponent: number(UNLOADING_EXPONENT),
-            },
-            bottoming: Bottoming {
-                strain: number(BOTTOMING),
-                stiffness: number(BACKING),
-            },
-        };
-        covering
-            .check_numbers()
-            .map_err(|failure| failure.within("covering"))?;
-        Ok(Some(Pad::new(covering)))
-    }
-
-    /// The collision of a row.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn collision<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Collision<'a>> {
-        let stop = given(row.0[STOP_TIME]).map(|time| Stop {
-            time,
-            deceleration: row.0[STOP_DECELERATION],
-        });
-        let collision = Collision {
-            robot: row.body([ROBOT_MASS, ROBOT_DAMPING, ROBOT_STIFFNESS]),
-            body: row.body([BODY_MASS, BODY_DAMPING, BODY_STIFFNESS]),
-            region: row.region(self.kind.region)?,
-            pad,
-            closing_speed: row.0[CLOSING_SPEED],
-            stop,
-            horizon: row.0[HORIZON],
-            tolerance: self.tolerance,
-        };
-        collision.check()?;
-        Ok(collision)
-    }
-
-    /// The contact of a row at rest.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn contact<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Contact<'a>> {
-        row.check_masses()?;
-        let region = row.region(self.kind.region)?;
-        if pad.is_none() && region == Region::Rigid {
-            let given = Shown::Found("none on a rigid region".into());
-            return Err(Failure::invalid(
-                "covering",
-                "be given, or the region yield",
-                given,
-            ));
-        }
-        let area = given(row.0[AREA]).filter(|_| pad.is_none());
-        if let Some(area) = area {
-            positive("area", area)?;
-        }
-        let limits = row.limits();
-        limits.check(pad)?;
-        Ok(Contact {
-            robot_mass: row.0[ROBOT_MASS],
-            body_mass: row.0[BODY_MASS],
-            region,
-            pad,
-            area,
-            limits,
-        })
-    }
-
-    /// Allowed speed of a row from the stored energy.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn closed_form(&self, row: &Row, fixed: Option<&Material>) -> Result<Allowed> {
-        let pad = self.pad(row, fixed)?;
-        Ok(self.contact(row, pad.as_ref())?.closed_form())
-    }
-
-    /// Allowed speed of a row: from the stored energy where that is exact, by simulation elsewhere; and that
-    /// at the force limit without the covering. What was known of a row that differs in its masses
-    /// only is used again.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn allowed(
-        &self,
-        row: &Row,
-        fixed: Option<&Material>,
-        known: &mut Option<Known>,
-        interrupted: Interrupted<'_>,
-    ) -> Result<(Allowed, f64)> {
-        let known = match known {
-            Some(known) => {
-                row.check_masses()?;
-                known
-            }
-            None => known.insert(self.known(row, fixed)?),
-        };
-        let mass = crate::collision::reduced_mass(row.0[ROBOT_MASS], row.0[BODY_MASS]);
-        let bare = (2.0 * known.bare_energy / mass).sqrt();
-        let closed = known.stored.allowed(mass);
-        if known.at_rest || closed.status == SpeedStatus::UnboundedMass {
-            return Ok((closed, bare));
-        }
-        let moving = Row({
-            let mut numbers = row.0;
-            numbers[CLOSING_SPEED] = 1.0;
-            numbers
-        });
-        let collision = self.collision(&moving, known.pad.as_ref())?;
-        let limited = (&known.limits, known.area);
-        let found = numeric_speed(&collision, limited, closed.speed, interrupted);
-        Ok((found, bare))
-    }
-
-    /// What does not depend on the masses of a row.
-    fn known(&self, row: &Row, fixed: Option<&Material>) -> Result<Known> {
-        let pad = self.pad(row, fixed)?;
-        let contact = self.contact(row, pad.as_ref())?;
-        let bare_energy = match row.0[FORCE_LIMIT] {
-            force if contact.region == Region::Rigid || force.is_nan() => f64::NAN,
-            force => contact.region.work(force),
-        };
-        let elastic = pad
-            .as_ref()
-            .is_none_or(|pad| pad.covering.damping == 0.0 && pad.covering.rate.is_none());
-        let held = [ROBOT_DAMPING, ROBOT_STIFFNESS, BODY_DAMPING, BODY_STIFFNESS];
-        let free = held.iter().all(|place| row.0[*place] == 0.0) && row.0[STOP_TIME].is_nan();
-        Ok(Known {
-            bare_energy,
-            stored: contact.stored(),
-            at_rest: elastic && free,
-            area: contact.area,
-            limits: contact.limits,
-            pad,
-        })
-    }
-
-    /// Least thickness for the closing speed of a row.
-    ///
-    /// # Errors
-    /// A number is out of its range, there is no covering, or it has a damper or a rate.
-    pub fn thickness(&self, row: &Row, fixed: Option<&Material>) -> Result<Thickness> {
-        let missing = || {
-            let given = Shown::Found("none".into());
-            Failure::invalid("covering", "be given", given)
-        };
-        let pad = self.pad(row, fixed)?.ok_or_else(missing)?;
-        if pad.covering.damping > 0.0 || !pad.covering.rate.is_none() {
-            let rule = "have neither damping nor rate: a least thickness is from stored energy";
-            return Err(Failure::invalid(
-                "covering",
-                rule,
-                Shown::Number(pad.covering.damping),
-            ));
-        }
-        let speed = positive("closing_speed", row.0[CLOSING_SPEED])?;
-        let contact = self.contact(row, Some(&pad))?;
-        Ok(least_thickness(&contact, &pad, speed))
-    }
-
-    /// Loads of a row.
-    ///
-    /// # Errors
-    /// A number is out of its range.
-    pub fn collide(
-        &self,
-        row: &Row,
-        fixed: Option<&Material>,
-        wanted: Wanted,
-        interrupted: Interrupted<'_>,
-    ) -> Result<Outcome> {
-        let pad = self.pad(row, fixed)?;
-        let collision = self.collision(row, pad.as_ref())?;
-        if collision.reduced_mass().is_infinite() {
-            let rule = "be finite against a clamped body";
-            return Err(Failure::invalid(
-                "robot_mass",
-                rule,
-                Shown::Number(f64::INFINITY),
-            ));
-        }
-        Ok(simulate(&collision, wanted, interrupted))
     }
 }

@@ -3,9 +3,8 @@
 use numeric::parallel::Work;
 use numeric::threads::{on_threads, try_each};
 
-use super::row::{
-    CALLED, COUNT, FIRST_MATERIAL, Known, MASSES, NAMES, OPTIONAL, Row, Setup, is_of_law,
-};
+use super::row::{CALLED, COUNT, FIRST_MATERIAL, MASSES, NAMES, OPTIONAL, Row, is_of_law};
+use super::setup::{Known, Setup};
 use super::{Governs, SpeedStatus, ThicknessStatus};
 use crate::collision::{Status, Wanted};
 use crate::columns::Column;

@@ -1,9 +1,10 @@
 //! Windows of impacts whose acceleration has two humps or a shelf: several may be the best.
 
 use super::apart::apart;
+use super::arithmetic::{Each, MapWith};
 use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
-use super::{Each, MAX_STEPS, MapWith, Solved};
+use super::{MAX_STEPS, Solved};
 use crate::metrics::INJURY_WINDOWS;
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;

@@ -1,9 +1,10 @@
 //! Maxima of quantities over the impact, impacts side by side.
 
 use super::apart::apart;
+use super::arithmetic::{MapWith, product, third_order};
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
-use super::{GroupPeaks, MAX_STEPS, MapWith, Solved, product, third_order};
+use super::{GroupPeaks, MAX_STEPS, Solved};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 

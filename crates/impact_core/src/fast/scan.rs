@@ -1,6 +1,6 @@
 //! A walk along the response that notes where signs change.
 
-use super::Each;
+use super::arithmetic::Each;
 use numeric::lanes::{Mask, Real};
 
 /// A piece of time with the values and slopes of a function at both of its ends.

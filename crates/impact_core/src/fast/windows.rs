@@ -1,8 +1,9 @@
 //! Criteria of moving windows, impacts side by side.
 
 use super::apart::apart;
+use super::arithmetic::{Each, MapWith, third_order};
 use super::modes::{Basis, Wave};
-use super::{Each, MAX_STEPS, MapWith, Solved, third_order};
+use super::{MAX_STEPS, Solved};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
