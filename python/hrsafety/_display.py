@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from hrsafety._records import generates
+
 __all__ = ["displayed", "fields_with_units"]
 
 Kind = TypeVar("Kind")
@@ -55,8 +57,7 @@ def displayed(kind: type[Kind]) -> type[Kind]:
     """
     changed: Any = kind
     changed._repr_html_ = _html
-    text: Any = kind.__repr__
-    made = hasattr(text, "__wrapped__") or text.__module__ == "collections"
+    made = generates(kind, "__repr__") or changed.__repr__.__module__ == "collections"
     annotations = " ".join(str(each) for each in getattr(kind, "__annotations__", {}).values())
     long = re.search(r"Array|Trajectory|Mapping|tuple\[\w+, \.\.\.\]", annotations)
     if made and (long or hasattr(kind, "warnings")):

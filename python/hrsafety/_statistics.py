@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from hrsafety._arguments import checked_seed, vector
 from hrsafety._arguments import count as whole
 from hrsafety._bounds import MOST_RESAMPLES
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Mean", "Paired", "Share", "compare_paired", "mean_interval", "wilson"]

@@ -9,10 +9,12 @@ and picture shows. Nothing is refused here and nothing is changed.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+
+from hrsafety._records import dataclass
 
 __all__ = ["RANGES", "Range", "ResultWarning", "gathered", "implausible"]
 

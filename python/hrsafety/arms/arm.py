@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib import resources
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, count, flag, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
+from hrsafety._records import dataclass
 from hrsafety.arms.facts import Facts
 from hrsafety.arms.inputs import armature_of, broadcast, locked_of, motors_of, poses_of, urdf_text, vectors_of
 from hrsafety.arms.masses import RULES, Extremes, PointMasses, mass_by_rule

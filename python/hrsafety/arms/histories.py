@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, vector, word
+from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.inputs import poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["NO_MOTOR_INERTIA", "RULES", "Extremes", "PointMasses", "mass_by_rule"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, meant, number
 from hrsafety._bounds import MOST_POINT_STATES
+from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.histories import plane_of
 from hrsafety.arms.inputs import vectors_of

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from hrsafety import navigation as nav
+from hrsafety._records import dataclass
 from hrsafety.benchmarks.entries import Entry
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.run_table import RunTable

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hrsafety import contact, standards
+from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.cli.cell_robot import RobotFacts, robot_of
 from hrsafety.errors import InvalidParameterError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import arms, contact
+from hrsafety._records import dataclass
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError

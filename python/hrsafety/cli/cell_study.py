@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from hrsafety import contact, standards
 from hrsafety._arguments import Array
+from hrsafety._records import dataclass
 from hrsafety.cli.cell_chances import chance_of
 from hrsafety.cli.cell_file import Cell, Planned
 from hrsafety.cli.cell_judgement import FASTEST, Judged, common, governing, judged_of, known, strain

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
 from hrsafety import arms, scenarios
 from hrsafety._arguments import meant
+from hrsafety._records import dataclass
 from hrsafety.cli import cell_file, foam_file, optimize_file, output, sweep_file
 from hrsafety.cli.parsers import STARTERS
 from hrsafety.errors import InvalidParameterError, Shown

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from hrsafety import impact
+from hrsafety._records import dataclass
 from hrsafety.cli.foam_file import FoamDesignFile
 from hrsafety.plausibility import ResultWarning
 

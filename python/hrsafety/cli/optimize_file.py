@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._arguments import meant
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gains.metrics import METRICS
 from hrsafety.scenarios import files, laws

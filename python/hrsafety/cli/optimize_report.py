@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from hrsafety import navigation as nav
+from hrsafety._records import dataclass
 from hrsafety.cli.optimize_file import Gains, GainStudy
 from hrsafety.cli.output import decimal
 from hrsafety.navigation.run_table import RunTable

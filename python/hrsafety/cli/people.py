@@ -6,7 +6,6 @@ import argparse
 import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
+from hrsafety._records import dataclass
 from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.simulate_page import RunTable

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from hrsafety._records import dataclass
 from hrsafety.pages import Picture, written
 from hrsafety.plausibility import ResultWarning
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from hrsafety import impact, sweep
 from hrsafety._arguments import meant
+from hrsafety._records import dataclass
 from hrsafety.cli import foam_file, optimize_file
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import files, laws

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from hrsafety._records import dataclass
 from hrsafety.sweep import Column, SweepResult
 
 __all__ = ["Numbers", "Summary", "Words", "summarized"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import not_negative, number, positive, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.contact.materials import Linear, Material, StressTable, material
 from hrsafety.errors import InvalidParameterError

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, finite, vector
+from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.errors import InvalidParameterError
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import number, positive, with_article
+from hrsafety._records import dataclass
 from hrsafety.datasets.flow import Flow, flow_of
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning, implausible

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, instance, numbers, positive, sequence, thread_count, word
 from hrsafety._bounds import MOST_LANES
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria.declared import CRITERIA, Loads, with_criteria
 from hrsafety.impact.criteria.loads import Doubts

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, count, not_negative, number, pair, positive, square
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, implausible
 

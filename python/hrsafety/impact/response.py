@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, flag, instance, number, pair, positive, sequence, word
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator

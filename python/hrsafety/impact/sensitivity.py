@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal, get_args, overload
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, instance, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.batch import simulate_batch
 from hrsafety.navigation.crowd.comparison import CrowdComparison

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, cast, overload
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, flag, number, thread_count
 from hrsafety._bounds import MOST_PATH_NUMBERS, MOST_TABLE_ROWS
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.crowd.study import CrowdStudy
 from hrsafety.navigation.crowd.table import CrowdTable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal, cast
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, number, positive, thread_count, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation import run_warnings

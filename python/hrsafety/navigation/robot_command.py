@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from hrsafety._arguments import Pair, number
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["Command", "Sighting"]

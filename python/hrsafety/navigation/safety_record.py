@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, number
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace

@@ -6,11 +6,12 @@ import functools
 import operator
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, number, pair, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import scenario_warnings
 from hrsafety.navigation.obstacles.base import Obstacle

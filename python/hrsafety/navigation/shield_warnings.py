@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from hrsafety._records import dataclass
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt

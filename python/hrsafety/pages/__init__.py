@@ -11,11 +11,11 @@ import importlib.metadata
 import importlib.util
 import math
 import platform
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
 from hrsafety import __version__
+from hrsafety._records import dataclass
 from hrsafety.errors import MissingExtraError
 
 if TYPE_CHECKING:

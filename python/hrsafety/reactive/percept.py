@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 
 __all__ = ["Percept", "percept_of"]
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import Share
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.reproduce.measured import LAWS, Measured, kind_of, score_of_parts

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
+
+from hrsafety._records import dataclass
 
 __all__ = ["Cell", "Tolerance", "tolerance_of"]
 

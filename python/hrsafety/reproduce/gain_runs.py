@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety._records import dataclass
 from hrsafety.reproduce.measured import GAIN_SETS, Measured, kind_of
 
 __all__ = ["CHANGES_PERCENT", "CONFIGURATIONS", "GAIN_TABLES", "GainRuns", "gain_runs"]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 from hrsafety import impact
+from hrsafety._records import dataclass
 from hrsafety.reproduce.published import printed_rows
 
 __all__ = [

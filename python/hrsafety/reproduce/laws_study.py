@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
 from hrsafety.reproduce.laws_compared import COMPARED, FORCES, LIKE_SOURCE, Compared, printed_walk, varied_walk
 from hrsafety.reproduce.measured import LAWS

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety._records import dataclass
 from hrsafety.navigation.run_table import RunTable
 
 __all__ = ["GAIN_SETS", "LAWS", "Measured", "kind_of", "measure", "measure_laws", "score_of_parts"]

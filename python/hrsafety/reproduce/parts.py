@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from hrsafety._records import dataclass
 from hrsafety.pages import Picture
 from hrsafety.reproduce import (
     built_figures,

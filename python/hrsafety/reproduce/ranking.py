@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import compare_paired
 
 __all__ = ["BASELINE", "Outcomes", "Ranking", "rank"]

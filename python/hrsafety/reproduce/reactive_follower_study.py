@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from hrsafety import reactive
+from hrsafety._records import dataclass
 from hrsafety.reactive import Follower, FollowerExperiment, FollowerLayouts, Sonar, VirtualImpedance
 from hrsafety.reactive.follower.layouts import Kind
 from hrsafety.reproduce import data

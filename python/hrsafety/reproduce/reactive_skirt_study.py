@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from hrsafety import reactive
+from hrsafety._records import dataclass
 
 __all__ = ["CLOSELY", "CLOSELY_FITTED", "CONDITIONS", "LOW_SHARE", "SkirtStudy", "limit_for", "run_study"]
 

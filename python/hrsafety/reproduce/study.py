@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
 from hrsafety.navigation.run_table import RunTable
 from hrsafety.reproduce.measured import GAIN_SETS

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import groupby
 from typing import NamedTuple
 
+from hrsafety._records import dataclass
 from hrsafety.pages import DASH, Picture
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.names import TABLE_TITLES, beside, column_label, row_label

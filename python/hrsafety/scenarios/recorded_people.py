@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -15,6 +14,7 @@ from hrsafety._arguments import count as checked_count
 from hrsafety._arguments import followed, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError, Shown
 

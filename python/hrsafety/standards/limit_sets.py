@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
 from hrsafety._arguments import flag, instance, positive, word
+from hrsafety._records import dataclass
 from hrsafety.standards.contact_limits import CONTACTS, ContactLimit, Quantity
 from hrsafety.tables import Columns, Table
 

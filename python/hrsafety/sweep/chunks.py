@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import count
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.designs import Design

@@ -6,13 +6,14 @@ import itertools
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from hrsafety._arguments import Array, count, sequence
 from hrsafety._bounds import MOST_ROWS_AT_ONCE
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis

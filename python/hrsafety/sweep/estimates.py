@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import io
 import time
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from hrsafety._arguments import thread_count, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.sweep.chunk_files import STORES, chunk_files
 from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import Plan, computed, planned

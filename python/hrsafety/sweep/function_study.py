@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Found, Study

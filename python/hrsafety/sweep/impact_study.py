@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety import impact
 from hrsafety._arguments import Array, number, positive, with_article, word
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.batch import STATUS_WORDS
 from hrsafety.impact.criteria.declared import CRITERIA

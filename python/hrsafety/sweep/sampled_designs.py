@@ -7,12 +7,12 @@ import inspect
 import threading
 import warnings
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from hrsafety._arguments import Array, checked_seed, count, flag
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.designs import MOST_ROWS, Design

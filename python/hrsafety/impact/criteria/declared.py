@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import namedtuple
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 
 from hrsafety import _hrsafety
+from hrsafety._records import dataclass
 
 __all__ = ["CRITERIA", "Criterion", "LoadRow", "Loads", "with_criteria"]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, columns, count, flag, number, vector, word
 from hrsafety._bounds import MOST_RESAMPLES, MOST_SWINGS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import THICKNESS, Foam
 from hrsafety.plausibility import ResultWarning, implausible

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, number
+from hrsafety._records import dataclass
 
 __all__ = ["CylinderController"]
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, instance, number
+from hrsafety._records import dataclass
 from hrsafety.impact.criteria.loads import Doubts, check_speeds, speed_warnings
 from hrsafety.impact.parameters import Foam, Head, Manipulator
 from hrsafety.impact.response import check_finite, compression_status

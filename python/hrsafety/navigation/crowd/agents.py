@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, count, instance, number, pair, points, sequence, vector, word
+from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, pair, positive, sequence, thread_count
 from hrsafety._arguments import word as checked_word
 from hrsafety._bounds import MOST_EVALUATIONS
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.predictions import PredictionErrors, Windows, errors_of

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from hrsafety._arguments import word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.metrics.declared import METRICS

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, instance, numbers, positive, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import ClassVar
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, count, number, positive
+from hrsafety._records import dataclass
 
 __all__ = [
     "CollisionFreeSpeed",

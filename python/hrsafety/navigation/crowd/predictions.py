@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, points, positive, thread_count, vector, whole_steps, word
 from hrsafety._bounds import MOST_INTERVAL
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.pedestrians import Pedestrian

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.navigation.crowd.world import World
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, plane

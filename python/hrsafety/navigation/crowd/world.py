@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
 from hrsafety.navigation.crowd.doubts import of_robots

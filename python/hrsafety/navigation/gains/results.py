@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal, TypeVar
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, positive
 from hrsafety._bounds import MOST_POINTS_OF_AXIS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InfeasibleError, InvalidParameterError
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_threads

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -23,6 +22,7 @@ from hrsafety._arguments import (
 )
 from hrsafety._bounds import MOST_LOCAL_STARTS, MOST_POINTS, MOST_REFINEMENTS, MOST_SEEDS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.batch import check_scenarios
 from hrsafety.navigation.gains.metrics import METRICS, check_metric

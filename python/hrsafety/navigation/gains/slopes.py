@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, numbers, positive
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch

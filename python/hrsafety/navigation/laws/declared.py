@@ -7,12 +7,13 @@ axes of sweeps, the bounds of searches and the colors of pictures.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters
+from hrsafety._records import dataclass
 
 __all__ = ["LAWS", "Gain", "Law", "gain", "law"]
 

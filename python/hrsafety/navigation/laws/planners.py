@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, get_args
 
 from hrsafety._arguments import count, flag, not_negative, word
 from hrsafety._bounds import MOST_DRAWS
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.declared import Law, gain, law
 

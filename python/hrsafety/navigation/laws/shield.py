@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, not_negative, number, numbers, positive
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Shield", "ShieldDecision", "speed_bound"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 
 __all__ = ["PointMass", "Situation", "situation_of"]
 

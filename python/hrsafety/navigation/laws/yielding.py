@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters
+from hrsafety._records import dataclass
 
 __all__ = ["Yielding"]
 

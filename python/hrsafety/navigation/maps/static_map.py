@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Self
 
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, empty, instance, not_negative, number, numbers, pair, points
+from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
 from hrsafety.navigation.maps.distances import occupied_cells

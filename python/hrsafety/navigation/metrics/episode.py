@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -23,6 +23,7 @@ from hrsafety._arguments import (
     positive,
     sequence,
 )
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle

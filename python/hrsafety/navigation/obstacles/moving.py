@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Self
 
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, number, pair
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.motions import Path, Segment, frozen_path, frozen_segments, moving_body

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, number, pair
+from hrsafety._records import dataclass
 from hrsafety.navigation.obstacles.base import Obstacle
 
 __all__ = ["Disc", "Rectangle"]

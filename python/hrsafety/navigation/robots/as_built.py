@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, instance, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.robots.kinematics import OmniKinematics, Slip
 from hrsafety.navigation.robots.tracking_laws import (

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, number, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, positive, vector
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["DifferentialKinematics", "OmniKinematics", "Slip"]

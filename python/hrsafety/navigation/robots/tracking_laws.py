@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, flag, instance, number, pair, positive, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 

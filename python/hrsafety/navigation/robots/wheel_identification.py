@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +24,7 @@ from hrsafety._arguments import (
 )
 from hrsafety._bounds import MOST_REPEATS, MOST_RUNS, MOST_SAMPLES
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.robots.wheels import WheelDrive
 

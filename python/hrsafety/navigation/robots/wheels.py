@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 import numpy as np
@@ -24,6 +24,7 @@ from hrsafety._arguments import (
 )
 from hrsafety._bounds import MOST_SAMPLES
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.tables import Columns, Table, with_units
 

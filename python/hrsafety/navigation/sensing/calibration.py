@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, instance, pair
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import HrsafetyError, InvalidParameterError, MissingExtraError, ShapeError, SimulationError
 from hrsafety.navigation.sensing.camera import Camera, _as_matrix, _as_triple, _picture_size, _rows, nearest_rotation
 from hrsafety.navigation.sensing.linear_camera import linear_camera

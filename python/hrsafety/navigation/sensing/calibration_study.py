@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +10,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, followed, instance, not_negative
 from hrsafety._bounds import MOST_SEEDS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.sensing.calibration import CameraCalibration, calibrate_camera
 from hrsafety.navigation.sensing.camera import Camera, _rows

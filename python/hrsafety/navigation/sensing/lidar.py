@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, count, empty, flag, instance, number, numbers, pair
 from hrsafety._bounds import MOST_RAYS
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters
+from hrsafety._records import dataclass
 
 __all__ = ["Measurement"]
 

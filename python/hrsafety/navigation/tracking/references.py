@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 import numpy.typing as npt
@@ -10,6 +10,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, instance, pair, points, vector
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.trajectory import Trajectory
 

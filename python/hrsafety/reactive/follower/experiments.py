@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, count, flag, instance, thread_count
 from hrsafety._bounds import MOST_COUNT, MOST_LAYOUTS, MOST_RESAMPLES
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Paired, Share, compare_paired, mean_interval, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.reactive.follower.impedance import VirtualImpedance

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, flag, number, numbers, pair
+from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 
 __all__ = ["VirtualImpedance"]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, checked_seed, number, pair, word
+from hrsafety._records import dataclass
 from hrsafety.reactive.follower.scenes import FollowerScene, MovingObstacle, SoundLeader
 from hrsafety.reactive.sonar.echoes import Box
 

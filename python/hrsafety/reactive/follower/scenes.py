@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, pair, positive, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.sonar.echoes import Box, Disc, Echoing, Wall
 

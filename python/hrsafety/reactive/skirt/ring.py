@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -15,6 +15,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, count, vector, word
 from hrsafety._bounds import MOST_RAYS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["MOTION_DIRECTIONS", "SkirtState", "UltrasonicSkirt", "skirt_states"]

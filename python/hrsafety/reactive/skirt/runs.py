@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ from hrsafety._arguments import (
 )
 from hrsafety._bounds import MOST_LAYOUTS, MOST_OBSTACLES, MOST_THREADS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.skirt.ring import MOTION_DIRECTIONS, UltrasonicSkirt

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from hrsafety._arguments import callback, count, number, positive, sequence, word
+from hrsafety._records import dataclass
 from hrsafety._statistics import Share
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.reactive.skirt.ring import (

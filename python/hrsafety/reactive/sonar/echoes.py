@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, Parameters, checked_seed, count, flag, number, numbers, pair, sequence
 from hrsafety._bounds import MOST_RAYS
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["Box", "Disc", "Sonar", "SonarMounts", "Wall", "cast_rays", "speed_of_sound"]

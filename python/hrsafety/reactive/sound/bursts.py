@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, checked_seed, count, instance, number, word
 from hrsafety._bounds import MOST_RUNS
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.sound.microphones import MicrophoneArray
 from hrsafety.reactive.sound.recording import SoundRecording

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, count, flag, instance, pair, word
 from hrsafety._display import displayed
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.reactive.sound.microphones import MicrophoneArray
 from hrsafety.reactive.sound.recording import SoundRecording

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, instance, numbers, word
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["MicrophoneArray", "microphone_elevations", "parallel_ray_bearing", "parallel_ray_bias", "printed_range"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import wave
 from collections.abc import Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from hrsafety._arguments import Array, count, numbers, own, positive, sequence
+from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["SoundRecording", "read_recording"]
