@@ -6,8 +6,7 @@ import dataclasses
 import itertools
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +14,10 @@ import numpy.typing as npt
 from hrsafety._bounds import MOST_COUNT, MOST_THREADS
 from hrsafety._words import meant as meant  # for those who check arguments
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
 
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
@@ -168,8 +171,11 @@ def word(name: str, value: object, words: Sequence[str]) -> str:
     return value
 
 
-def readable(name: str, path: Path) -> Path:
+def readable(name: str, path: str | PathLike[str]) -> Path:
     """Return the path if a file stands there, or say what does and which file may have been meant."""
+    from pathlib import Path  # for those who read files; it takes as long to load as all that a run needs
+
+    path = Path(path)
     rule = "name a readable file"
     given = str(path) if len(str(path)) <= LONGEST_SHOWN else f"{str(path)[:LONGEST_SHOWN]}..."
     try:
@@ -186,7 +192,7 @@ def readable(name: str, path: Path) -> Path:
 
 def _neighbour(path: Path) -> str:
     """Return which file beside a missing one may have been meant, else where it was looked for."""
-    folder = Path(*path.parts[:-1]) if len(path.parts) > 1 else Path()
+    folder = path.parent
     try:
         if not folder.is_dir():
             return f"there is no folder {folder}"
@@ -194,7 +200,7 @@ def _neighbour(path: Path) -> str:
     except (OSError, ValueError):
         return "it cannot be looked for"
     # Endings alone make names alike, and are no reason to ask.
-    alike = [each for each in names if meant(path.stem, [Path(each).stem])]
+    alike = [each for each in names if meant(path.stem, [type(path)(each).stem])]
     return meant(path.name, alike) or f"no such file in {folder.absolute()}"
 
 

@@ -6,7 +6,6 @@ Fields and units are those that the documentation of the class describes: they a
 from __future__ import annotations
 
 import dataclasses
-import html
 import inspect
 import itertools
 import math
@@ -30,10 +29,10 @@ _UNITS = frozenset(
     )
 )
 # What stands behind "in", up to the end of the clause or the next "in".
-_CLAUSE = re.compile(r"(?:^|(?<=[ (,]))[Ii]n ([^.;:()]+?)(?=[.;:()]|,? in |$)")
-_PARTS = re.compile(r", (?:and |in )?| and (?:in )?| or (?:in )?")
-_REST = re.compile(r" (?:of|by|from|for|at|to|with|along|where|when) .*")
-_ENTRY = re.compile(r"^([\w, *]+?) : ")
+_CLAUSE = r"(?:^|(?<=[ (,]))[Ii]n ([^.;:()]+?)(?=[.;:()]|,? in |$)"
+_PARTS = r", (?:and |in )?| and (?:in )?| or (?:in )?"
+_REST = r" (?:of|by|from|for|at|to|with|along|where|when) .*"
+_ENTRY = r"^([\w, *]+?) : "
 
 MOST_SHOWN = 6
 """Elements of a sequence that are shown; longer ones by size and range."""
@@ -58,11 +57,16 @@ def displayed(kind: type[Kind]) -> type[Kind]:
     changed: Any = kind
     changed._repr_html_ = _html
     made = generates(kind, "__repr__") or changed.__repr__.__module__ == "collections"
-    annotations = " ".join(str(each) for each in getattr(kind, "__annotations__", {}).values())
-    long = re.search(r"Array|Trajectory|Mapping|tuple\[\w+, \.\.\.\]", annotations)
-    if made and (long or hasattr(kind, "warnings")):
+    if made and (hasattr(kind, "warnings") or _long(" ".join(map(str, getattr(kind, "__annotations__", {}).values())))):
         changed.__repr__ = _text
     return kind
+
+
+def _long(annotations: str) -> bool:
+    """Return whether fields of such types may print as more than a line."""
+    if any(word in annotations for word in ("Array", "Trajectory", "Mapping")):
+        return True
+    return ", ...]" in annotations and re.search(r"tuple\[\w+, \.\.\.\]", annotations) is not None
 
 
 _KNOWN: dict[type, dict[str, str]] = {}
@@ -97,7 +101,7 @@ def _documented(text: str) -> dict[str, str]:
     found: dict[str, str] = {}
     lines = text.splitlines()
     for number, line in enumerate(lines):
-        entry = _ENTRY.match(line)
+        entry = re.match(_ENTRY, line)
         if entry is None:
             continue
         names = [name.strip(" *") for name in entry[1].split(",")]
@@ -112,7 +116,10 @@ def _documented(text: str) -> dict[str, str]:
 
 def _of_entry(names: list[str], text: str) -> dict[str, str]:
     """Return the units of the names that one description is of: one for all, or one for each."""
-    clauses = [[_REST.sub("", part.strip()) for part in _PARTS.split(clause[1])] for clause in _CLAUSE.finditer(text)]
+    clauses = [
+        [re.sub(_REST, "", part.strip()) for part in re.split(_PARTS, clause[1])]
+        for clause in re.finditer(_CLAUSE, text)
+    ]
     clauses = [clause for clause in clauses if clause[0] in _UNITS]
     if len(names) > 1 and clauses and len(clauses[0]) == len(names):
         return {name: part for name, part in zip(names, clauses[0], strict=True) if part in _UNITS}
@@ -201,6 +208,8 @@ def _quoted(value: object, shown: str) -> str:
 
 def _html(result: object) -> str:
     """Return fields, values and units as a table, and the warnings."""
+    import html  # a notebook's; it holds the names of all letters
+
     cells = "".join(
         "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in (name.replace("_", " "), value, unit)) + "</tr>"
         for name, value, unit in _rows(result)

@@ -53,7 +53,7 @@ class _Declared:
         """Return the class with slots for its fields, and with everything else that is generated on first use."""
         space = self._space()
         hints = space.get("__annotations__", {})
-        names = [name for name, hint in hints.items() if not hint.startswith(("ClassVar", "typing.ClassVar"))]
+        names = [name for name, hint in hints.items() if not str(hint).startswith(("ClassVar", "typing.ClassVar"))]
         for name in names:
             space.pop(name, None)  # its default
         taken = {name for base in self.kind.__mro__[1:-1] for name in base.__dict__.get("__slots__", ())}

@@ -22,16 +22,16 @@ __all__ = [
 
 
 # A rule that lists words in quotes, as 'be "off", "capped" or "full"'.
-_CHOICE = re.compile(r'be (one of )?"')
-_QUOTED = re.compile(r'"([^"]+)"')
+_CHOICE = r'be (one of )?"'
+_QUOTED = r'"([^"]+)"'
 
 # A value that prints longer than this is cut: objects of many parameters would bury the rule.
 LONGEST_SHOWN = 200
 
 # A number at the end of a cut text, which may be half of one.
-_HALF = re.compile(r"(?<![\w.])[+-]?[\d.][\d.e+-]*$")
+_HALF = r"(?<![\w.])[+-]?[\d.][\d.e+-]*$"
 # Numbers of NumPy are shown as numbers.
-_OF_NUMPY = re.compile(r"\bnp\.(?:float|u?int)\d+\(([^()]*)\)")
+_OF_NUMPY = r"\bnp\.(?:float|u?int)\d+\(([^()]*)\)"
 
 
 class HrsafetyError(Exception):
@@ -63,8 +63,8 @@ class InvalidParameterError(HrsafetyError, ValueError):
     """
 
     def __init__(self, argument: str, requirement: str, value: object, remedy: str | None = None) -> None:
-        if remedy is None and isinstance(value, str) and _CHOICE.match(requirement):
-            remedy = meant(value, _QUOTED.findall(requirement))
+        if remedy is None and isinstance(value, str) and re.match(_CHOICE, requirement):
+            remedy = meant(value, re.findall(_QUOTED, requirement))
         super().__init__(argument, requirement, value, remedy)
         self.argument = argument
         self.requirement = requirement
@@ -86,10 +86,10 @@ def _words(value: object) -> str:
     """Return a value as it is printed, cut when long; Python refuses to print integers of thousands of digits."""
     if isinstance(value, int) and abs(value) >= 10**40:
         return f"an integer of {value.bit_length()} bits"
-    shown = repr(value) if isinstance(value, str) else _OF_NUMPY.sub(r"\1", repr(value))
+    shown = repr(value) if isinstance(value, str) else re.sub(_OF_NUMPY, r"\1", repr(value))
     if len(shown) <= LONGEST_SHOWN:
         return shown
-    return f"{_HALF.sub('', shown[:LONGEST_SHOWN])}..."
+    return f"{re.sub(_HALF, '', shown[:LONGEST_SHOWN])}..."
 
 
 class Shown(str):

@@ -8,22 +8,19 @@ line; a quantity without a unit has none. Summaries that are also the columns of
 
 from __future__ import annotations
 
-import csv
-import html
 import importlib
-import io
 import math
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
-from hrsafety._atomic import replacing
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas
     import polars
 
@@ -75,6 +72,8 @@ class Table:
 
     def _repr_html_(self) -> str:
         """Return the first rows as a notebook shows them."""
+        import html
+
         header, cells, title = self._shown()
         head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
         body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in cells)
@@ -189,6 +188,12 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
     >>> path.read_text().splitlines()
     ['t_s,distance_m', '0.0,', '0.1,0.3']
     """
+    # Runs are tables, and few of them are written.
+    import csv
+    import io
+
+    from hrsafety._atomic import replacing
+
     place = _place(path)
     cells = [_cells(values) for values in columns.values()]
     with replacing(place) as file:
@@ -207,6 +212,8 @@ def _short(value: object) -> str:
 
 
 def _place(path: object) -> Path:
+    from pathlib import Path
+
     if not isinstance(path, (str, os.PathLike)) or not isinstance(os.fspath(path), str) or not os.fspath(path):
         raise InvalidParameterError("path", "be the path of a file", path)
     place = Path(os.fspath(path))

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from hrsafety import navigation as nav
-from hrsafety.navigation.laws import declared
+from hrsafety.navigation.laws.known import LAWS as DECLARED
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "guides" / "laws.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| `(\w+)` \| `(\w+)` \| (\S+) \| (.*?) ?\| (\w+) \| (.+?) \|$", re.MULTILINE)
 ROWS = {(law, name): (default, unit, origin) for law, name, default, unit, origin, _ in ROW.findall(GUIDE)}
-LAWS = tuple(declared.LAWS.values())
+LAWS = tuple(DECLARED.values())
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)

@@ -1,11 +1,16 @@
 """Arms from URDF: the mass that a point of an arm has for whom it hits, by pose and direction."""
 
-from hrsafety.arms.arm import Arm
-from hrsafety.arms.histories import MassHistory, along
-from hrsafety.arms.masses import Extremes, PointMasses
-from hrsafety.arms.payload import Payload
-from hrsafety.arms.workspace import Workspace, workspace
-from hrsafety.errors import InvalidParameterError, ShapeError
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_of
+
+if TYPE_CHECKING:
+    from hrsafety.arms.arm import Arm
+    from hrsafety.arms.histories import MassHistory, along
+    from hrsafety.arms.masses import Extremes, PointMasses
+    from hrsafety.arms.payload import Payload
+    from hrsafety.arms.workspaces import Workspace, workspace
+    from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = [
     "Arm",
@@ -20,7 +25,16 @@ __all__ = [
     "workspace",
 ]
 
-
-def __dir__() -> list[str]:
-    """List the public names."""
-    return sorted(__all__)
+if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
+    __getattr__, __dir__ = names_of(
+        __name__,
+        __all__,
+        {
+            "hrsafety.arms.arm": "Arm",
+            "hrsafety.arms.histories": "MassHistory along",
+            "hrsafety.arms.masses": "Extremes PointMasses",
+            "hrsafety.arms.payload": "Payload",
+            "hrsafety.arms.workspaces": "Workspace workspace",
+            "hrsafety.errors": "InvalidParameterError ShapeError",
+        },
+    )

@@ -10,7 +10,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.declared import LAWS
+from hrsafety.navigation.laws.known import LAWS
 
 __all__ = ["MARGIN", "PARTS", "Entry", "entry"]
 

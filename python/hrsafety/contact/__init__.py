@@ -3,29 +3,34 @@
 Every number here is a model: a measurement on the finished machine must confirm it.
 """
 
-from hrsafety.contact.base import (
-    ContactMargins,
-    DifferentialBase,
-    HolonomicBase,
-    RegionSpeed,
-    contact_margins,
-    contact_speed_limit,
-)
-from hrsafety.contact.catalogs import CatalogMaterial, load_materials
-from hrsafety.contact.chance import Exceedance, probability
-from hrsafety.contact.covering import Column, Covering, Region
-from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
-from hrsafety.contact.simulation import ContactBatch, ContactImpact, batch, simulate
-from hrsafety.contact.speed import (
-    AllowedSpeed,
-    AllowedSpeeds,
-    LeastThickness,
-    allowed_speed,
-    allowed_speeds,
-    free_from_fixed_force,
-    sensitivity,
-    thickness,
-)
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_of
+
+if TYPE_CHECKING:
+    from hrsafety.contact.base import (
+        ContactMargins,
+        DifferentialBase,
+        HolonomicBase,
+        RegionSpeed,
+        contact_margins,
+        contact_speed_limit,
+    )
+    from hrsafety.contact.catalogs import CatalogMaterial, load_materials
+    from hrsafety.contact.chance import Exceedance, probability
+    from hrsafety.contact.covering import Column, Covering, Region
+    from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
+    from hrsafety.contact.simulation import ContactBatch, ContactImpact, batch, simulate
+    from hrsafety.contact.speed import (
+        AllowedSpeed,
+        AllowedSpeeds,
+        LeastThickness,
+        allowed_speed,
+        allowed_speeds,
+        free_from_fixed_force,
+        sensitivity,
+        thickness,
+    )
 
 __all__ = [
     "AllowedSpeed",
@@ -62,7 +67,22 @@ __all__ = [
     "thickness",
 ]
 
-
-def __dir__() -> list[str]:
-    """List the public names."""
-    return sorted(__all__)
+if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
+    __getattr__, __dir__ = names_of(
+        __name__,
+        __all__,
+        {
+            "hrsafety.contact.base": (
+                "ContactMargins DifferentialBase HolonomicBase RegionSpeed contact_margins contact_speed_limit"
+            ),
+            "hrsafety.contact.catalogs": "CatalogMaterial load_materials",
+            "hrsafety.contact.chance": "Exceedance probability",
+            "hrsafety.contact.covering": "Column Covering Region",
+            "hrsafety.contact.materials": "Avalle GibsonAshby Linear Material Rusch StressTable material",
+            "hrsafety.contact.simulation": "ContactBatch ContactImpact batch simulate",
+            "hrsafety.contact.speed": (
+                "AllowedSpeed AllowedSpeeds LeastThickness allowed_speed allowed_speeds "
+                "free_from_fixed_force sensitivity thickness"
+            ),
+        },
+    )

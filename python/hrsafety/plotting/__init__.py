@@ -7,9 +7,10 @@ units. matplotlib is imported when a picture is asked for; without it the functi
 `MissingExtraError`, which names ``pip install hrsafety[plot]``.
 """
 
+from types import ModuleType
 from typing import TYPE_CHECKING
 
-from hrsafety._namespace import names_below
+from hrsafety._namespace import names_of
 from hrsafety.plotting import arms, comparisons, contacts, crowds, gains, impacts, reactive, robots, runs, sweeps
 from hrsafety.plotting.arms.ellipses import mass_ellipse
 from hrsafety.plotting.comparisons.law_runs import comparison_distances, comparison_paths, comparison_sequence
@@ -77,6 +78,9 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_below(
-        __name__, __all__, [arms, comparisons, contacts, crowds, gains, impacts, reactive, robots, runs, sweeps]
+    __getattr__, __dir__ = names_of(
+        __name__,
+        __all__,
+        {},
+        below=[f"{__name__}.{each}" for each in __all__ if isinstance(globals()[each], ModuleType)],
     )

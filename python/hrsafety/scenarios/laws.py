@@ -10,7 +10,7 @@ from typing import Any
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.declared import LAWS
+from hrsafety.navigation.laws.known import LAWS
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, Kind, checked, located
 

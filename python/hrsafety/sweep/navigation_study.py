@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -27,7 +27,7 @@ from hrsafety.sweep.studies import Cases, Found, Study, chosen
 
 __all__ = ["NavigationStudy"]
 
-Scenes = nav.Scenario | Sequence[nav.Scenario]
+Scenes: TypeAlias = nav.Scenario | Sequence[nav.Scenario]
 
 # Scenes that exist at the same time: they are built block by block.
 BLOCK = 1024

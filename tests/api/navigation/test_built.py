@@ -13,7 +13,7 @@ import pytest
 
 from hrsafety import InvalidParameterError, scenarios
 from hrsafety import navigation as nav
-from hrsafety.navigation.laws.declared import LAWS as DECLARED
+from hrsafety.navigation.laws.known import LAWS as DECLARED
 
 LAW = nav.VirtualForceField(stabilizing="off")
 

@@ -12,7 +12,7 @@ from scipy import stats
 from api.spoiled import names
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
-from hrsafety.navigation.compare import Metric
+from hrsafety.navigation.comparison import Metric
 from hrsafety.navigation.metrics import Mean, compare_paired, mean_interval, wilson
 
 LAWS: dict[str, nav.Law] = {

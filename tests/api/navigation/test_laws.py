@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api.namespaces import public
 from api.spoiled import INF, NAN, NOT_NEGATIVE, POSITIVE, WORD, names, spoiled
 from hrsafety import InvalidParameterError, ShapeError, scenarios
 from hrsafety import navigation as nav
@@ -41,11 +42,7 @@ def same(law: nav.Law) -> Any:
 
 
 def test_all_laws_of_the_package_are_here() -> None:
-    kinds = {
-        name
-        for name, kind in (vars(nav) | vars(nav.laws)).items()
-        if isinstance(kind, type) and issubclass(kind, nav.Law)
-    }
+    kinds = {name for name, kind in public(nav).items() if isinstance(kind, type) and issubclass(kind, nav.Law)}
     assert kinds - {"Law", "PythonLaw", "SafeNavigation"} == set(LAWS)
 
 
@@ -78,7 +75,7 @@ def test_law_is_a_value(law: nav.Law) -> None:
     for again in (same(law), copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law))):
         assert again == law
         assert hash(again) == hash(law)
-    assert eval(repr(law), vars(nav) | vars(nav.laws) | {"inf": INF}) == law
+    assert eval(repr(law), public(nav) | {"inf": INF}) == law
     assert "_native" not in repr(law)
     first = law.GAIN_NAMES[0]
     other = law.replaced(**{first: getattr(law, first) + 0.125})

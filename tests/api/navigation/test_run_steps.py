@@ -10,7 +10,7 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.navigation.laws.declared import LAWS as DECLARED
+from hrsafety.navigation.laws.known import LAWS as DECLARED
 
 # Every law of the package, and some that are not the default or not of the package.
 LAWS = {name: law() for name, law in DECLARED.items()} | {

@@ -10,12 +10,14 @@ from typing import Any, get_args
 
 import pytest
 
+from api.namespaces import public
 from hrsafety import _hrsafety, impact, scenarios, sweep
 from hrsafety import navigation as nav
 from hrsafety.cli import verdict
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import CRITERIA, Loads
-from hrsafety.navigation.laws.declared import LAWS, Gain, Law, gain
+from hrsafety.navigation.laws.declared import Gain, Law, gain
+from hrsafety.navigation.laws.known import LAWS
 from hrsafety.navigation.outcomes import OUTCOMES, Outcome
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.scenarios.laws import SHORT_NAMES, law_named
@@ -67,7 +69,7 @@ def test_units_of_criteria_are_those_of_the_glossary(name: str) -> None:
 
 
 def test_every_law_of_the_package_is_declared_once() -> None:
-    laws = {each for each in vars(nav.laws).values() if isinstance(each, type) and issubclass(each, Law)}
+    laws = {each for each in public(nav).values() if isinstance(each, type) and issubclass(each, Law)}
     # The kind itself, what a user wrote, and what stands around another law.
     laws -= {Law, nav.laws.PythonLaw, nav.laws.SafeNavigation}
     assert set(LAWS.values()) == laws

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import pickle
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
 from types import ModuleType
 
 import pytest
 
-from api.namespaces import BELOW
-from hrsafety import impact, plotting, reactive
+from api.namespaces import BELOW, places
+from hrsafety import arms, contact, impact, plotting, reactive, standards
 from hrsafety import navigation as nav
 
 PLACES = [pytest.param(package, name, id=f"{package.__name__}.{name}") for package in BELOW for name in BELOW[package]]
@@ -80,3 +85,86 @@ def test_moved_names_are_pickled_by_the_place_where_they_stand() -> None:
         assert again == value
         assert repr(again) == repr(value)
         assert type(value).__module__.startswith("hrsafety.navigation.")
+
+
+# ---- names that are loaded when they are asked for ----------------------------------------------------
+
+COMPUTING = (nav, impact, reactive, contact, arms, standards)
+LOADED_LATER = [each for package in COMPUTING for each in places(package)]
+each_later = pytest.mark.parametrize("package", LOADED_LATER, ids=lambda each: each.__name__)
+
+
+def declared_imports(package: ModuleType) -> dict[str, str]:
+    """Return the names that a package imports for type checkers, with the modules where they stand."""
+    assert package.__file__
+    tree = ast.parse(Path(package.__file__).read_text(encoding="utf-8"))
+    (block,) = (each for each in tree.body if isinstance(each, ast.If) and ast.unparse(each.test) == "TYPE_CHECKING")
+    imports = [each for each in block.body if isinstance(each, ast.ImportFrom)]
+    return {alias.name: str(each.module) for each in imports for alias in each.names}
+
+
+@each_later
+def test_type_checkers_and_python_find_a_name_in_the_same_module(package: ModuleType) -> None:
+    found = declared_imports(package)
+    assert set(package.__all__) <= set(found)
+    for name in package.__all__:
+        there = f"{found[name]}.{name}" if found[name] == package.__name__ else found[name]
+        module = importlib.import_module(there)
+        assert getattr(package, name) is (module if found[name] == package.__name__ else getattr(module, name))
+
+
+@each_later
+def test_no_name_is_hidden_by_a_module_that_is_loaded_later(package: ModuleType) -> None:
+    """Loading `package.module` puts the module into the package, in the place of a function of the same name."""
+    modules = {each.name for each in pkgutil.iter_modules(package.__path__)}
+    assert {name for name in package.__all__ if not isinstance(getattr(package, name), ModuleType)}.isdisjoint(modules)
+
+
+@each_later
+def test_star_and_from_imports_find_every_name(package: ModuleType) -> None:
+    found: dict[str, object] = {}
+    exec(f"from {package.__name__} import *", found)
+    assert set(package.__all__) <= set(found)
+    exec(f"from {package.__name__} import {', '.join(package.__all__)}", found)
+
+
+def loaded_by(code: str) -> set[str]:
+    """Return the modules that a program loads on top of numpy."""
+    program = f"import sys, numpy; before = set(sys.modules)\n{code}\nprint(*sorted(set(sys.modules) - before))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+@pytest.mark.parametrize("package", COMPUTING, ids=lambda each: each.__name__)
+def test_an_import_loads_no_module_of_the_package(package: ModuleType) -> None:
+    loaded = loaded_by(f"import {package.__name__}")
+    inside = {name for name in loaded if name.startswith("hrsafety.") and not name.startswith("hrsafety._")}
+    assert inside == {package.__name__, "hrsafety.errors"}
+
+
+def test_a_run_loads_what_it_needs() -> None:
+    loaded = loaded_by(
+        "from hrsafety import navigation as nav\n"
+        "scene = nav.Scenario(start=(3.9, 0.6), goal=(0, 0.6), obstacles=[nav.Disc(center=(2, 1.4), radius=0.1)])\n"
+        "nav.evaluate(scene, nav.VirtualForceField())"
+    )
+    assert {"hrsafety.navigation.simulation", "hrsafety.navigation.laws.force_laws"} <= loaded
+    for part in ("crowd", "gains", "metrics", "tracking"):
+        assert not [name for name in loaded if name.startswith(f"hrsafety.navigation.{part}.")]
+    # Those take longer than the run, and are for files, notebooks and errors.
+    assert loaded.isdisjoint({"csv", "difflib", "html", "json", "pathlib", "tempfile", "urllib", "zipfile"})
+
+
+def test_modules_and_names_below_are_found_before_anything_is_loaded() -> None:
+    for asked in ("outcomes.OUTCOMES", "Camera", "run_table", "InvalidParameterError", "gains.metrics.METRICS"):
+        assert "hrsafety.navigation" in loaded_by(f"import hrsafety.navigation as nav; nav.{asked}")
+
+
+def test_the_list_of_laws_is_whole_in_the_same_order_whichever_was_loaded_first() -> None:
+    program = "import hrsafety.navigation as nav; {}; from hrsafety.navigation.laws.known import LAWS; print(*LAWS)"
+    orders = set()
+    for first in ("nav.FieldDStar", "nav.laws.VirtualImpedanceLaw", "nav.Khatib", "pass"):
+        done = subprocess.run([sys.executable, "-c", program.format(first)], capture_output=True, text=True, check=True)
+        orders.add(done.stdout)
+    assert len(orders) == 1
+    assert len(orders.pop().split()) == 10

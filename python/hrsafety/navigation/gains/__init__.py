@@ -1,13 +1,18 @@
 """Gains of laws: search, fronts, sensitivity."""
 
-from hrsafety.navigation.gains.changes import GainSensitivity, gain_sensitivity
-from hrsafety.navigation.gains.confidence import Confidence
-from hrsafety.navigation.gains.front import pareto_front
-from hrsafety.navigation.gains.results import Flatness, GainSearch, LocalSearch, ParetoFront, SearchRound
-from hrsafety.navigation.gains.search import optimize_gains
-from hrsafety.navigation.gains.settings import GainConstraint, SearchSettings
-from hrsafety.navigation.gains.slopes import GainGradient, gain_gradient
-from hrsafety.navigation.gains.stream import stream_batch
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_of
+
+if TYPE_CHECKING:
+    from hrsafety.navigation.gains.changes import GainSensitivity, gain_sensitivity
+    from hrsafety.navigation.gains.confidence import Confidence
+    from hrsafety.navigation.gains.front import pareto_front
+    from hrsafety.navigation.gains.results import Flatness, GainSearch, LocalSearch, ParetoFront, SearchRound
+    from hrsafety.navigation.gains.search import optimize_gains
+    from hrsafety.navigation.gains.settings import GainConstraint, SearchSettings
+    from hrsafety.navigation.gains.slopes import GainGradient, gain_gradient
+    from hrsafety.navigation.gains.stream import stream_batch
 
 __all__ = [
     "Confidence",
@@ -26,3 +31,19 @@ __all__ = [
     "pareto_front",
     "stream_batch",
 ]
+
+if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
+    __getattr__, __dir__ = names_of(
+        __name__,
+        __all__,
+        {
+            "hrsafety.navigation.gains.changes": "GainSensitivity gain_sensitivity",
+            "hrsafety.navigation.gains.confidence": "Confidence",
+            "hrsafety.navigation.gains.front": "pareto_front",
+            "hrsafety.navigation.gains.results": "Flatness GainSearch LocalSearch ParetoFront SearchRound",
+            "hrsafety.navigation.gains.search": "optimize_gains",
+            "hrsafety.navigation.gains.settings": "GainConstraint SearchSettings",
+            "hrsafety.navigation.gains.slopes": "GainGradient gain_gradient",
+            "hrsafety.navigation.gains.stream": "stream_batch",
+        },
+    )

@@ -1,7 +1,7 @@
 """What a law declares, once: its name, and the unit, bounds, symbol and default of each of its gains.
 
-The list `LAWS` follows from the declarations, and from the list the names in files and on the command line, the
-axes of sweeps, the bounds of searches and the colors of pictures.
+The list `hrsafety.navigation.laws.known.LAWS` follows from the declarations, and from the list the names in files and
+on the command line, the axes of sweeps, the bounds of searches and the colors of pictures.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters
 from hrsafety._records import dataclass
 
-__all__ = ["LAWS", "Gain", "Law", "gain", "law"]
+__all__ = ["DECLARED", "Gain", "Law", "gain", "law"]
 
 L = TypeVar("L", bound="type[Law]")
 
@@ -112,13 +112,12 @@ class Law(Parameters):
         return replace(self, **changes)  # type: ignore[type-var]  # every law is a dataclass
 
 
-_DECLARED: dict[str, type[Law]] = {}
-LAWS: Mapping[str, type[Law]] = MappingProxyType(_DECLARED)
-"""All laws by name, in the order of their declarations."""
+DECLARED: dict[str, type[Law]] = {}
+"""The laws by name whose modules are loaded; all of them are in `hrsafety.navigation.laws.known`."""
 
 
 def law(name: str, *other_names: str, color: str = "", plans: bool = False) -> Callable[[L], L]:
-    """Declare a law: put its class into `LAWS`, and what its fields say about gains into the class."""
+    """Declare a law: put its class into `DECLARED`, and what its fields say about gains into the class."""
 
     def declare(owner: L) -> L:
         gains: dict[str, Gain] = {
@@ -131,7 +130,7 @@ def law(name: str, *other_names: str, color: str = "", plans: bool = False) -> C
         owner.GAIN_BOUNDS = MappingProxyType({key: each.bounds for key, each in gains.items()})
         owner.GAIN_UNITS = MappingProxyType({key: each.unit for key, each in gains.items()})
         owner.GAIN_SYMBOLS = MappingProxyType({key: each.symbol for key, each in gains.items()})
-        _DECLARED[name] = owner
+        DECLARED[name] = owner
         return owner
 
     return declare

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from hrsafety._arguments import Array, count, number, points, readable
@@ -16,13 +15,15 @@ __all__ = ["barn_discs", "read_worlds"]
 MM = 1e-3
 
 
-def read_worlds(source: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
+def read_worlds(source: str | PathLike[str] | Mapping[str, Any]) -> Mapping[str, Any]:
     """Return what a file of worlds holds, or the mapping that was read from it."""
     rule = "be a file of BARN worlds in JSON, with cylinder_radius_m and worlds"
     if isinstance(source, Mapping):
         loaded: Any = source
     else:
-        path = readable("source", Path(source))
+        import json  # by those who have such a file
+
+        path = readable("source", source)
         try:
             loaded = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError, RecursionError) as error:
@@ -33,7 +34,7 @@ def read_worlds(source: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
     return loaded
 
 
-def barn_discs(source: str | Path | Mapping[str, Any], world: int) -> list[tuple[float, float, float]]:
+def barn_discs(source: str | PathLike[str] | Mapping[str, Any], world: int) -> list[tuple[float, float, float]]:
     """Return centers and radii of the cylinders of a world, in m."""
     loaded = read_worlds(source)
     wanted = count("world", world, least=0)

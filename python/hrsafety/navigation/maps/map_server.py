@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
-from typing import Any, NamedTuple
+from os import PathLike
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,13 @@ from hrsafety._arguments import positive, readable, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.maps.pgm import read_pgm
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 __all__ = ["ServedMap", "read_map_server"]
 
 MOST_BYTES = 1 << 20  # of a YAML file
-_ENTRY = re.compile(r"(\w+)\s*:\s*(.*)")
+_ENTRY = r"(\w+)\s*:\s*(.*)"
 _NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
 
 
@@ -30,10 +33,10 @@ class ServedMap(NamedTuple):
     yaw: float
 
 
-def read_map_server(path: str | Path, *, unknown: str = "occupied") -> ServedMap:
+def read_map_server(path: str | PathLike[str], *, unknown: str = "occupied") -> ServedMap:
     """Return the grid that a YAML file describes; row 0 has the lowest y."""
     fills = word("unknown", unknown, ("occupied", "free")) == "occupied"
-    file = readable("path", Path(path))
+    file = readable("path", path)
     entries = _entries(file)
     for key in _NEEDED:
         if key not in entries:
@@ -75,7 +78,7 @@ def _entries(file: Path) -> dict[str, Any]:
         if pending:  # a list in brackets over several lines
             bare = f"{pending}: {' '.join(found.pop(pending))} {bare}"
             pending = ""
-        match = _ENTRY.fullmatch(bare)
+        match = re.fullmatch(_ENTRY, bare)
         if match:
             key, value = match.groups()
             listed = "" if value else key

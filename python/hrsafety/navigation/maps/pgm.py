@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -11,20 +11,23 @@ import numpy.typing as npt
 from hrsafety._bounds import MOST_CELLS
 from hrsafety.errors import InvalidParameterError, Shown
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 __all__ = ["read_pgm"]
 
 HEAD_BYTES = 1 << 16
 BYTES_OF_NUMBER = 16  # of a gray value in words with what stands around it
 # Between the words of the head stand blanks and comments that end with their line.
 _GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
-_HEAD = re.compile(rb"(P[25])" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,6})(?:\s|(?=#))")
+_HEAD = rb"(P[25])" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,6})(?:\s|(?=#))"
 
 
 def read_pgm(path: Path) -> npt.NDArray[np.float64]:
     """Return the gray values of a picture from 0 to 255, (rows, columns), first row on top."""
     try:
         with path.open("rb") as file:
-            head = _HEAD.match(file.read(HEAD_BYTES))
+            head = re.match(_HEAD, file.read(HEAD_BYTES))
             if head is None:
                 file.seek(0)
                 shown = Shown(f"{path.name}, which begins with {file.read(2)!r}")

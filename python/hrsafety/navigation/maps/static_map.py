@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
-from pathlib import Path
+from os import PathLike
 from typing import Any, Self
 
 import numpy as np
@@ -235,7 +235,7 @@ class StaticMap(Parameters):
         return cls(grids=[grid])
 
     @classmethod
-    def from_map_server(cls, path: str | Path, *, unknown: str = "occupied") -> Self:
+    def from_map_server(cls, path: str | PathLike[str], *, unknown: str = "occupied") -> Self:
         """Return the map that a YAML file of the ROS map server describes, with its PGM image.
 
         Occupied is ``p > occupied_thresh``, free ``p < free_thresh``, with ``p = (255 - x)/255`` of the gray
@@ -262,7 +262,7 @@ class StaticMap(Parameters):
         return cls.from_grid(read.occupied, resolution=read.resolution, origin=read.origin, yaw=read.yaw)
 
     @classmethod
-    def from_barn(cls, source: str | Path | Mapping[str, Any], world: int) -> Self:
+    def from_barn(cls, source: str | PathLike[str] | Mapping[str, Any], world: int) -> Self:
         """Return a world of the Benchmark for Autonomous Robot Navigation (BARN).
 
         Parameters
@@ -446,6 +446,5 @@ class StaticMap(Parameters):
         if self.bounds is None:
             return "StaticMap(nothing)"
         (left, low), (right, high) = self.bounds
-        parts.append(f"x {left + 0.0:g} to {right + 0.0:g} m")
-        parts.append(f"y {low + 0.0:g} to {high + 0.0:g} m")
+        parts += [f"x {left + 0.0:g} to {right + 0.0:g} m", f"y {low + 0.0:g} to {high + 0.0:g} m"]
         return f"StaticMap({', '.join(parts)})"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.laws.declared import LAWS, Law
+from hrsafety.navigation.laws.declared import Law
+from hrsafety.navigation.laws.known import LAWS
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import inputs, shapes, style

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.compare import Comparison
+from hrsafety.navigation.comparison import Comparison
 from hrsafety.plotting import notes, style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
