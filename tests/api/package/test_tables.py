@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib
 import math
 import re
 import sys
@@ -195,12 +194,11 @@ def test_folder_that_is_missing_is_named(tmp_path: Path) -> None:
 def test_file_stays_as_it_was_when_writing_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "run.csv"
     path.write_text("old", encoding="utf-8")
-    tables = importlib.import_module("hrsafety.tables")
 
     def full(*_: Any, **__: Any) -> Any:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(tables.csv, "writer", full)
+    monkeypatch.setattr(csv, "writer", full)
     with pytest.raises(OSError, match="No space left"):
         RESULTS["SkirtTest"]().to_csv(path)
     assert path.read_text(encoding="utf-8") == "old"
