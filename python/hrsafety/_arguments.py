@@ -32,7 +32,7 @@ LONGEST_SHOWN = 200
 
 
 # Looked up once: studies construct parameters by the million.
-_assign = object.__setattr__
+assign = object.__setattr__
 
 
 class Parameters:
@@ -48,13 +48,13 @@ class Parameters:
     def _set(self, **values: object) -> None:
         """Write fields of a frozen instance during construction."""
         for name, value in values.items():
-            _assign(self, name, value)
+            assign(self, name, value)
 
     def _converted(self, **values: object) -> None:
         """Write fields whose checked values are other objects than those given, which is seldom so."""
         for name, value in values.items():
             if value is not getattr(self, name):
-                _assign(self, name, value)
+                assign(self, name, value)
 
     def _as_numbers(self, *names: str) -> dict[str, float]:
         """Turn fields into floats, and return them by name."""
@@ -237,6 +237,8 @@ def instance(name: str, value: object, *kinds: type[Kind]) -> Kind:
 
 def sequence(name: str, rule: str, value: object) -> list[Any]:
     """Return the elements of ``value``, or say what it should have been."""
+    if type(value) is list or type(value) is tuple:  # nearly always
+        return list(value)
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise InvalidParameterError(name, rule, value)
     try:

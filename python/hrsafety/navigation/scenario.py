@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import functools
-import operator
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import field, fields
 from typing import Any
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, instance, number, pair, sequence
+from hrsafety._arguments import Pair, Parameters, assign, instance, pair, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation import scenario_warnings
@@ -86,25 +85,35 @@ class Scenario(Parameters):
 
     def __post_init__(self) -> None:
         """Check the values and compute the regions that were not given."""
-        ends = (pair("start", self.start), pair("goal", self.goal))
-        values = (self.control_period, self.time_limit, self.arrival_tolerance, self.heading, self.rest_time)
-        rules = tuple(map(number, _RULES, values))
-        instance("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
-        if self.measurement is not None:
-            instance("measurement", self.measurement, Measurement)
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < 2**64:
-            raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", self.seed)
-        given = _as_given(self.robot, self.obstacles, self.control_period, self.measurement)
-        noise = (None if self.measurement is None else self.measurement._native, self.seed)
+        start, goal = pair("start", self.start), pair("goal", self.goal)
+        rules = self._rules()
+        robot, measurement, seed = self.robot, self.measurement, self.seed
+        if type(robot) is not HolonomicRobot:
+            instance("robot", robot, HolonomicRobot, DifferentialDriveRobot)
+        if measurement is not None:
+            instance("measurement", measurement, Measurement)
+        if type(seed) is bool or not isinstance(seed, int) or not 0 <= seed < 2**64:
+            raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
+        given = _as_given(robot, self.obstacles, rules[0], measurement)
+        noise = (None if measurement is None else measurement._native, seed)
         try:
             natives = [obstacle._native for obstacle in given]
-            native = _hrsafety.Scenario(self.robot._native, ends, natives, rules, noise)  # type: ignore[arg-type]  # five
+            native = _hrsafety.Scenario(robot._native, (start, goal), natives, rules, noise)
         except InvalidParameterError as error:
             raise _naming_kinds(error, given) from None
-        if any(map(operator.is_not, rules, values)):
-            self._set(**dict(zip(_RULES, rules, strict=True)))
-        self._converted(start=ends[0], goal=ends[1])
-        self._set(obstacles=given, _native=native)
+        if start is not self.start or goal is not self.goal:
+            self._set(start=start, goal=goal)
+        assign(self, "obstacles", given)
+        assign(self, "_native", native)
+
+    def _rules(self) -> tuple[float, float, float, float, float]:
+        """Return the numbers of a run in the order of the core, as floats."""
+        period, limit, tolerance = self.control_period, self.time_limit, self.arrival_tolerance
+        heading, rest = self.heading, self.rest_time
+        if not type(period) is type(limit) is type(tolerance) is type(heading) is type(rest) is float:  # seldom
+            checked = self._as_numbers("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
+            period, limit, tolerance, heading, rest = checked.values()
+        return period, limit, tolerance, heading, rest
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
@@ -117,10 +126,6 @@ class Scenario(Parameters):
         """Return the fields, and the warnings if there are any."""
         shown = ", ".join(f"{each.name}={getattr(self, each.name)!r}" for each in fields(self) if each.repr)
         return "\n".join([f"Scenario({shown})", *map(str, self.warnings)])
-
-
-# The numbers of a run, in the order of the core.
-_RULES = ("control_period", "time_limit", "arrival_tolerance", "heading", "rest_time")
 
 
 def _naming_kinds(error: InvalidParameterError, obstacles: Sequence[Obstacle]) -> InvalidParameterError:
@@ -144,8 +149,8 @@ def _as_given(
     measurement: Measurement | None,
 ) -> _Given:
     """Return the obstacles as they were given; those with clearances get radii, which the core takes."""
-    found = _Given()
-    for index, obstacle in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
+    found = _Given(sequence("obstacles", "be a sequence of obstacles", obstacles))
+    for index, obstacle in enumerate(found):
         if not isinstance(obstacle, Obstacle):
             instance(f"obstacles[{index}]", obstacle, Obstacle)
         given = getattr(obstacle, "_given", obstacle)  # as `as_given`, in the loop of every construction
@@ -159,7 +164,8 @@ def _as_given(
                 )
                 radii = {"critical_radius": critical, "active_radius": active, **radii}
             given = given.filled_in(**radii)
-        found.append(given)
+        if given is not obstacle:
+            found[index] = given
     return found
 
 
@@ -170,6 +176,9 @@ def _with_radii(given: Obstacle, regions: tuple[float, float]) -> Obstacle:
     return given
 
 
+_SLOT: Any = Scenario.obstacles  # type: ignore[misc]  # a slot is found by its class
+
+
 class _FilledIn:
     """The obstacles of a scenario, a tuple with the radii that the core has found.
 
@@ -177,20 +186,16 @@ class _FilledIn:
     copy every obstacle for nothing.
     """
 
-    def __init__(self, slot: Any) -> None:
-        self.slot = slot
+    __set__ = _SLOT.__set__  # as it is
 
     def __get__(self, scenario: Scenario | None, kind: type | None = None) -> object:
         if scenario is None:
             return self
-        found = self.slot.__get__(scenario)
+        found = _SLOT.__get__(scenario)
         if isinstance(found, _Given):
             found = tuple(map(_with_radii, found, scenario._native.regions()))
-            self.slot.__set__(scenario, found)
+            _SLOT.__set__(scenario, found)
         return found
 
-    def __set__(self, scenario: Scenario, obstacles: object) -> None:
-        self.slot.__set__(scenario, obstacles)
 
-
-Scenario.obstacles = _FilledIn(Scenario.obstacles)  # type: ignore[assignment, misc]  # in place of its slot
+Scenario.obstacles = _FilledIn()  # type: ignore[assignment, misc]  # in place of its slot

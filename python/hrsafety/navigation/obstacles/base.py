@@ -11,7 +11,11 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, not_negative, number, positive
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["Obstacle"]
+__all__ = ["LIMITS", "Limits", "Obstacle"]
+
+LIMITS = ("active_radius", "critical_radius", "max_speed")
+"""The limits that every obstacle may have."""
+Limits = tuple[float | None, float | None, float | None]
 
 
 class Obstacle(Parameters):
@@ -140,15 +144,16 @@ class Obstacle(Parameters):
             return super().__reduce__()
         return _filled_in, (given, {name: getattr(self, name) for name in _CLEARANCES})
 
-    def _limits(self) -> dict[str, float | None]:
-        if self.active_radius is self.critical_radius is self.max_speed is None and not self._by_clearance():
-            return dict(_NO_LIMITS)  # nearly always
-        limits = {}
-        for name in _NO_LIMITS:
-            value = getattr(self, name)
-            limits[name] = None if value is None else number(name, value)
-        self._set(**limits)
-        if self._by_clearance():
+    def _limits(self) -> Limits:
+        """Return the limits in the order of `LIMITS` as checked numbers."""
+        if self.active_radius is self.critical_radius is self.max_speed is None:  # nearly always
+            limits: Limits = (None, None, None)
+        else:
+            values = [(name, getattr(self, name)) for name in LIMITS]
+            active, critical, speed = [None if value is None else number(name, value) for name, value in values]
+            limits = (active, critical, speed)
+            self._set(active_radius=active, critical_radius=critical, max_speed=speed)
+        if self.active_clearance is not None or self.critical_clearance is not None:
             self._check_clearances()
         return limits
 
@@ -170,8 +175,6 @@ class Obstacle(Parameters):
             )
 
 
-# The limits that every obstacle may have.
-_NO_LIMITS = dict.fromkeys(("active_radius", "critical_radius", "max_speed"))
 # The clearance that stands for each radius.
 _CLEARANCES = {"active_radius": "active_clearance", "critical_radius": "critical_clearance"}
 

@@ -60,10 +60,8 @@ def frozen_segments(segments: Iterable[tuple[float, Sequence[float], Sequence[fl
     return tuple(frozen)
 
 
-def moving_body(
-    obstacle: _Moving, start: Pair, given: Mapping[str, Any], straight: Callable[[], _hrsafety.Obstacle]
-) -> _hrsafety.Obstacle:
-    """Return the native body of an obstacle that follows whichever motion it was given, else goes straight.
+def moving_body(obstacle: _Moving, start: Pair, given: Mapping[str, Any]) -> _hrsafety.Obstacle:
+    """Return the native body of an obstacle that follows the path or the segments that it was given.
 
     Parameters
     ----------
@@ -73,18 +71,14 @@ def moving_body(
         Where segments begin, in m.
     given : mapping
         Outline and limits by name.
-    straight : callable
-        Makes the body without path and segments.
     """
     if obstacle.path is not None:
         time, position = _as_made("path", obstacle.path, 2)
         with _explained(lambda: frozen_path(time, position)):
             return _hrsafety.Obstacle.recorded(time=time, position=position, **given)
-    if obstacle.segments is not None:
-        segments = _as_made("segments", obstacle.segments, None)
-        with _explained(lambda: frozen_segments(segments)):
-            return _hrsafety.Obstacle.piecewise(start=start, segments=segments, **given)
-    return straight()
+    segments = _as_made("segments", obstacle.segments, None)
+    with _explained(lambda: frozen_segments(segments)):
+        return _hrsafety.Obstacle.piecewise(start=start, segments=segments, **given)
 
 
 def _as_made(name: str, value: object, length: int | None) -> Any:

@@ -10,10 +10,10 @@ from typing import Any, Self
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, number, pair
+from hrsafety._arguments import Pair, assign, number, pair
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.base import LIMITS, Obstacle
 from hrsafety.navigation.obstacles.motions import Path, Segment, frozen_path, frozen_segments, moving_body
 
 __all__ = ["Human", "MovingDisc"]
@@ -25,18 +25,13 @@ def _moving(obstacle: Human | MovingDisc, *, start: Pair, acceleration: Pair, de
     stop = None if obstacle.stop is None else pair("stop", obstacle.stop)
     if not (radius is obstacle.radius and velocity is obstacle.velocity and stop is obstacle.stop):
         obstacle._set(radius=radius, velocity=velocity, stop=stop)
-    limits = obstacle._limits()
-    if limits["max_speed"] is None:
-        limits["max_speed"] = default_max_speed
-
-    def straight() -> _hrsafety.Obstacle:
-        return _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, tuple(limits.values()))  # type: ignore[arg-type]  # three
-
+    active, critical, speed = obstacle._limits()
+    limits = (active, critical, default_max_speed if speed is None else speed)
     if obstacle.path is None and obstacle.segments is None:  # nearly always
-        native = straight()
+        native = _hrsafety.Obstacle.moving((start, velocity, acceleration), stop, radius, limits)
     else:
-        native = moving_body(obstacle, start, {"radius": radius, **limits}, straight)
-    obstacle._set(_native=native)
+        native = moving_body(obstacle, start, {"radius": radius, **dict(zip(LIMITS, limits, strict=True))})
+    assign(obstacle, "_native", native)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

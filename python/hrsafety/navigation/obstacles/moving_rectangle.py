@@ -13,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, number, pair
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.base import LIMITS, Obstacle
 from hrsafety.navigation.obstacles.motions import Path, Segment, frozen_path, frozen_segments, moving_body
 from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.standing import Rectangle
@@ -94,13 +94,13 @@ class MovingRectangle(Obstacle):
             raise InvalidParameterError("center", "be finite", self.center)
         sides = {name: number(name, getattr(self, name)) for name in ("length", "width", "heading")}
         self._converted(**sides)
-        given = {**sides, **self._limits()}
-
-        def straight() -> _hrsafety.Obstacle:
+        given = {**sides, **dict(zip(LIMITS, self._limits(), strict=True))}
+        if self.path is None and self.segments is None:
             motion = {"velocity": self.velocity, "acceleration": self.acceleration, "stop": self.stop}
-            return _hrsafety.Obstacle.moving_rectangle(start=self.center, **motion, **given)
-
-        self._set(_native=moving_body(self, self.center, given, straight))
+            native = _hrsafety.Obstacle.moving_rectangle(start=self.center, **motion, **given)
+        else:
+            native = moving_body(self, self.center, given)
+        self._set(_native=native)
 
     @classmethod
     def from_path(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import field
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, number, pair
+from hrsafety._arguments import Pair, assign, number, pair
 from hrsafety._records import dataclass
-from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.base import LIMITS, Obstacle
 
 __all__ = ["Disc", "Rectangle"]
 
@@ -55,9 +55,14 @@ class Disc(Obstacle):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(center=pair("center", self.center), radius=number("radius", self.radius))
-        native = _hrsafety.Obstacle.disc(center=self.center, radius=self.radius, **self._limits())
-        self._set(_native=native)
+        center, radius = pair("center", self.center), number("radius", self.radius)
+        if center is not self.center or radius is not self.radius:
+            self._set(center=center, radius=radius)
+        active, critical, speed = self._limits()
+        native = _hrsafety.Obstacle.disc(
+            center=center, radius=radius, active_radius=active, critical_radius=critical, max_speed=speed
+        )
+        assign(self, "_native", native)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,10 +114,8 @@ class Rectangle(Obstacle):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        self._set(center=pair("center", self.center))
+        center = pair("center", self.center)
         sides = {name: number(name, getattr(self, name)) for name in ("length", "width", "heading")}
-        self._set(**sides)
-        native = _hrsafety.Obstacle.rectangle(
-            center=self.center, length=self.length, width=self.width, heading=self.heading, **self._limits()
-        )
-        self._set(_native=native)
+        self._converted(center=center, **sides)
+        limits = dict(zip(LIMITS, self._limits(), strict=True))
+        assign(self, "_native", _hrsafety.Obstacle.rectangle(center=center, **sides, **limits))
