@@ -8,15 +8,9 @@ if TYPE_CHECKING:
     from hrsafety.navigation.robots.as_built import AsBuilt, PoseFusion
     from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
     from hrsafety.navigation.robots.kinematics import DifferentialKinematics, OmniKinematics, Slip
+    from hrsafety.navigation.robots.published_wheels import DIFFERENTIAL_WHEELS, HOLONOMIC_WHEELS
     from hrsafety.navigation.robots.wheel_identification import OpenLoopTest, WheelFit, identify_wheel, open_loop_tests
-    from hrsafety.navigation.robots.wheels import (
-        DIFFERENTIAL_WHEELS,
-        HOLONOMIC_WHEELS,
-        WheelDrive,
-        WheelReference,
-        WheelRun,
-        follow_wheel,
-    )
+    from hrsafety.navigation.robots.wheels import WheelDrive, WheelReference, WheelRun, follow_wheel
 
 __all__ = [
     "DIFFERENTIAL_WHEELS",
@@ -46,9 +40,8 @@ if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for
             "hrsafety.navigation.robots.as_built": "AsBuilt PoseFusion",
             "hrsafety.navigation.robots.bodies": "DifferentialDriveRobot HolonomicRobot",
             "hrsafety.navigation.robots.kinematics": "DifferentialKinematics OmniKinematics Slip",
-            "hrsafety.navigation.robots.wheel_identification": ("OpenLoopTest WheelFit identify_wheel open_loop_tests"),
-            "hrsafety.navigation.robots.wheels": (
-                "DIFFERENTIAL_WHEELS HOLONOMIC_WHEELS WheelDrive WheelReference WheelRun follow_wheel"
-            ),
+            "hrsafety.navigation.robots.published_wheels": "DIFFERENTIAL_WHEELS HOLONOMIC_WHEELS",
+            "hrsafety.navigation.robots.wheel_identification": "OpenLoopTest WheelFit identify_wheel open_loop_tests",
+            "hrsafety.navigation.robots.wheels": "WheelDrive WheelReference WheelRun follow_wheel",
         },
     )

@@ -28,7 +28,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.tables import Columns, Table, with_units
 
-__all__ = ["DIFFERENTIAL_WHEELS", "HOLONOMIC_WHEELS", "WheelDrive", "WheelReference", "WheelRun", "follow_wheel"]
+__all__ = ["WheelDrive", "WheelReference", "WheelRun", "follow_wheel"]
 
 Triple = tuple[float, float, float]
 Feedback = Literal["observer", "observed_speed", "differences"]
@@ -149,13 +149,6 @@ def _model(value: object) -> Triple:
         raise InvalidParameterError("model", rule, value)
     first, second, third = (number("model", part) for part in parts)
     return (first, second, third)
-
-
-HOLONOMIC_WHEELS: tuple[WheelDrive, ...] = tuple(WheelDrive(**each) for each in _hrsafety.holonomic_wheels())
-"""Wheels 1 to 3 of the holonomic robot: (D.2.6) and Table D.2 of Zeng (2011)."""
-
-DIFFERENTIAL_WHEELS: tuple[WheelDrive, ...] = tuple(WheelDrive(**each) for each in _hrsafety.differential_wheels())
-"""Right and left wheel of the differential-drive robot: (E.2.6) and Table E.2 of Zeng (2011)."""
 
 
 @displayed
