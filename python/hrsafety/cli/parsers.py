@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from hrsafety import __version__
 from hrsafety._words import meant
+from hrsafety.cli import examples
 from hrsafety.cli.completion import SHELLS, PrintCompletion
 from hrsafety.cli.exit_codes import MEANINGS, WARNED
 from hrsafety.errors import HrsafetyError
@@ -28,54 +29,6 @@ LAW_NAMES = (
 )
 """Laws of `hrsafety.scenarios.laws`, named here so that ``--help`` need not load them."""
 
-_REPRODUCE_EXAMPLE = """example:
-  hrsafety reproduce --out reproduction
-  hrsafety reproduce --only tables-6 --only figures-6
-"""
-_SIMULATE_EXAMPLE = """examples:
-  hrsafety simulate my_first_crossing.toml --out crossing --animate crossing/run.gif
-  hrsafety simulate my_first_crossing.toml --gains 4.3 20.3 240.7 0.68 --stabilizing off
-  hrsafety simulate my_first_crossing.toml --law velocity-obstacle
-  hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
-
-A people file has the columns t_s, ped_id, x_m, y_m and may have frame. The robot crosses the main flow of people,
-who walk as recorded; start times are those with most traffic on its way.
-"""
-_FOAM_EXAMPLE = """example:
-  hrsafety foam examples/foam_design.toml --out puma
-
-The file names a manipulator, a closing speed, limits, a range of foam damping and foams. The
-folder receives summary.html with the picture of the boundaries, boundaries.csv and
-boundaries.png.
-"""
-_OPTIMIZE_EXAMPLE = """examples:
-  hrsafety optimize examples/gain_study.toml --out gains
-  hrsafety optimize examples/gain_study.toml --out gains --resume
-
-The file names scenarios, bounds, the grid and its refinements, an objective, constraints and
-whatever else differs from the published procedure. Ctrl-C keeps what is done in the folder;
---resume continues from there and ends with the same result. The folder receives summary.html
-with the pictures, results.json with every value, and the pictures.
-"""
-_SWEEP_EXAMPLE = """examples:
-  hrsafety sweep examples/impact_sweep.toml --out foams
-  hrsafety sweep examples/gain_sweep.toml --out gains --workers 4 --table gains/result.parquet
-  hrsafety sweep examples/gain_sweep.toml --dry-run
-  hrsafety sweep examples/gain_sweep.toml --out gains --chunks 3/16
-
-The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
-is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
-command resumes after a stop, whatever stopped it. The folder receives summary.html with the
-pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
-"""
-_BENCHMARK_EXAMPLE = """examples:
-  hrsafety benchmark s5 --laws field field+shield+yielding orca+shield --person-speed 1.0
-  hrsafety benchmark crowd --cases 1000 --out crowd
-  hrsafety benchmark recordings --data recordings --out recordings
-
-Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
-95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
-"""
 SUITE_NAMES = (
     *("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"),
     *("circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing", "bottleneck"),
@@ -90,41 +43,6 @@ STARTERS = {
     "contact": "cell.toml",
 }
 """Files to start from, by the word that ``hrsafety init`` takes."""
-
-_INIT_EXAMPLE = """examples:
-  hrsafety init scenario
-  hrsafety init contact my_cell.toml
-
-Every key of the file is explained in it. Nothing is overwritten.
-"""
-_VALIDATE_EXAMPLE = """examples:
-  hrsafety validate my_first_crossing.toml gain_study.toml
-  hrsafety validate robot.urdf --strict
-
-Each file is read as its command reads it, and nothing is run. The exit code is 2 if a file is invalid.
-"""
-_INFO_EXAMPLE = """example:
-  hrsafety info
-"""
-_ARM_EXAMPLE = """examples:
-  hrsafety arm robot.urdf --link tool0 --joint elbow=1.2 --joint wrist=-0.4
-  hrsafety arm robot.urdf --link tool0 --payload 2.0 --poses poses.csv --out masses
-
-The table has the mass of a point along the world axes, its least and worst direction, and the mass
-of ISO/TS 15066 beside them. Without --joint and --poses the arm stands in the middle of its limits
-and in drawn poses. The folder receives masses.csv and mass_ellipse.png, the mass ellipse in the
-pose with the worst mass.
-"""
-
-_CONTACT_EXAMPLE = """examples:
-  hrsafety contact --init cell.toml
-  hrsafety contact examples/contact_arm.toml --out report --date 2026-03-31
-
-The file names a robot (an arm from URDF, a mobile base or a mass), coverings, the regions of the body
-that may be touched and the planned speeds. The folder receives report.html, a page that prints on A4,
-and report.json with every number of it; the same file gives the same bytes. The date is printed only
-if it is given here or by SOURCE_DATE_EPOCH.
-"""
 
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
@@ -207,7 +125,7 @@ def parser() -> argparse.ArgumentParser:
     _add_init(commands)
     _add_validate(commands)
     _add_command(
-        commands, "info", summary="show versions, machine and which extras are installed", example=_INFO_EXAMPLE
+        commands, "info", summary="show versions, machine and which extras are installed", example=examples.INFO
     )
     return whole
 
@@ -240,7 +158,7 @@ def _add_reproduce(commands: Any) -> None:
         commands,
         "reproduce",
         summary="make every published table and figure again, measured beside printed",
-        example=_REPRODUCE_EXAMPLE,
+        example=examples.REPRODUCE,
     )
     parser.add_argument("--only", metavar="NAME", action="append", help="make this part only; can be repeated")
     parser.add_argument("--out", metavar="DIR", default="reproduction", help="folder to write into [%(default)s]")
@@ -251,7 +169,7 @@ def _add_simulate(commands: Any) -> None:
         commands,
         "simulate",
         summary="run a robot in a scenario file or across recorded people",
-        example=_SIMULATE_EXAMPLE,
+        example=examples.SIMULATE,
     )
     parser.add_argument("scenario", nargs="?", metavar="SCENARIO.toml", help="scenario file")
     parser.add_argument("--out", metavar="DIR", help="folder for a page, tables (CSV) and pictures")
@@ -305,7 +223,7 @@ def _add_foam(commands: Any) -> None:
         commands,
         "foam",
         summary="find the foam coverings that make a manipulator safe, and judge given ones",
-        example=_FOAM_EXAMPLE,
+        example=examples.FOAM,
     )
     parser.add_argument("design", metavar="DESIGN.toml", help="foam design file")
     parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
@@ -317,7 +235,7 @@ def _add_optimize(commands: Any) -> None:
         commands,
         "optimize",
         summary="search the gains that perform best in given scenarios",
-        example=_OPTIMIZE_EXAMPLE,
+        example=examples.OPTIMIZE,
     )
     parser.add_argument("study", metavar="STUDY.toml", help="gain study file")
     parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
@@ -331,7 +249,7 @@ def _add_sweep(commands: Any) -> None:
         commands,
         "sweep",
         summary="compute impacts or runs over ranges of their parameters",
-        example=_SWEEP_EXAMPLE,
+        example=examples.SWEEP,
     )
     parser.add_argument("study", metavar="STUDY.toml", help="sweep file")
     parser.add_argument(
@@ -363,7 +281,7 @@ def _add_arm(commands: Any) -> None:
         commands,
         "arm",
         summary="show the mass of a point of an arm by pose and direction",
-        example=_ARM_EXAMPLE,
+        example=examples.ARM,
     )
     parser.add_argument("robot", metavar="ROBOT.urdf", help="URDF of the arm, macros expanded")
     parser.add_argument("--out", metavar="DIR", default="arm", help="folder to write into [%(default)s]")
@@ -397,7 +315,7 @@ def _add_contact(commands: Any) -> None:
         commands,
         "contact",
         summary="judge planned contacts with people and write a report to hand over",
-        example=_CONTACT_EXAMPLE,
+        example=examples.CONTACT,
     )
     parser.add_argument("cell", nargs="?", default="cell.toml", metavar="CELL.toml", help="cell file [%(default)s]")
     parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
@@ -411,7 +329,7 @@ def _add_benchmark(commands: Any) -> None:
         commands,
         "benchmark",
         summary="run laws through a fixed protocol and show the shares of success, contact and fault",
-        example=_BENCHMARK_EXAMPLE,
+        example=examples.BENCHMARK,
     )
     _add_strict(parser)
     parser.add_argument("suite", choices=SUITE_NAMES, metavar="SUITE", help=", ".join(SUITE_NAMES))
@@ -441,7 +359,7 @@ def _starter(word: str) -> str:
 
 
 def _add_init(commands: Any) -> None:
-    parser = _add_command(commands, "init", summary="write a commented file to start from", example=_INIT_EXAMPLE)
+    parser = _add_command(commands, "init", summary="write a commented file to start from", example=examples.INIT)
     words = f"{', '.join(STARTERS)}, or the command that reads it"
     parser.add_argument("kind", type=_starter, choices=tuple(STARTERS), metavar="KIND", help=words)
     parser.add_argument("file", nargs="?", metavar="FILE", help="where to write it [a name of its kind]")
@@ -452,7 +370,7 @@ def _add_validate(commands: Any) -> None:
         commands,
         "validate",
         summary="check scenario, study, cell and arm files without running them",
-        example=_VALIDATE_EXAMPLE,
+        example=examples.VALIDATE,
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="files, .toml or .urdf")
     _add_strict(parser)

@@ -8,18 +8,13 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:
-    from hrsafety.contact.base import (
-        ContactMargins,
-        DifferentialBase,
-        HolonomicBase,
-        RegionSpeed,
-        contact_margins,
-        contact_speed_limit,
-    )
+    from hrsafety.contact.base import DifferentialBase, HolonomicBase
     from hrsafety.contact.catalogs import CatalogMaterial, load_materials
     from hrsafety.contact.chance import Exceedance, probability
     from hrsafety.contact.covering import Column, Covering, Region
+    from hrsafety.contact.margins import ContactMargins, RegionSpeed, contact_margins, contact_speed_limit
     from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
+    from hrsafety.contact.sensitivities import sensitivity
     from hrsafety.contact.simulation import ContactBatch, ContactImpact, batch, simulate
     from hrsafety.contact.speed import (
         AllowedSpeed,
@@ -28,7 +23,6 @@ if TYPE_CHECKING:
         allowed_speed,
         allowed_speeds,
         free_from_fixed_force,
-        sensitivity,
         thickness,
     )
 
@@ -72,17 +66,16 @@ if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for
         __name__,
         __all__,
         {
-            "hrsafety.contact.base": (
-                "ContactMargins DifferentialBase HolonomicBase RegionSpeed contact_margins contact_speed_limit"
-            ),
+            "hrsafety.contact.base": "DifferentialBase HolonomicBase",
             "hrsafety.contact.catalogs": "CatalogMaterial load_materials",
             "hrsafety.contact.chance": "Exceedance probability",
             "hrsafety.contact.covering": "Column Covering Region",
+            "hrsafety.contact.margins": "ContactMargins RegionSpeed contact_margins contact_speed_limit",
             "hrsafety.contact.materials": "Avalle GibsonAshby Linear Material Rusch StressTable material",
+            "hrsafety.contact.sensitivities": "sensitivity",
             "hrsafety.contact.simulation": "ContactBatch ContactImpact batch simulate",
             "hrsafety.contact.speed": (
-                "AllowedSpeed AllowedSpeeds LeastThickness allowed_speed allowed_speeds "
-                "free_from_fixed_force sensitivity thickness"
+                "AllowedSpeed AllowedSpeeds LeastThickness allowed_speed allowed_speeds free_from_fixed_force thickness"
             ),
         },
     )

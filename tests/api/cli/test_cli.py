@@ -75,9 +75,10 @@ def test_every_command_has_help_with_an_example(command: str, capsys: pytest.Cap
 
 
 def test_the_examples_of_the_help_are_understood() -> None:
-    from hrsafety.cli.parsers import _REPRODUCE_EXAMPLE, _SIMULATE_EXAMPLE, parser
+    from hrsafety.cli import examples
+    from hrsafety.cli.parsers import parser
 
-    lines = [line.split() for line in (_REPRODUCE_EXAMPLE + _SIMULATE_EXAMPLE).splitlines()]
+    lines = [line.split() for line in (examples.REPRODUCE + examples.SIMULATE).splitlines()]
     commands = [words[1:] for words in lines if words[:1] == ["hrsafety"]]
     assert len(commands) == 6
     for words in commands:

@@ -12,7 +12,7 @@ pytest.importorskip("matplotlib")
 
 from api.arms.arm_models import EXAMPLE  # needs the check above
 from hrsafety import arms
-from hrsafety.cli import main, parsers
+from hrsafety.cli import examples, main, parsers
 
 ARM = arms.Arm.example()
 
@@ -111,7 +111,7 @@ def test_a_bad_urdf_is_named_with_its_element(robot: str, capsys: pytest.Capture
 
 
 def test_the_examples_of_the_help_are_understood() -> None:
-    lines = [line.split() for line in parsers._ARM_EXAMPLE.splitlines()]
+    lines = [line.split() for line in examples.ARM.splitlines()]
     commands = [words[1:] for words in lines if words[:1] == ["hrsafety"]]
     assert len(commands) == 2
     for words in commands:

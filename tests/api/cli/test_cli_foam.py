@@ -15,10 +15,10 @@ import pytest
 from api.cli_answers import error_line, written
 from api.read_pages import page_of
 from hrsafety import impact
-from hrsafety.cli import main
+from hrsafety.cli import examples, main
 from hrsafety.cli.foam_curves import Remembered
 from hrsafety.cli.foam_file import load
-from hrsafety.cli.parsers import _FOAM_EXAMPLE, parser
+from hrsafety.cli.parsers import parser
 
 ROOT = Path(__file__).resolve().parents[3]
 EXAMPLE = ROOT / "examples" / "foam_design.toml"
@@ -216,7 +216,7 @@ def test_missing_file_and_file_in_place_of_the_folder_are_clear(
 def test_help_has_an_example_and_the_example_is_complete(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["foam", "--help"]) == 0
     assert "  hrsafety foam " in capsys.readouterr().out
-    words = next(line.split() for line in _FOAM_EXAMPLE.splitlines() if "hrsafety foam" in line)
+    words = next(line.split() for line in examples.FOAM.splitlines() if "hrsafety foam" in line)
     assert parser().parse_args(words[1:]).design == "examples/foam_design.toml"
     keys = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
     assert set(keys) == {"title", "closing_speed", "manipulator", "limits", "damping", "foams"}

@@ -24,9 +24,9 @@ from api.interrupting import LISTEN, needs_signals
 from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.cli import main, progress
+from hrsafety.cli import examples, main, progress
 from hrsafety.cli.optimize_file import load
-from hrsafety.cli.parsers import _OPTIMIZE_EXAMPLE, parser
+from hrsafety.cli.parsers import parser
 
 ROOT = Path(__file__).resolve().parents[3]
 EXAMPLE = ROOT / "examples" / "gain_study.toml"
@@ -529,7 +529,7 @@ def test_missing_file_wrong_folder_and_bad_threads_are_clear(
 def test_help_has_an_example_and_the_example_is_complete(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["optimize", "--help"]) == 0
     assert "  hrsafety optimize " in capsys.readouterr().out
-    lines = [line.split() for line in _OPTIMIZE_EXAMPLE.splitlines() if line.startswith("  hrsafety")]
+    lines = [line.split() for line in examples.OPTIMIZE.splitlines() if line.startswith("  hrsafety")]
     assert [parser().parse_args(words[1:]).resume for words in lines] == [False, True]
     keys = set(tomllib.loads(EXAMPLE.read_text(encoding="utf-8")))
     assert keys == {"title", "scenarios", "law", "bounds", "search", "objective", "run", "front", "compare"}

@@ -11,7 +11,8 @@ import numpy as np
 
 from hrsafety._arguments import instance
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.gains.results import GainSearch, ParetoFront
+from hrsafety.navigation.gains.pareto import ParetoFront
+from hrsafety.navigation.gains.results import GainSearch
 from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.gains.sensitivity import gain_label, mark_look
 

@@ -1,0 +1,109 @@
+"""Examples that the help of each command ends with."""
+
+from __future__ import annotations
+
+__all__ = [
+    "ARM",
+    "BENCHMARK",
+    "CONTACT",
+    "FOAM",
+    "INFO",
+    "INIT",
+    "OPTIMIZE",
+    "REPRODUCE",
+    "SIMULATE",
+    "SWEEP",
+    "VALIDATE",
+]
+
+REPRODUCE = """example:
+  hrsafety reproduce --out reproduction
+  hrsafety reproduce --only tables-6 --only figures-6
+"""
+
+SIMULATE = """examples:
+  hrsafety simulate my_first_crossing.toml --out crossing --animate crossing/run.gif
+  hrsafety simulate my_first_crossing.toml --gains 4.3 20.3 240.7 0.68 --stabilizing off
+  hrsafety simulate my_first_crossing.toml --law velocity-obstacle
+  hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
+
+A people file has the columns t_s, ped_id, x_m, y_m and may have frame. The robot crosses the main flow of people,
+who walk as recorded; start times are those with most traffic on its way.
+"""
+
+FOAM = """example:
+  hrsafety foam examples/foam_design.toml --out puma
+
+The file names a manipulator, a closing speed, limits, a range of foam damping and foams. The
+folder receives summary.html with the picture of the boundaries, boundaries.csv and
+boundaries.png.
+"""
+
+OPTIMIZE = """examples:
+  hrsafety optimize examples/gain_study.toml --out gains
+  hrsafety optimize examples/gain_study.toml --out gains --resume
+
+The file names scenarios, bounds, the grid and its refinements, an objective, constraints and
+whatever else differs from the published procedure. Ctrl-C keeps what is done in the folder;
+--resume continues from there and ends with the same result. The folder receives summary.html
+with the pictures, results.json with every value, and the pictures.
+"""
+
+SWEEP = """examples:
+  hrsafety sweep examples/impact_sweep.toml --out foams
+  hrsafety sweep examples/gain_sweep.toml --out gains --workers 4 --table gains/result.parquet
+  hrsafety sweep examples/gain_sweep.toml --dry-run
+  hrsafety sweep examples/gain_sweep.toml --out gains --chunks 3/16
+
+The file names axes with their ranges, a design (grid, Latin hypercube or Sobol sequence) and what
+is computed: impacts, or runs in given scenarios. Chunks are written as they finish; the same
+command resumes after a stop, whatever stopped it. The folder receives summary.html with the
+pictures, sweep.json and the folder chunks, which hrsafety.sweep.open reads.
+"""
+
+BENCHMARK = """examples:
+  hrsafety benchmark s5 --laws field field+shield+yielding orca+shield --person-speed 1.0
+  hrsafety benchmark crowd --cases 1000 --out crowd
+  hrsafety benchmark recordings --data recordings --out recordings
+
+Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
+95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
+"""
+
+INIT = """examples:
+  hrsafety init scenario
+  hrsafety init contact my_cell.toml
+
+Every key of the file is explained in it. Nothing is overwritten.
+"""
+
+VALIDATE = """examples:
+  hrsafety validate my_first_crossing.toml gain_study.toml
+  hrsafety validate robot.urdf --strict
+
+Each file is read as its command reads it, and nothing is run. The exit code is 2 if a file is invalid.
+"""
+
+INFO = """example:
+  hrsafety info
+"""
+
+ARM = """examples:
+  hrsafety arm robot.urdf --link tool0 --joint elbow=1.2 --joint wrist=-0.4
+  hrsafety arm robot.urdf --link tool0 --payload 2.0 --poses poses.csv --out masses
+
+The table has the mass of a point along the world axes, its least and worst direction, and the mass
+of ISO/TS 15066 beside them. Without --joint and --poses the arm stands in the middle of its limits
+and in drawn poses. The folder receives masses.csv and mass_ellipse.png, the mass ellipse in the
+pose with the worst mass.
+"""
+
+CONTACT = """examples:
+  hrsafety contact --init cell.toml
+  hrsafety contact examples/contact_arm.toml --out report --date 2026-03-31
+
+The file names a robot (an arm from URDF, a mobile base or a mass), coverings, the regions of the body
+that may be touched and the planned speeds. The folder receives report.html, a page that prints on A4,
+and report.json with every number of it; the same file gives the same bytes. The date is printed only
+if it is given here or by SOURCE_DATE_EPOCH.
+"""
