@@ -76,6 +76,13 @@ pub fn exp<R: Real>(x: R) -> R {
     R::select(x.le(highest), found, beyond)
 }
 
+/// `exp(x)` of a number that is not above zero, as [`exp`] but faster: zero below -700, NaN of NaN.
+#[inline(always)]
+pub fn decay<R: Real>(x: R) -> R {
+    let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), exponential(x));
+    R::select(x.le(R::zero()), found, x)
+}
+
 /// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
 /// full turns, doubled twice.
 #[inline(always)]
@@ -117,6 +124,17 @@ mod tests {
             assert!(lanes.lane(lane).to_bits() == exp(x).to_bits() || result.is_nan());
         }
         assert!(Real::lane(lanes, 4).is_nan());
+    }
+
+    #[test]
+    fn decay_has_the_bits_of_the_exponential() {
+        for index in 0..=8000 {
+            let x = -0.1 * f64::from(index);
+            assert_eq!(decay(x).to_bits(), exp(x).to_bits(), "{x}");
+        }
+        assert_eq!(decay(f64::NEG_INFINITY), 0.0);
+        assert_eq!(decay(-0.0), 1.0);
+        assert!(decay(f64::NAN).is_nan());
     }
 
     #[test]
