@@ -8,7 +8,7 @@ use crate::lanes::Vector2;
 type Vector = Vector2<f64>;
 
 /// Up to so many agents are looked at one by one.
-const FEW: usize = 24;
+pub(super) const FEW: usize = 24;
 
 /// Cells of a grid beside four an agent.
 const SPARE_CELLS: f64 = 1024.0;
@@ -226,6 +226,26 @@ impl Grid {
                 let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
                 count = self.keep(range, (own, reach), found, count);
             }
+        }
+        count
+    }
+
+    /// The same for those behind the agent at a place, in a world that does not repeat itself.
+    #[inline(always)]
+    pub(super) fn find_behind(&self, place: usize, reach: f64, found: &mut [u32]) -> usize {
+        let own = &self.agents[place];
+        if self.all_pairs {
+            return self.keep(place + 1..self.agents.len(), (own, reach), found, 0);
+        }
+        let [x, y] = &self.axes;
+        let (column, row) = (x.cell(own.position.x), y.cell(own.position.y));
+        let mut count = 0;
+        for row in row..=(row + 1).min(y.count - 1) {
+            let first = row * x.count + column.saturating_sub(1);
+            let last = row * x.count + (column + 1).min(x.count - 1);
+            let start = (self.starts[first] as usize).max(place + 1);
+            let range = start..self.starts[last + 1] as usize;
+            count = self.keep(range, (own, reach), found, count);
         }
         count
     }

@@ -9,11 +9,11 @@ use std::f64::consts::PI;
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, awareness_of, drive, drives};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2};
 use numeric::angle::unsigned_angle;
-use numeric::elementary::exp;
+use numeric::elementary::decay;
 
 type Vector = Vector2<f64>;
 
@@ -76,7 +76,7 @@ impl Moussaid {
         let theta = angle + R::splat(self.side_bias) * reach;
         let turning = bell(R::splat(self.n) * reach * theta);
         let slowing = bell(R::splat(self.n_prime) * reach * theta);
-        let size = R::splat(self.strength) * exp(-distance / reach);
+        let size = R::splat(self.strength) * decay(-distance / reach);
         let side = R::select(theta.gt(zero), turning, -turning);
         let side = R::select(theta.lt(zero) | theta.gt(zero), side, zero);
         let push = Vector2::new(
@@ -88,6 +88,23 @@ impl Moussaid {
             Vector2::new(zero, zero),
             push,
         )
+    }
+
+    /// Adds walls and the group of a person, if there may be one, to a force.
+    #[inline(always)]
+    fn beside_others(
+        &self,
+        mut force: Vector,
+        own: &Walker,
+        (around, grouped): (&Around<'_>, bool),
+    ) -> Vector {
+        force += pushes(around.walls, own.agent.position, |near| {
+            near.normal * (self.wall_strength * (-near.distance / self.wall_range).exp())
+        });
+        if !grouped {
+            return force + Vector::zeros();
+        }
+        force + self.group(own, around)
     }
 
     /// Acceleration by the group of a person.
@@ -117,7 +134,41 @@ impl Moussaid {
 /// `exp(-x^2)`.
 #[inline(always)]
 fn bell<R: Real>(x: R) -> R {
-    exp(-x * x)
+    decay(-x * x)
+}
+
+impl Moussaid {
+    /// Decides for everybody in a world that does not repeat itself: two people push each other by opposite vectors.
+    #[inline(always)]
+    pub(super) fn decide_together(
+        &self,
+        walkers: &[Option<Walker>],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Vector],
+    ) {
+        let people = around.neighbors.people.agents();
+        let awareness = awareness_of(people, walkers);
+        let Room { pairs, sums, .. } = room;
+        sums.clear();
+        sums.extend(drives(people, walkers, self.relaxation_time));
+        let robots = around.neighbors.robots.agents().len();
+        sums.resize(people.len() + robots, Vector::zeros());
+        pairs.open(&around.neighbors);
+        while pairs.find(&around.neighbors, self.cutoff, awareness) {
+            for pairs in pairs.side_by_side() {
+                let push = self.push(pairs.normal, pairs.distance, pairs.relative);
+                pairs.add(push * pairs.weight, sums);
+            }
+        }
+        let grouped = around.company.any();
+        for (agent, sum) in people.iter().zip(sums) {
+            let number = agent.number as usize;
+            if let Some(own) = walkers[number].as_ref().filter(|own| own.decides) {
+                decisions[number] = self.beside_others(*sum, own, (around, grouped));
+            }
+        }
+    }
 }
 
 impl Pedestrian for Moussaid {
@@ -132,9 +183,6 @@ impl Pedestrian for Moussaid {
             let push = self.push(others.normal, others.distance, relative);
             others.add(push * others.weight, &mut force);
         }
-        force += pushes(around.walls, own.agent.position, |near| {
-            near.normal * (self.wall_strength * (-near.distance / self.wall_range).exp())
-        });
-        force + self.group(own, around)
+        self.beside_others(force, own, (around, true))
     }
 }

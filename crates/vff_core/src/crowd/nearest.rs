@@ -2,10 +2,13 @@
 
 use crate::crowd::neighbors::Near;
 use crate::crowd::others::{Each, WIDTH};
-use crate::lanes::{Real, Zero};
+use crate::lanes::{Lanes, Real, Zero};
 
 /// Up to so many are ranked by comparing everybody with everybody.
 const MOST_RANKED: usize = 48;
+
+/// Up to so many are ranked side by side.
+const FEW: usize = 8;
 
 /// Room for an order by distance.
 #[derive(Clone, Debug, Default)]
@@ -13,20 +16,67 @@ pub struct Nearest {
     distances: Vec<f64>,
     /// Who comes first, second and so on.
     order: Vec<u32>,
+    /// The same of very few.
+    few: [u32; FEW],
 }
 
 impl Nearest {
     /// The nearest of those who are near, at most so many, by distance, then by number.
     #[inline(always)]
     pub fn of(&mut self, near: &Near<'_>, most: usize) -> &[u32] {
-        let count = near.len();
         self.distances.clear();
         for others in near.clone() {
             let distances: [f64; WIDTH] = std::array::from_fn(|lane| others.distance.lane(lane));
             self.distances.extend_from_slice(&distances[..others.count]);
         }
+        self.first(most, |index| near.get(index as usize).0.number)
+    }
+
+    /// The nearest of so many at distances in m, at most so many, by distance, then by number.
+    #[inline(always)]
+    pub fn at(
+        &mut self,
+        (count, distance): (usize, impl Fn(usize) -> f64),
+        most: usize,
+        number: impl Fn(u32) -> u32,
+    ) -> &[u32] {
+        if count <= FEW && self.rank_few(count, &distance) {
+            return &self.few[..most.min(count)];
+        }
+        self.distances.clear();
+        self.distances.extend((0..count).map(distance));
+        self.first(most, number)
+    }
+
+    /// As [`Self::rank`] of very few.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small counts
+    fn rank_few(&mut self, count: usize, distance: impl Fn(usize) -> f64) -> bool {
+        let mut own = [f64::INFINITY; FEW];
+        for (lane, own) in own.iter_mut().enumerate().take(count) {
+            *own = distance(lane);
+        }
+        let lanes = Lanes::<FEW>::from_fn(|lane| own[lane]);
+        let mut nearer = Lanes::<FEW>::zero();
+        for other in &own[..count] {
+            let before = Lanes::splat(*other).lt(lanes);
+            nearer += Lanes::select(before, Lanes::splat(1.0), Lanes::zero());
+        }
+        // Those equally far share a place and leave another one free.
+        let mut taken = 0_u32;
+        for lane in 0..count {
+            let place = nearer.lane(lane) as usize;
+            self.few[place] = lane as u32;
+            taken |= 1 << place;
+        }
+        taken.count_ones() as usize == count
+    }
+
+    #[inline(always)]
+    fn first(&mut self, most: usize, number: impl Fn(u32) -> u32) -> &[u32] {
+        let count = self.distances.len();
         if count > MOST_RANKED || !self.rank(count) {
-            self.sort(near, most);
+            self.sort(count, most, number);
         }
         self.order.truncate(most.min(count));
         &self.order
@@ -58,12 +108,12 @@ impl Nearest {
     /// Sorts by distance, then by number.
     #[allow(clippy::cast_possible_truncation)] // at most a million agents
     #[cold]
-    fn sort(&mut self, near: &Near<'_>, most: usize) {
-        let count = near.len();
-        let Self { distances, order } = self;
+    fn sort(&mut self, count: usize, most: usize, number: impl Fn(u32) -> u32) {
+        let Self {
+            distances, order, ..
+        } = self;
         order.clear();
         order.extend(0..count as u32);
-        let number = |index: u32| near.get(index as usize).0.number;
         let by_distance = |a: &u32, b: &u32| {
             let ordered = distances[*a as usize].total_cmp(&distances[*b as usize]);
             ordered.then_with(|| number(*a).cmp(&number(*b)))

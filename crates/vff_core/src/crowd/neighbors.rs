@@ -1,7 +1,7 @@
 //! Who is near whom, people and robots.
 
 use crate::crowd::agent::Agent;
-use crate::crowd::grid::{Grid, Period};
+use crate::crowd::grid::{FEW, Grid, Period};
 use crate::crowd::others::{Each, Others, WIDTH};
 use crate::lanes::Real;
 
@@ -24,6 +24,12 @@ pub struct Neighbors<'a> {
 }
 
 impl<'a> Neighbors<'a> {
+    /// Whether there are so few people and robots that each may be compared with each.
+    #[must_use]
+    pub fn are_few(&self) -> bool {
+        self.people.agents().len().max(self.robots.agents().len()) <= FEW
+    }
+
     /// Everybody within a distance in m of a person with an awareness of robots, people first; `list`: room for
     /// the numbers of everybody.
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::grid::Period;
-use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 
@@ -48,20 +48,7 @@ impl<'a> Others<'a> {
                 Each::from_fn(|lane| wrapped[lane].y),
             );
         }
-        let distance = offset.dot(&offset).sqrt();
-        let mut normal = Vector2::new(offset.x / distance, offset.y / distance);
-        let together = distance.lt(Each::splat(SHORTEST));
-        if together.any() {
-            let side = |lane: usize| {
-                if own.number < agents[lane].number {
-                    1.0
-                } else {
-                    -1.0
-                }
-            };
-            let apart = Vector2::new(Each::from_fn(side), Each::zero());
-            normal = Planar::<Each>::select(together, apart, normal);
-        }
+        let (distance, normal) = parted(offset, |lane| own.number < agents[lane].number);
         Self {
             agents,
             count,
@@ -110,6 +97,24 @@ impl<'a> Others<'a> {
             *sum += Vector::from(vectors.lane(lane));
         }
     }
+}
+
+/// Distances in m and unit vectors of offsets in m; who are at one place are parted along x, the one with the lower
+/// number to the right.
+#[inline(always)]
+pub(super) fn parted<R: Real>(
+    offset: Vector2<R>,
+    lower: impl Fn(usize) -> bool,
+) -> (R, Vector2<R>) {
+    let distance = offset.dot(&offset).sqrt();
+    let normal = Vector2::new(offset.x / distance, offset.y / distance);
+    let together = distance.lt(R::splat(SHORTEST));
+    if !together.any() {
+        return (distance, normal);
+    }
+    let side = |lane: usize| if lower(lane) { 1.0 } else { -1.0 };
+    let apart = Vector2::new(R::from_fn(side), R::zero());
+    (distance, Planar::<R>::select(together, apart, normal))
 }
 
 /// A vector of each.

@@ -2,9 +2,11 @@
 
 use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::grid::Period;
+use crate::crowd::mutual::Mutual;
 use crate::crowd::nearest::Nearest;
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::others::Each;
+use crate::crowd::pairs::Meetings;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
@@ -54,6 +56,9 @@ pub struct Around<'a> {
 
 /// The group of a person.
 pub trait Fellows: std::fmt::Debug {
+    /// Whether anybody belongs to a group.
+    fn any(&self) -> bool;
+
     /// Its members around a person; `near`: the distance in m below which they are too near.
     fn company(&self, own: &Agent, near: f64) -> Company;
 }
@@ -95,6 +100,10 @@ pub struct Groupings<'a> {
 }
 
 impl Fellows for Groupings<'_> {
+    fn any(&self) -> bool {
+        self.of.iter().any(Option::is_some)
+    }
+
     fn company(&self, own: &Agent, near: f64) -> Company {
         let group = self.of.get(own.number as usize).copied().flatten();
         if group.is_none() {
@@ -131,6 +140,16 @@ pub struct Room {
     pub planes: Vec<HalfPlane>,
     /// Linear programs.
     pub solver: Solver,
+    /// Pairs of those who act on each other.
+    pub pairs: Meetings,
+    /// Half-planes that they keep off each other by.
+    pub mutual: Mutual,
+    /// Ways that everybody takes, and where everybody wants to go, by the same places.
+    pub ways: Vec<Vector2<f64>>,
+    /// See `ways`.
+    pub aheads: Vec<Vector2<f64>>,
+    /// What everybody has gathered so far, by the places of [`Pairs`](crate::crowd::pairs::Pairs).
+    pub sums: Vec<Vector2<f64>>,
 }
 
 /// A model of people.
@@ -143,4 +162,30 @@ pub trait Pedestrian {
 #[inline]
 pub(super) fn drive(own: &Walker, relaxation_time: f64) -> Vector2<f64> {
     (own.agent.direction * own.desired_speed - own.agent.velocity) / relaxation_time
+}
+
+/// Drives of everybody by their places in a grid, where the sums of their forces start.
+#[inline(always)]
+pub(super) fn drives<'a>(
+    people: &'a [Agent],
+    walkers: &'a [Option<Walker>],
+    relaxation_time: f64,
+) -> impl Iterator<Item = Vector2<f64>> + 'a {
+    let walkers = people.iter().map(|agent| &walkers[agent.number as usize]);
+    walkers.map(move |own| {
+        let drive = |own: &Walker| drive(own, relaxation_time);
+        own.as_ref().map_or_else(Vector2::zeros, drive)
+    })
+}
+
+/// Awareness of robots of somebody at a place of a grid.
+#[inline(always)]
+pub(super) fn awareness_of<'a>(
+    people: &'a [Agent],
+    walkers: &'a [Option<Walker>],
+) -> impl Fn(usize) -> f64 + Copy + 'a {
+    |place| {
+        let own = walkers[people[place].number as usize].as_ref();
+        own.map_or(0.0, |own| own.awareness)
+    }
 }

@@ -317,6 +317,10 @@ pub(super) struct Companions<'a> {
 }
 
 impl Fellows for Companions<'_> {
+    fn any(&self) -> bool {
+        !self.groups.members.is_empty()
+    }
+
     fn company(&self, own: &Agent, near: f64) -> Company {
         let group = self.groups.of.get(own.number as usize).copied().flatten();
         let Some(group) = group else {

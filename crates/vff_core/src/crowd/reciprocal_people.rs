@@ -64,7 +64,7 @@ impl<R: Real> Meeting<R> {
         let side = <Vector2<R> as Planar<R>>::select(left, to_left, to_right);
         let mut direction = side.over(squared);
         let mut change = direction * relative.dot(&direction) - relative;
-        let touching = squared.le(touch * touch);
+        let touching = self.touching();
         if ahead.any() {
             let front = self.front(from_front, R::splat(1.0 / horizon));
             direction = <Vector2<R> as Planar<R>>::select(ahead, front.0, direction);
@@ -77,6 +77,24 @@ impl<R: Real> Meeting<R> {
             change = <Vector2<R> as Planar<R>>::select(touching, front.1, change);
         }
         (direction, change)
+    }
+
+    /// Whether the discs touch. If not, the answer for the other one is the opposite.
+    #[inline(always)]
+    #[must_use]
+    pub fn touching(&self) -> R::Mask {
+        self.way.dot(&self.way).le(self.touch * self.touch)
+    }
+
+    /// The same discs as the other one sees them.
+    #[inline(always)]
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            way: -self.way,
+            relative: -self.relative,
+            touch: self.touch,
+        }
     }
 
     /// At the rounded front of the velocity obstacle.
@@ -108,12 +126,7 @@ impl ReciprocalPeople {
         let nearest = nearest.of(&near, self.max_neighbors);
         for block in nearest.chunks(WIDTH) {
             let others = near.among(block);
-            let together = others.distance.lt(Each::splat(SHORTEST));
-            let mut away = others.offset;
-            if together.any() {
-                let little = others.normal * Each::splat(SHORTEST);
-                away = Planar::<Each>::select(together, little, away);
-            }
+            let away = away(others.offset, others.distance, others.normal);
             let touch = Each::splat(me.radius) + others.radius() + Each::splat(2.0 * self.margin);
             let meeting = Meeting {
                 way: Vector2::new(-away.x, -away.y),
@@ -130,7 +143,12 @@ impl ReciprocalPeople {
     }
 
     /// Half-planes of walls; returns how many there are.
-    fn keep_off_walls(&self, own: &Walker, around: &Around<'_>, room: &mut Room) -> usize {
+    pub(super) fn keep_off_walls(
+        &self,
+        own: &Walker,
+        around: &Around<'_>,
+        room: &mut Room,
+    ) -> usize {
         let reach = self.wall_horizon * own.desired_speed;
         let radius = own.agent.radius + self.margin;
         room.planes.clear();
@@ -154,22 +172,37 @@ impl ReciprocalPeople {
     }
 }
 
+/// The permitted velocity nearest to the wanted one.
+#[inline(always)]
+pub(super) fn permitted(own: &Walker, hard: usize, step: f64, room: &mut Room) -> Vector {
+    let speed = own.desired_speed.min(own.to_go / step);
+    let wanted = if own.stays {
+        Vector::zeros()
+    } else {
+        own.agent.direction * speed
+    };
+    room.solver
+        .nearest(&room.planes, hard, own.desired_speed, wanted)
+}
+
+/// Offsets, of those at one place tiny ones.
+#[inline(always)]
+pub(super) fn away<R: Real>(offset: Vector2<R>, distance: R, normal: Vector2<R>) -> Vector2<R> {
+    let together = distance.lt(R::splat(SHORTEST));
+    if !together.any() {
+        return offset;
+    }
+    Planar::<R>::select(together, normal * R::splat(SHORTEST), offset)
+}
+
 impl Pedestrian for ReciprocalPeople {
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let hard = self.keep_off_walls(own, around, room);
         self.keep_off_others(own, around, room);
-        let speed = own.desired_speed.min(own.to_go / around.step);
-        let wanted = if own.stays {
-            Vector::zeros()
-        } else {
-            own.agent.direction * speed
-        };
-        room.solver
-            .nearest(&room.planes, hard, own.desired_speed, wanted)
+        permitted(own, hard, around.step, room)
     }
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;

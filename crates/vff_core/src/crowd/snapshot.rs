@@ -87,6 +87,37 @@ impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Job<'_, F> {
 
     #[inline(always)]
     fn call(self) {
+        match self.mutual() {
+            Some(Model::SocialForce1995(model)) => {
+                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+            }
+            Some(Model::Moussaid(model)) => {
+                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+            }
+            Some(Model::ReciprocalAvoidance(model)) if self.around.neighbors.are_few() => {
+                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+            }
+            _ => self.one_by_one(),
+        }
+    }
+}
+
+impl<'m, F: Fn(usize) -> &'m Model> Job<'_, F> {
+    /// The model of everybody, if all have the same one and the world does not repeat itself.
+    #[inline(always)]
+    fn mutual(&self) -> Option<&'m Model> {
+        let people = self.around.neighbors.people;
+        let mut models = people.agents().iter();
+        let mut models = models
+            .by_ref()
+            .map(|agent| (self.model_of)(agent.number as usize));
+        let model = models.next()?;
+        let shared = models.all(|other| std::ptr::eq(other, model));
+        (shared && people.period == Period::default()).then_some(model)
+    }
+
+    #[inline(always)]
+    fn one_by_one(self) {
         for agent in self.around.neighbors.people.agents() {
             let number = agent.number as usize;
             if let Some(walker) = self.walkers[number]
@@ -95,6 +126,150 @@ impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Job<'_, F> {
             {
                 let model = (self.model_of)(number);
                 self.decisions[number] = model.decide(walker, self.around, self.room);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crowd::agent::{FIRST_ROBOT, direction_of};
+    use crate::crowd::moussaid::Moussaid;
+    use crate::crowd::pedestrian::Groupings;
+    use crate::crowd::reciprocal_people::ReciprocalPeople;
+    use crate::crowd::social_force_1995::SocialForce1995;
+    use numeric::random::Stream;
+
+    type Vector = Vector2<f64>;
+
+    const MODELS: [Model; 3] = [
+        Model::SocialForce1995(SocialForce1995 {
+            relaxation_time: 0.5,
+            strength: 2.1,
+            range: 0.3,
+            step_time: 2.0,
+            wall_strength: 10.0,
+            wall_range: 0.2,
+            view_angle: 1.7,
+            behind: 0.5,
+            cutoff: 2.0,
+        }),
+        Model::Moussaid(Moussaid {
+            relaxation_time: 0.54,
+            strength: 4.5,
+            gamma: 0.35,
+            n: 2.0,
+            n_prime: 3.0,
+            velocity_weight: 2.0,
+            side_bias: 0.005,
+            wall_strength: 3.0,
+            wall_range: 0.1,
+            gaze: 4.0,
+            cohesion: 3.0,
+            separation: 1.0,
+            view_angle: 1.5,
+            contact_distance: 0.55,
+            cutoff: 2.0,
+        }),
+        Model::ReciprocalAvoidance(ReciprocalPeople {
+            horizon: 5.0,
+            wall_horizon: 0.5,
+            max_neighbors: 10,
+            margin: 0.01,
+            cutoff: 2.0,
+        }),
+    ];
+
+    fn drawn(stream: &mut Stream, number: u32, side: f64) -> Agent {
+        let mut draw =
+            |size: f64| Vector::new(stream.uniform(-size, size), stream.uniform(-size, size));
+        Agent {
+            position: draw(side),
+            velocity: draw(1.0),
+            direction: direction_of(draw(1.0)),
+            radius: 0.25,
+            number,
+        }
+    }
+
+    /// People, of whom some are absent, at one place, at rest or follow a recording, and robots.
+    fn scene(stream: &mut Stream, count: u32, robots: u32) -> (Vec<Option<Walker>>, Vec<Agent>) {
+        let side = f64::from(count).sqrt() * 0.7;
+        let mut walkers: Vec<Option<Walker>> = (0..count)
+            .map(|number| {
+                Some(Walker {
+                    agent: drawn(stream, number, side),
+                    desired_speed: 1.3,
+                    decides: number % 7 != 5,
+                    to_go: 3.0,
+                    stays: number % 5 == 4,
+                    heading: Vector::x(),
+                    awareness: f64::from(number % 3) * 0.5,
+                })
+            })
+            .collect();
+        if count > 4 {
+            let place = walkers[0].map_or_else(Vector::zeros, |walker| walker.agent.position);
+            for walker in walkers[2..4].iter_mut().flatten() {
+                (walker.agent.position, walker.agent.velocity) = (place, Vector::zeros());
+            }
+            walkers[4] = None;
+        }
+        let robots = (0..robots).map(|index| drawn(stream, FIRST_ROBOT + index, side));
+        (walkers, robots.collect())
+    }
+
+    #[test]
+    fn pairs_looked_at_once_decide_as_everybody_alone() {
+        let mut stream = Stream::new(17, 0);
+        let walls = [Wall::polyline(vec![[-1.0, 0.5], [1.0, 0.7]]).unwrap()];
+        let (mut once, mut alone) = (Snapshot::default(), Snapshot::default());
+        for count in (0..30).chain([60, 300]) {
+            for (robots, model) in [0, 1, 3, 30]
+                .into_iter()
+                .flat_map(|robots| MODELS.map(|model| (robots, model)))
+            {
+                let (walkers, robots) = scene(&mut stream, count, robots);
+                let groups: Vec<Option<u32>> =
+                    (0..count).map(|n| (n % 4 == 1).then_some(n / 8)).collect();
+                let agents: Vec<Agent> = walkers
+                    .iter()
+                    .flatten()
+                    .map(|walker| walker.agent)
+                    .collect();
+                let company = Groupings {
+                    agents: &agents,
+                    of: &groups,
+                    period: Period::default(),
+                };
+                let setting = Setting {
+                    walls: &walls,
+                    company: &company,
+                    period: Period::default(),
+                    reach: model.cutoff(),
+                    step: 0.25,
+                };
+                let mut decide = |snapshot: &mut Snapshot, models: [&Model; 2]| {
+                    let mut decisions = Vec::new();
+                    let model_of = |number: usize| models[number % 2];
+                    snapshot.decide(
+                        &setting,
+                        &mut walkers.clone(),
+                        &robots,
+                        model_of,
+                        &mut decisions,
+                    );
+                    decisions
+                };
+                let expected = decide(&mut alone, [&model, &model.clone()]);
+                assert_eq!(
+                    decide(&mut once, [&model, &model]),
+                    expected,
+                    "{count} {}",
+                    robots.len()
+                );
+                assert_eq!(expected.len(), count as usize);
             }
         }
     }

@@ -4,12 +4,12 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::others::{Each, Others};
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
+use crate::crowd::neighbors::{Neighbors, Unnoticed};
+use crate::crowd::others::Each;
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, awareness_of, drive, drives};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Mask, Planar, Real, Vector2};
-use numeric::elementary::exp;
+use numeric::elementary::decay;
 
 type Vector = Vector2<f64>;
 
@@ -39,54 +39,166 @@ pub struct SocialForce1995 {
     pub cutoff: f64,
 }
 
+/// Neighbors as a person sees them, side by side.
+#[derive(Clone, Copy, Debug)]
+struct Seen<R> {
+    /// From the neighbor to the person, in m.
+    offset: Vector2<R>,
+    distance: R,
+    normal: Vector2<R>,
+    /// Way `y` that the neighbor takes, in m.
+    way: Vector2<R>,
+}
+
 impl SocialForce1995 {
     /// Forces of neighbors, before weights.
     #[inline(always)]
-    fn push(&self, others: &Others<'_>) -> Vector2<Each> {
+    fn push<R: Real>(&self, seen: &Seen<R>) -> Vector2<R> {
+        let Seen {
+            offset,
+            distance,
+            normal,
+            way,
+        } = *seen;
         let unit = self.strength / self.range;
-        let speed = Planar::<Each>::length(others.velocity());
-        let way = others.direction() * (speed * Each::splat(self.step_time));
-        let apart = others.offset - way;
-        let far = Planar::<Each>::length(apart);
-        let sum = others.distance + far;
+        let apart = offset - way;
+        let far = Planar::<R>::length(apart);
+        let sum = distance + far;
         let squared = sum * sum - way.dot(&way);
-        let axis = Each::splat(0.5) * squared.sqrt();
-        let decay = exp(-axis / Each::splat(self.range));
-        let size = Each::splat(unit) * decay * sum / (Each::splat(4.0) * axis);
-        let mut push = (others.normal + Planar::<Each>::over(apart, far)) * size;
-        let shortest = Each::splat(SHORTEST);
-        let (met, reached) = (others.distance.lt(shortest), far.lt(shortest));
-        let passing = squared.lt(Each::splat(ON_THE_WAY));
+        let axis = R::splat(0.5) * squared.sqrt();
+        let decay = decay(-axis / R::splat(self.range));
+        let size = R::splat(unit) * decay * sum / (R::splat(4.0) * axis);
+        let mut push = (normal + Planar::<R>::over(apart, far)) * size;
+        let shortest = R::splat(SHORTEST);
+        let (met, reached) = (distance.lt(shortest), far.lt(shortest));
+        let passing = squared.lt(R::splat(ON_THE_WAY));
         if (met | reached | passing).any() {
             // Those who meet exactly head-on pass on their right.
-            let side = Each::splat(4.0) * others.distance * far;
-            let aside = way.left_normal() * (Each::splat(unit) / side.sqrt());
-            push = Planar::<Each>::select(passing, aside, push);
-            push = Planar::<Each>::select(reached, Vector2::zeros(), push);
-            push = Planar::<Each>::select(met, others.normal * Each::splat(unit), push);
+            let side = R::splat(4.0) * distance * far;
+            let aside = way.left_normal() * (R::splat(unit) / side.sqrt());
+            push = Planar::<R>::select(passing, aside, push);
+            push = Planar::<R>::select(reached, Vector2::zeros(), push);
+            push = Planar::<R>::select(met, normal * R::splat(unit), push);
         }
         push
+    }
+
+    /// Forces of neighbors by whether somebody who wants to go in a direction sees them; `cosine` of half the angle
+    /// of view.
+    #[inline(always)]
+    fn viewed<R: Real>(
+        &self,
+        push: Vector2<R>,
+        ahead: Vector2<R>,
+        (weight, cosine): (R, f64),
+    ) -> Vector2<R> {
+        let seen = (-ahead.dot(&push)).ge(Planar::<R>::length(push) * R::splat(cosine));
+        let view = R::select(seen, R::splat(1.0), R::splat(self.behind));
+        push * (weight * view)
+    }
+
+    /// Decides for everybody in a world that does not repeat itself: what two people share is found once.
+    #[inline(always)]
+    pub(super) fn decide_together(
+        &self,
+        walkers: &[Option<Walker>],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Vector],
+    ) {
+        let neighbors = &around.neighbors;
+        let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
+        let (ways, aheads) = (&mut room.ways, &mut room.aheads);
+        ways.clear();
+        aheads.clear();
+        for agent in people.iter().chain(robots) {
+            ways.push(agent.direction * (agent.velocity.norm() * self.step_time));
+            aheads.push(agent.direction);
+        }
+        room.sums.clear();
+        room.sums
+            .extend(drives(people, walkers, self.relaxation_time));
+        room.sums.resize(ways.len(), Vector::zeros());
+        self.push_together(neighbors, awareness_of(people, walkers), room);
+        for (agent, sum) in people.iter().zip(&room.sums) {
+            let number = agent.number as usize;
+            if walkers[number].as_ref().is_some_and(|own| own.decides) {
+                decisions[number] = *sum + self.walls(agent.position, around);
+            }
+        }
+    }
+
+    /// Adds the forces of all pairs to the sums of their people.
+    #[inline(always)]
+    fn push_together(
+        &self,
+        neighbors: &Neighbors<'_>,
+        awareness: impl Fn(usize) -> f64 + Copy,
+        room: &mut Room,
+    ) {
+        let cosine = self.view_angle.cos();
+        let Room {
+            pairs,
+            sums,
+            ways,
+            aheads,
+            ..
+        } = room;
+        pairs.open(neighbors);
+        while pairs.find(neighbors, self.cutoff, awareness) {
+            for pair in pairs.side_by_side() {
+                let seen = Seen {
+                    offset: pair.offset,
+                    distance: pair.distance,
+                    normal: pair.normal,
+                    way: pair.gathered(1, ways),
+                };
+                let reversed = Seen {
+                    offset: -pair.offset,
+                    normal: -pair.normal,
+                    way: pair.gathered(0, ways),
+                    ..seen
+                };
+                let limits = (pair.weight, cosine);
+                let (ahead, back) = (pair.gathered(0, aheads), pair.gathered(1, aheads));
+                let both = [
+                    self.viewed(self.push(&seen), ahead, limits),
+                    self.viewed(self.push(&reversed), back, limits),
+                ];
+                pair.add_both(both, sums);
+            }
+        }
+    }
+
+    /// Push of the walls.
+    #[inline(always)]
+    fn walls(&self, place: Vector, around: &Around<'_>) -> Vector {
+        let wall = self.wall_strength / self.wall_range;
+        pushes(around.walls, place, |near| {
+            near.normal * (wall * (-near.distance / self.wall_range).exp())
+        })
     }
 }
 
 impl Pedestrian for SocialForce1995 {
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
-        let cosine = Each::splat(self.view_angle.cos());
+        let cosine = self.view_angle.cos();
         let mut force = drive(own, self.relaxation_time);
         let ahead: Vector2<Each> = Planar::<Each>::splat(own.agent.direction.into());
         let limits = (self.cutoff, own.awareness);
         let neighbors = around.neighbors;
         for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
-            let push = self.push(&others);
-            let seen = (-ahead.dot(&push)).ge(Planar::<Each>::length(push) * cosine);
-            let view = Each::select(seen, Each::splat(1.0), Each::splat(self.behind));
-            others.add(push * (others.weight * view), &mut force);
+            let speed = Planar::<Each>::length(others.velocity());
+            let push = self.push(&Seen {
+                offset: others.offset,
+                distance: others.distance,
+                normal: others.normal,
+                way: others.direction() * (speed * Each::splat(self.step_time)),
+            });
+            let push = self.viewed(push, ahead, (others.weight, cosine));
+            others.add(push, &mut force);
         }
-        let wall = self.wall_strength / self.wall_range;
-        force
-            + pushes(around.walls, own.agent.position, |near| {
-                near.normal * (wall * (-near.distance / self.wall_range).exp())
-            })
+        force + self.walls(own.agent.position, around)
     }
 }
