@@ -1,0 +1,223 @@
+//! Plans of a robot with two wheels: a ramp within a period, then braking on the curve of the command.
+
+use crate::lanes::Vector2;
+use crate::laws::shield::person::Person;
+use crate::laws::shield::walls::Walls;
+use crate::robots::differential::{DifferentialLimits, Twist};
+
+/// Slower than this is at rest and looks nowhere, in m/s.
+pub(super) const STILL: f64 = 1e-9;
+
+/// Parts of a control period, and of a braking, between which a plan is looked at.
+const PARTS: usize = 8;
+
+/// Rounding of a number of periods.
+const PERIOD_ROUNDING: f64 = 1e-9;
+
+/// A robot with two wheels at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistState {
+    /// Position in m.
+    pub position: Vector2<f64>,
+    /// Heading in rad.
+    pub heading: f64,
+    /// Speed and turn rate.
+    pub twist: Twist,
+}
+
+/// A point of a plan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    time: f64,
+    pub(super) position: Vector2<f64>,
+    heading: f64,
+}
+
+/// Which way the half disc looks over a part of the plan: the union of two, or all around.
+#[derive(Clone, Copy, Debug)]
+enum Ahead {
+    Union([Vector2<f64>; 2]),
+    Around,
+}
+
+/// Ramp of speed and turn rate within a period, then both fall together to rest on the curve of the
+/// command.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TwistPlan {
+    pub(super) ramp: [Node; PARTS + 1],
+    braking: [Node; PARTS + 1],
+    /// Largest speed of the center in m/s.
+    pub(super) speed: f64,
+    ahead: [Ahead; 2],
+}
+
+pub(super) fn unit(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Vector2::new(cos, sin)
+}
+
+/// Nodes of a part in which the twist changes evenly.
+fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1] {
+    let mut nodes = [first; PARTS + 1];
+    let part = duration / PARTS as f64;
+    for index in 0..PARTS {
+        let share = (index as f64 + 0.5) / PARTS as f64;
+        let mean = Twist {
+            speed: from.speed + (to.speed - from.speed) * share,
+            turn_rate: from.turn_rate + (to.turn_rate - from.turn_rate) * share,
+        };
+        let Node {
+            time,
+            position,
+            heading,
+        } = nodes[index];
+        let half = 0.5 * mean.turn_rate * part;
+        nodes[index + 1] = Node {
+            time: time + part,
+            position: position + unit(heading + half) * (mean.speed * part),
+            heading: heading + 2.0 * half,
+        };
+    }
+    nodes
+}
+
+impl Ahead {
+    /// Between two headings, at speeds of one sign or none; a half turn or more looks all around.
+    fn over(headings: [f64; 2], speeds: [f64; 2]) -> Self {
+        let [from, to] = headings;
+        let [first, last] = speeds;
+        let backwards = first < -STILL || last < -STILL;
+        let forwards = first > STILL || last > STILL;
+        if (backwards && forwards) || (to - from).abs() >= std::f64::consts::PI {
+            return Self::Around;
+        }
+        let sign = if backwards { -1.0 } else { 1.0 };
+        Self::Union([unit(from) * sign, unit(to) * sign])
+    }
+
+    fn clearance(&self, person: &Person, place: Vector2<f64>, radius: f64, time: f64) -> f64 {
+        let [one, other] = match self {
+            Self::Union(both) => *both,
+            // Two opposite half discs are the disc.
+            Self::Around => [Vector2::x(), -Vector2::x()],
+        };
+        let first = person.clearance(place, radius, one, time);
+        first.min(person.clearance(place, radius, other, time))
+    }
+}
+
+impl TwistPlan {
+    pub(super) fn new(state: &TwistState, command: Twist, limits: &TwistLimits) -> Self {
+        let first = Node {
+            time: 0.0,
+            position: state.position,
+            heading: state.heading,
+        };
+        let ramp = nodes(first, limits.period, state.twist, command);
+        let braking = limits.braking_periods(command) * limits.period;
+        let braking = nodes(ramp[PARTS], braking, command, Twist::default());
+        let turned = |nodes: &[Node; PARTS + 1]| [nodes[0].heading, nodes[PARTS].heading];
+        let speeds = [state.twist.speed, command.speed];
+        Self {
+            ahead: [
+                Ahead::over(turned(&ramp), speeds),
+                Ahead::over(turned(&braking), [command.speed; 2]),
+            ],
+            ramp,
+            braking,
+            speed: state.twist.speed.abs().max(command.speed.abs()),
+        }
+    }
+
+    fn parts(&self) -> [(&[Node; PARTS + 1], Ahead); 2] {
+        [(&self.ramp, self.ahead[0]), (&self.braking, self.ahead[1])]
+    }
+
+    /// Whether nobody can be ahead at any time; `grown`: what is added to the radius at the end.
+    pub(super) fn avoids(&self, person: &Person, radius: f64, grown: f64) -> bool {
+        if self.speed < STILL {
+            return true;
+        }
+        let radius = radius + person.radius();
+        let end = self.braking[PARTS].time;
+        let rate = self.speed + person.rate(end);
+        for (nodes, ahead) in self.parts() {
+            let at = |node: &Node| ahead.clearance(person, node.position, radius, node.time);
+            let mut before = at(&nodes[0]);
+            for pair in nodes.windows(2) {
+                let after = at(&pair[1]);
+                // The least that a function of this rate can be between two values.
+                if 0.5 * (before + after - rate * (pair[1].time - pair[0].time)) <= 0.0 {
+                    return false;
+                }
+                before = after;
+            }
+        }
+        let last = &self.braking[PARTS];
+        grown == 0.0 || self.ahead[1].clearance(person, last.position, radius + grown, end) > 0.0
+    }
+
+    /// Whether the whole way keeps a distance from walls, with the sagitta of each part to spare.
+    pub(super) fn keeps(&self, walls: &Walls<'_>, least: f64) -> bool {
+        let mut pairs = self
+            .parts()
+            .into_iter()
+            .flat_map(|(nodes, _)| nodes.windows(2));
+        pairs.all(|pair| {
+            let way = pair[1].position - pair[0].position;
+            let turn = (pair[1].heading - pair[0].heading).abs();
+            walls.segment_keeps(
+                pair[0].position,
+                pair[1].position,
+                least + way.norm() * turn / 8.0,
+            )
+        })
+    }
+}
+
+/// Limits of a robot with two wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistLimits {
+    /// Radius in m, with the margin of the shield.
+    pub radius: f64,
+    /// Limits of speed and turn rate.
+    pub drive: DifferentialLimits,
+    /// Control period in s.
+    pub period: f64,
+}
+
+impl TwistLimits {
+    pub(super) fn braking_periods(&self, twist: Twist) -> f64 {
+        let slow = twist.speed.abs() / (self.drive.max_acceleration * self.period);
+        let straight = twist.turn_rate.abs() / (self.drive.max_angular_acceleration * self.period);
+        (slow.max(straight) - PERIOD_ROUNDING).ceil().max(0.0)
+    }
+
+    /// Turn rate in rad/s some time in s after a twist was ordered, if nothing else was: it is taken up
+    /// within a period, and then falls evenly to rest.
+    pub(crate) fn turn_rate_after(&self, ordered: Twist, since: f64) -> f64 {
+        let braking = self.braking_periods(ordered) * self.period;
+        let gone = (since - self.period).max(0.0);
+        if gone == 0.0 {
+            return ordered.turn_rate;
+        }
+        if gone >= braking {
+            return 0.0;
+        }
+        ordered.turn_rate * (1.0 - gone / braking)
+    }
+
+    /// The twist after one period of braking.
+    pub(super) fn braking(&self, twist: Twist) -> Twist {
+        let periods = self.braking_periods(twist);
+        let share = if periods <= 1.0 {
+            0.0
+        } else {
+            (periods - 1.0) / periods
+        };
+        Twist {
+            speed: twist.speed * share,
+            turn_rate: twist.turn_rate * share,
+        }
+    }
+}
