@@ -210,9 +210,11 @@ mod tests {
             })
             .collect();
         if count > 4 {
-            let place = walkers[0].map_or_else(Vector::zeros, |walker| walker.agent.position);
-            for walker in walkers[2..4].iter_mut().flatten() {
-                (walker.agent.position, walker.agent.velocity) = (place, Vector::zeros());
+            // The first walks to the place of the second within a step; the others stand where he is.
+            let motions = [[0.0, 1.0], [0.25, 0.0], [0.0; 2], [0.0; 2]];
+            for (walker, [x, speed]) in walkers.iter_mut().flatten().zip(motions) {
+                walker.agent.position = Vector::new(x, 0.0);
+                walker.agent.velocity = Vector::new(speed, 0.0);
             }
             walkers[4] = None;
         }
