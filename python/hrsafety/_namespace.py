@@ -6,6 +6,8 @@ import importlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np  # noqa: F401  # with the package, not inside the native module: Ctrl-C while it is read is an interrupt
+
 from hrsafety._words import meant
 
 __all__ = ["names_of"]
