@@ -23,7 +23,7 @@ def names_of(
     package : str
         Its name.
     public : sequence of str
-        Its ``__all__``, which is what ``dir`` shows; names without a place are sub-modules.
+        Its ``__all__``, which ``dir`` shows; names without a place are sub-modules.
     places : mapping of str to str
         By the name of a module the public names that stand there, separated by blanks.
     below : sequence of str
@@ -54,7 +54,7 @@ def names_of(
         return value
 
     def shown() -> list[str]:
-        return sorted(public)
+        return sorted(["__all__", *public])  # makers of documentation look for the list, too
 
     return find, shown
 

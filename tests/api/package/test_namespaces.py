@@ -36,7 +36,7 @@ FIRST_IMPACT = """
 def test_top_of_a_package_is_short(package: ModuleType) -> None:
     assert len(package.__all__) <= 45
     assert set(BELOW[package]) <= set(package.__all__)
-    assert dir(package) == sorted(package.__all__)
+    assert sorted({*dir(package)} - {"__all__"}) == sorted(package.__all__)
 
 
 @pytest.mark.parametrize(("package", "name"), PLACES)
@@ -118,6 +118,11 @@ def test_no_name_is_hidden_by_a_module_that_is_loaded_later(package: ModuleType)
     """Loading `package.module` puts the module into the package, in the place of a function of the same name."""
     modules = {each.name for each in pkgutil.iter_modules(package.__path__)}
     assert {name for name in package.__all__ if not isinstance(getattr(package, name), ModuleType)}.isdisjoint(modules)
+
+
+@each_later
+def test_makers_of_documentation_find_every_name_and_the_list_of_them(package: ModuleType) -> None:
+    assert {"__all__", *package.__all__} <= set(dir(package))
 
 
 @each_later
