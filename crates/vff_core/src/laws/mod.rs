@@ -33,7 +33,7 @@ use crate::laws::trace::Trace;
 use crate::robots::differential::Twist;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
 /// after it was told to stop counts for nothing.
@@ -142,6 +142,13 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
 
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R>;
+
+    /// Distance `d` from an obstacle in m beyond which it changes no command, whatever it does, so that
+    /// the law need not be told of it; infinite where there is none, and for laws that remember obstacles
+    /// by their places in the list.
+    fn felt_within(&self, _obstacle: &PlacedObstacle) -> f64 {
+        f64::INFINITY
+    }
 
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
     /// Laws that plan the whole way themselves keep theirs.

@@ -7,7 +7,7 @@ use crate::laws::planning::half_planes::{HalfPlane, Solver};
 use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::geometry::Body;
 use crate::world::obstacle::Shape;
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 type Vector = Vector2<f64>;
 
@@ -318,6 +318,10 @@ impl Planner for ReciprocalPlanner {
             .solver
             .nearest(&self.planes, hard, self.max_speed, wanted);
         [velocity.x, velocity.y]
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        obstacle.contact_distance + self.settings.margin + self.settings.reach
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

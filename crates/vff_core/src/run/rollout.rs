@@ -7,7 +7,7 @@ use crate::run::Interrupted;
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
-use crate::run::runs::Runs;
+use crate::run::runs::{Dormant, Runs};
 use crate::run::scene::{Scene, World, bodies_at};
 use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
@@ -47,24 +47,27 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let options = &plan.run;
     let clock = options.clock(scenario)?;
     let staged = options.integrator == Integrator::Rk4 && !options.hold;
-    let mut scene = Scene::new(
-        scenario,
-        clock.steps_per_sample.min(STEPS_PER_BLOCK),
-        staged,
-    );
     let mut sensor = SampledScene::new(scenario);
-    let mut seen = scene.frames[0].clone();
+    let mut seen = bodies_at(scenario, 0.0);
     let mut groups: Vec<Runs<&Scenario, R>> = team
         .iter()
         .map(|_| Runs::new(scenario, clock, &seen, maps.clone()))
         .collect();
-    // Positions between two samples are wanted only for robots that are measured late.
-    let late = groups.first().is_some_and(|runs| runs.past.is_some());
-    let longest = if late { 1 } else { STEPS_PER_BLOCK };
     // A group by itself that keeps no rows needs the obstacles between two samples only where they
     // are near; several groups share them.
     let alone = groups.len() == 1 && !C::EVERY_STEP && !staged;
-    let blocks_per_question = (BLOCKS_PER_QUESTION / scenario.obstacles.len().max(1)).max(1);
+    // One run by itself that knows everything exactly need not look at what is far away.
+    let single = R::WIDTH == 1 && alone && sensor.is_none() && !led && !plan.shortcuts;
+    let mut dormant = single
+        .then(|| Dormant::new(scenario, clock, |placed| team[0].law.felt_within(placed)))
+        .flatten();
+    let steps = clock.steps_per_sample.min(STEPS_PER_BLOCK);
+    let mut scene = match &mut dormant {
+        Some(dormant) => dormant.scene(&mut groups[0], steps),
+        None => Scene::of(scenario, seen.clone(), (steps, staged)),
+    };
+    let longest = longest_block(&groups);
+    let blocks_per_question = (BLOCKS_PER_QUESTION / scene.told.len().max(1)).max(1);
     let mut until_question = blocks_per_question;
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
@@ -73,6 +76,9 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         let samples = until_sample == clock.steps_per_sample;
         let span = (first, steps);
         scene.begin(&clock, first);
+        if let Some(dormant) = dormant.as_mut().filter(|_| samples) {
+            dormant.sample(&mut scene, &mut groups[0], first);
+        }
         if !alone {
             scene.complete(&clock, first, |_| true);
         }
@@ -114,7 +120,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
             }
             if alone {
-                scene.complete(&clock, first, |obstacle| runs.watched[obstacle]);
+                scene.complete(&clock, first, |slot| runs.watched[slot]);
             }
             if runs.running.any() {
                 run_block(
@@ -122,6 +128,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                     member,
                     &Block::of(&scene, Stop(interrupted), span),
                     options,
+                    dormant.as_mut(),
                 );
                 runs.remember();
             }
@@ -138,7 +145,15 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     if led {
         follow(&mut groups);
     }
-    hand_over(scenario, &mut groups, team, clock.time(first), &mut keep)
+    let ended = clock.time(first);
+    hand_over(scenario, &mut groups, team, (ended, dormant), &mut keep)
+}
+
+/// Most steps of a block: positions between two samples are wanted only for robots that are measured
+/// late.
+fn longest_block<R: Real>(groups: &[Runs<&Scenario, R>]) -> usize {
+    let late = groups.first().is_some_and(|runs| runs.past.is_some());
+    if late { 1 } else { STEPS_PER_BLOCK }
 }
 
 /// Ends what still runs, and hands over every run.
@@ -146,9 +161,12 @@ fn hand_over<R: Real, L, C: Recorder<R>>(
     scenario: &Scenario,
     groups: &mut [Runs<&Scenario, R>],
     team: &mut [Member<L, C>],
-    time: f64,
+    (time, dormant): (f64, Option<Dormant>),
     keep: &mut impl FnMut(usize, &Runs<&Scenario, R>, usize, &C),
 ) -> Result<()> {
+    if let Some(mut dormant) = dormant {
+        dormant.count_all(&mut groups[0]);
+    }
     for (index, (runs, member)) in groups.iter_mut().zip(team).enumerate() {
         runs.check_finite(time)
             .map_err(|error| error.of_run(|run| index * R::WIDTH + run))?;
@@ -243,6 +261,7 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
     member: &mut Member<L, C>,
     block: &Block<'_>,
     options: &Options,
+    mut dormant: Option<&mut Dormant>,
 ) {
     let clock = runs.clock;
     for step in 0..block.steps {
@@ -256,6 +275,11 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
         }
         let later = clock.time(block.first + step + 1);
         runs.account(&block.scene.frames[step + 1], before, later, C::EVERY_STEP);
+        if R::WIDTH == 1
+            && let Some(dormant) = &mut dormant
+        {
+            dormant.pass(runs);
+        }
         if options.stop_on_contact {
             runs.stop_at_contact(later);
         }

@@ -51,6 +51,8 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> World<R> for S {
 /// Where the obstacles are at the steps of one block.
 pub(crate) struct Scene<S> {
     scenario: S,
+    /// The obstacles that it has, in their order, with the cursors of their motions.
+    pub told: Vec<usize>,
     cursors: Vec<usize>,
     /// Bodies at the start of the block and after each of its steps.
     pub frames: Vec<Vec<Body>>,
@@ -60,6 +62,7 @@ pub(crate) struct Scene<S> {
 }
 
 /// An obstacle at an instant.
+#[inline]
 pub(crate) fn body_at(placed: &PlacedObstacle, time: f64, cursor: &mut usize) -> Body {
     let state = placed.obstacle.motion.at(time, cursor);
     Body {
@@ -80,12 +83,36 @@ pub(crate) fn bodies_at(scenario: &Scenario, time: f64) -> Vec<Body> {
 impl<S: Deref<Target = Scenario>> Scene<S> {
     pub fn new(scenario: S, steps: usize, staged: bool) -> Self {
         let bodies = bodies_at(&scenario, 0.0);
+        Self::of(scenario, bodies, (steps, staged))
+    }
+
+    /// With the first obstacles as they are at the start.
+    pub fn of(scenario: S, bodies: Vec<Body>, (steps, staged): (usize, bool)) -> Self {
         Self {
             scenario,
+            told: (0..bodies.len()).collect(),
             cursors: vec![0; bodies.len()],
             frames: vec![bodies.clone(); steps + 1],
             middle: bodies,
             staged,
+        }
+    }
+
+    /// Takes an obstacle in, as it is at the start of the block.
+    pub fn insert(&mut self, slot: usize, index: usize, body: &Body) {
+        self.told.insert(slot, index);
+        self.cursors.insert(slot, 0);
+        for frame in &mut self.frames {
+            frame.insert(slot, *body);
+        }
+    }
+
+    /// Forgets an obstacle.
+    pub fn remove(&mut self, slot: usize) {
+        self.told.remove(slot);
+        self.cursors.remove(slot);
+        for frame in &mut self.frames {
+            frame.remove(slot);
         }
     }
 
@@ -98,28 +125,30 @@ impl<S: Deref<Target = Scenario>> Scene<S> {
     /// Moves on to the first instant of the block that begins at a step.
     pub fn begin(&mut self, clock: &Clock, first: usize) {
         let frame = &mut self.frames[0];
-        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
+        for (slot, index) in self.told.iter().enumerate() {
+            let placed = &self.scenario.obstacles[*index];
             if !placed.stationary {
-                let cursor = &mut self.cursors[index];
-                frame[index].state = placed.obstacle.motion.at(clock.time(first), cursor);
+                let cursor = &mut self.cursors[slot];
+                frame[slot].state = placed.obstacle.motion.at(clock.time(first), cursor);
             }
         }
     }
 
     /// All later instants of a block that has begun, of the obstacles that are looked at.
     pub fn complete(&mut self, clock: &Clock, first: usize, looked_at: impl Fn(usize) -> bool) {
-        for (index, placed) in self.scenario.obstacles.iter().enumerate() {
-            if placed.stationary || !looked_at(index) {
+        for (slot, index) in self.told.iter().enumerate() {
+            let placed = &self.scenario.obstacles[*index];
+            if placed.stationary || !looked_at(slot) {
                 continue;
             }
             let motion = &placed.obstacle.motion;
-            let cursor = &mut self.cursors[index];
+            let cursor = &mut self.cursors[slot];
             for (step, frame) in self.frames.iter_mut().enumerate().skip(1) {
-                frame[index].state = motion.at(clock.time(first + step), cursor);
+                frame[slot].state = motion.at(clock.time(first + step), cursor);
             }
             if self.staged {
                 let half = clock.time(first) + 0.5 * clock.step;
-                self.middle[index].state = motion.at(half, cursor);
+                self.middle[slot].state = motion.at(half, cursor);
             }
         }
     }

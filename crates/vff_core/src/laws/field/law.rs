@@ -11,7 +11,7 @@ use crate::laws::field::side::{self, Detour, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
 use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation};
 use crate::world::geometry::{Approach, Body, Offset, RobotState};
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// The law of Zeng (2011), chapter 5: gains and options.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -392,6 +392,13 @@ impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, REC
             command.lyapunov = R::select(critical, R::splat(f64::NAN), value);
         }
         command
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        if self.rules.hysteresis.is_finite() {
+            return f64::INFINITY;
+        }
+        obstacle.regions.active_radius
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

@@ -6,7 +6,7 @@ use crate::laws::impedance::attraction::Attraction;
 use crate::laws::impedance::law::{Impedance, Prepared};
 use crate::laws::{Command, Law, LawFamily, Situation};
 use crate::world::geometry::RobotState;
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Numbers that a search may choose, in their order.
 const GAIN_NAMES: [&str; 6] = [
@@ -101,11 +101,10 @@ impl LawFamily for ImpedanceFamily {
             let law = self.with(&gains)?;
             Ok((law.impedance.prepared(), law.attraction))
         };
-        let contacts = scenario.obstacles().iter();
         Ok(ImpedanceLaw {
             lanes: (0..R::WIDTH).map(lane).collect::<Result<_>>()?,
             goal: scenario.goal().into(),
-            contacts: contacts.map(|placed| placed.contact_distance).collect(),
+            robot_radius: scenario.point_mass().radius,
             reach: self.reach,
             least_cosine: self.view.cos(),
         })
@@ -117,8 +116,7 @@ pub struct ImpedanceLaw {
     /// Repulsion and attraction of every lane.
     lanes: Vec<(Prepared, Attraction)>,
     goal: Vector2<f64>,
-    /// Distances at which robot and obstacles touch, in m.
-    contacts: Vec<f64>,
+    robot_radius: f64,
     reach: f64,
     /// Cosine of half the sector that is sensed.
     least_cosine: f64,
@@ -135,10 +133,10 @@ impl ImpedanceLaw {
         let speed = velocity.x.hypot(velocity.y);
         let ahead = if speed > STANDING { velocity } else { offset };
         let length = ahead.x.hypot(ahead.y);
-        let bodies = situation.bodies.iter().zip(&self.contacts);
-        let push = law.force_of_points(bodies.filter_map(|(body, contact)| {
+        let push = law.force_of_points(situation.bodies.iter().filter_map(|body| {
             let from_obstacle = body.offset(position);
             let distance = from_obstacle.distance_squared.sqrt();
+            let contact = self.robot_radius + body.shape.inner_radius();
             let gap = (distance - contact).max(TOUCHING);
             if !body.state.present || gap > self.reach || distance == 0.0 {
                 return None;
@@ -166,6 +164,10 @@ impl<R: Real> Law<R> for ImpedanceLaw {
             stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         }
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        obstacle.contact_distance + self.reach
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

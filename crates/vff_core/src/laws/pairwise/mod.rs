@@ -8,7 +8,7 @@ pub use family::{Pairwise, PairwiseFamily};
 use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
 use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, SceneLaw, Situation};
 use crate::world::geometry::{Body, Offset, RobotState};
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Surfaces closer than this push as if they were this far apart, in m; without it the laws that
 /// divide by the distance of the surfaces would pull the robot into an obstacle that it touches.
@@ -179,6 +179,10 @@ impl<R: Real, B: Wide<R>, F: PairwiseField<R>> Law<R, B> for PairwiseLaw<R, F> {
             stabilizing: Vector2::zeros(),
             lyapunov: R::splat(f64::NAN),
         }
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        obstacle.regions.active_radius
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

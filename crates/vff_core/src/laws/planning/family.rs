@@ -9,7 +9,7 @@ use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
 use crate::laws::{Command, Law, LawFamily, Situation, force_toward};
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A planner up to its numbers.
 pub trait PlannerFamily: Sync {
@@ -55,6 +55,12 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
             wanted.y = wanted.y.replace(lane, y);
         }
         Command::plain(force_toward(wanted, situation, self.mass))
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        let each = self.planners.iter();
+        let felt = each.map(|planner| planner.felt_within(obstacle));
+        felt.fold(0.0, f64::max)
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

@@ -9,12 +9,19 @@ pub mod outline;
 pub mod path;
 
 use crate::laws::Situation;
+use crate::world::scenario::PlacedObstacle;
 
 /// A planner at work in one scenario; it owns its state between control steps.
 pub trait Planner: Send + 'static {
     /// Velocity in m/s that the robot should have at the next sample. A planner that finds no
     /// way asks for standstill, unless its own documentation says more.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2];
+
+    /// Distance `d` from an obstacle in m beyond which it changes no velocity; infinite where there is
+    /// none, and for planners that remember obstacles by their places in the list.
+    fn felt_within(&self, _obstacle: &PlacedObstacle) -> f64 {
+        f64::INFINITY
+    }
 
     /// Heads for another goal from now on, in m; planners of a whole way keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}

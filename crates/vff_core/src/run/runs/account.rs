@@ -45,9 +45,9 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         }
         self.squared_current += R::select(self.running, squared, R::zero());
         self.path += R::select(self.running, way, R::zero());
-        for (index, body) in bodies.iter().enumerate() {
-            if self.watched[index] {
-                self.watch(index, body, time, self.running);
+        for (slot, body) in bodies.iter().enumerate() {
+            if self.watched[slot] {
+                self.watch(self.obstacle(slot), body, time, self.running);
             }
         }
         if self.walls.is_some() {
@@ -107,7 +107,8 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
         self.near_goal = (near & self.running).any();
         let number = W::Number::splat;
-        for (index, body) in bodies.iter().enumerate() {
+        for (slot, body) in bodies.iter().enumerate() {
+            let index = self.obstacle(slot);
             let speed = self.speed_bound[index];
             let way = (number(own) + speed) * number(interval) + number(BOUND_MARGIN);
             // Within a contact the robot may turn toward the obstacle, however near they have been.
@@ -116,7 +117,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             let squared = body.offset(self.position).distance_squared;
             let here = W::Number::wide_mask(body.state.present);
             let near = squared.lt(least * least) | !here;
-            self.watched[index] = (near & self.running).any();
+            self.watched[slot] = (near & self.running).any();
         }
     }
 

@@ -1,8 +1,12 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
 mod account;
+mod dormant;
 mod ends;
+mod path;
 mod totals;
+
+pub(crate) use dormant::Dormant;
 
 use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
 use crate::laws::Command;
@@ -50,6 +54,8 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     /// Whether the least distance to each obstacle can change, or a contact with it last, before the
     /// next sample.
     pub watched: Vec<bool>,
+    /// The obstacles that are looked at, where some are dormant; only runs by themselves leave some alone.
+    awake: Option<Vec<usize>>,
     /// Distance in m at which robot and obstacle touch, and the largest speed of each obstacle in
     /// m/s, infinite if there is none.
     reach: Vec<W::Number>,
@@ -113,6 +119,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             path: R::zero(),
             near_goal: true,
             watched: vec![true; count],
+            awake: None,
             reach: (0..count).map(|index| world.reach(index)).collect(),
             speed_bound: (0..count).map(|index| world.speed_bound(index)).collect(),
             all_stand_from: world.stands_from(),
@@ -175,6 +182,31 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         self.watched.fill(true);
         for (index, body) in bodies.iter().enumerate() {
             self.watch(index, body, W::Number::zero(), lanes);
+        }
+    }
+
+    /// Obstacle of a place in the scene.
+    #[inline(always)]
+    fn obstacle(&self, slot: usize) -> usize {
+        match &self.awake {
+            Some(awake) if R::WIDTH == 1 => awake[slot],
+            _ => slot,
+        }
+    }
+
+    /// An obstacle comes into the scene.
+    fn wake(&mut self, slot: usize, index: usize) {
+        if let Some(awake) = &mut self.awake {
+            awake.insert(slot, index);
+            self.watched.insert(slot, true);
+        }
+    }
+
+    /// An obstacle leaves the scene.
+    fn fall_asleep(&mut self, slot: usize) {
+        if let Some(awake) = &mut self.awake {
+            awake.remove(slot);
+            self.watched.remove(slot);
         }
     }
 

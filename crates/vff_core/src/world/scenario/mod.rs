@@ -271,11 +271,16 @@ impl Scenario {
     #[must_use]
     pub fn nominal(&self) -> Self {
         Self {
+            robot: self.robot,
+            differential: self.differential,
+            start: self.start,
+            goal: self.goal,
             obstacles: Vec::new(),
+            rules: self.rules,
             measurement: None,
             seed: 0,
+            map: self.map.clone(),
             blocked: None,
-            ..self.clone()
         }
     }
 

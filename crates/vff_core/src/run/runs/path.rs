@@ -1,0 +1,226 @@
+//! The path of one robot, how far it is from straight, and the least distance to an obstacle on it.
+
+use crate::lanes::Vector2;
+use crate::run::options::Clock;
+use crate::run::scene::body_at;
+use crate::world::obstacle::Shape;
+use crate::world::scenario::PlacedObstacle;
+
+type Vector = Vector2<f64>;
+
+/// Motion steps of the shortest piece that is known to be nearly straight.
+const SHORTEST: usize = 8;
+
+/// Places of a robot after motion steps.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    /// Step of the first place.
+    begin: usize,
+    places: Vec<[f64; 2]>,
+    /// Most by which the robot was off the straight way at constant speed, in m: in each piece of
+    /// [`SHORTEST`] steps, of twice as many, and so on.
+    bends: Vec<Vec<f64>>,
+}
+
+impl Path {
+    pub fn from(start: [f64; 2]) -> Self {
+        Self {
+            begin: 0,
+            places: vec![start],
+            bends: Vec::new(),
+        }
+    }
+
+    #[inline]
+    pub fn push(&mut self, place: [f64; 2]) {
+        self.places.push(place);
+    }
+
+    /// Number of places.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Step of the last place.
+    pub fn last(&self) -> usize {
+        self.begin + self.places.len() - 1
+    }
+
+    /// Forgets all places but the last one.
+    pub fn forget(&mut self) {
+        let last = self.places.len() - 1;
+        self.begin += last;
+        self.places.drain(..last);
+        self.bends.clear();
+    }
+
+    fn at(&self, step: usize) -> Vector {
+        self.places[step - self.begin].into()
+    }
+
+    /// Measures the pieces that are new.
+    pub fn measure(&mut self) {
+        let steps = self.places.len() - 1;
+        let (mut level, mut size) = (0, SHORTEST);
+        while size <= steps {
+            if self.bends.len() == level {
+                self.bends.push(Vec::new());
+            }
+            while (self.bends[level].len() + 1) * size <= steps {
+                let bend = self.bend_of(level, self.bends[level].len(), size);
+                self.bends[level].push(bend);
+            }
+            (level, size) = (level + 1, 2 * size);
+        }
+    }
+
+    fn bend_of(&self, level: usize, piece: usize, size: usize) -> f64 {
+        let place = |step: usize| Vector::from(self.places[piece * size + step]);
+        let (from, to) = (place(0), place(size));
+        if level == 0 {
+            let way = (to - from) * (1.0 / SHORTEST as f64);
+            let off = |step: usize| (place(step) - (from + way * step as f64)).norm();
+            return (1..size).map(off).fold(0.0, f64::max);
+        }
+        let halves = &self.bends[level - 1][2 * piece..2 * piece + 2];
+        (place(size / 2) - (from + to) * 0.5).norm() + halves[0].max(halves[1])
+    }
+
+    /// Steps of the largest piece that begins at a step and ends by another one; fewer than
+    /// [`SHORTEST`] where there is none.
+    fn piece(&self, from: usize, to: usize) -> usize {
+        let (first, most) = (from - self.begin, to - from);
+        let short = first % SHORTEST;
+        if short > 0 || most < SHORTEST {
+            return most.min(SHORTEST - short);
+        }
+        let mut size = SHORTEST;
+        while 2 * size <= most && first.is_multiple_of(2 * size) {
+            size *= 2;
+        }
+        size
+    }
+
+    /// How far the robot was off the straight way in a piece, in m.
+    fn bend(&self, from: usize, steps: usize) -> Option<f64> {
+        let level = (steps / SHORTEST).checked_ilog2()? as usize;
+        let piece = (from - self.begin) / steps;
+        self.bends.get(level)?.get(piece).copied()
+    }
+}
+
+/// An obstacle as the robot passes it.
+pub(super) struct Passage<'a> {
+    pub path: &'a Path,
+    pub placed: &'a PlacedObstacle,
+    pub clock: &'a Clock,
+    /// Most by which the distance changes in a motion step, and room for rounding, in m.
+    pub stride: f64,
+    pub margin: f64,
+    /// Least distance so far in m, and its square.
+    pub nearest: f64,
+    pub least: f64,
+}
+
+/// An obstacle as seen from the robot after a motion step.
+#[derive(Clone, Copy)]
+struct Sample {
+    step: usize,
+    offset: Vector,
+    distance: f64,
+    /// Piece of its motion.
+    piece: usize,
+}
+
+impl Passage<'_> {
+    /// Looks at all steps of which any may be nearer than the nearest one.
+    pub fn look(&mut self, first: usize, last: usize) {
+        // What comes nearer is nearest at last.
+        let end = self.at(last, 0);
+        let mut from = self.at(first, 0);
+        while from.step < last {
+            let step = from.step + self.path.piece(from.step, last);
+            let to = if step == last {
+                end
+            } else {
+                self.at(step, from.piece)
+            };
+            self.between(&from, &to);
+            from = to;
+        }
+    }
+
+    fn at(&mut self, step: usize, mut piece: usize) -> Sample {
+        let body = body_at(self.placed, self.clock.time(step), &mut piece);
+        let seen = body.offset(self.path.at(step));
+        let distance = seen.distance_squared.sqrt();
+        if seen.distance_squared < self.least {
+            (self.least, self.nearest) = (seen.distance_squared, distance);
+        }
+        Sample {
+            step,
+            offset: seen.vector,
+            distance,
+            piece,
+        }
+    }
+
+    fn between(&mut self, from: &Sample, to: &Sample) {
+        let steps = to.step - from.step;
+        if self.is_above(from, to, steps) {
+            return;
+        }
+        if steps > SHORTEST {
+            let middle = self.at(from.step + steps / 2, from.piece);
+            self.between(from, &middle);
+            self.between(&middle, to);
+            return;
+        }
+        let mut seen = *from;
+        loop {
+            let step = seen.step + 1 + self.steps_above(seen.distance);
+            if step >= to.step {
+                return;
+            }
+            seen = self.at(step, seen.piece);
+        }
+    }
+
+    /// Whether no step between two is nearer than the nearest one.
+    fn is_above(&self, from: &Sample, to: &Sample, steps: usize) -> bool {
+        let low = self.nearest + self.margin;
+        let count = steps as f64;
+        if 0.5 * (from.distance + to.distance - count * self.stride) > low {
+            return true;
+        }
+        let straight =
+            from.piece == to.piece && matches!(self.placed.obstacle.shape, Shape::Disc { .. });
+        let Some(bend) = self.path.bend(from.step, steps).filter(|_| straight) else {
+            return false;
+        };
+        // Of the straight way the part from the first step to the last but one.
+        let way = to.offset - from.offset;
+        let step = way * (1.0 / count);
+        let (first, inner) = (from.offset + step, way - step * 2.0);
+        let square = inner.dot(&inner);
+        let foot = if square > 0.0 {
+            (-first.dot(&inner) / square).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        if (first + inner * foot).norm() - bend > low {
+            return true;
+        }
+        // Where both stand all steps are alike.
+        let stands = self.path.at(from.step) == self.path.at(to.step);
+        bend == 0.0
+            && stands
+            && self.placed.obstacle.motion.piece(from.piece).0.velocity == [0.0; 2]
+    }
+
+    /// Motion steps for which an obstacle at a distance in m is not nearer than the nearest one.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+    fn steps_above(&self, distance: f64) -> usize {
+        ((distance - self.nearest - self.margin) / self.stride) as usize
+    }
+}
