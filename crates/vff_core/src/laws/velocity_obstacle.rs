@@ -2,14 +2,16 @@
 //! lie between two rays; what is left of the reachable velocities is searched exactly.
 
 mod best;
+mod cover;
 mod lines;
 #[cfg(test)]
 mod tests;
 
 use std::cell::Cell;
 
-use best::Best;
-use lines::{Line, ON_THE_LIMIT, Reachable, where_circles_meet};
+use best::{Best, Place, Promising};
+use cover::Covers;
+use lines::{Line, Reachable, where_circles_meet};
 
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
@@ -98,7 +100,10 @@ pub struct VelocityObstaclePlanner {
     max_speed: f64,
     max_acceleration: f64,
     cones: Vec<Cone>,
+    covers: Covers,
     lines: Vec<Line>,
+    /// Place of the last velocity that was chosen.
+    chosen: Place,
     /// The cone that forbade the last velocity.
     blocking: Cell<usize>,
 }
@@ -115,7 +120,9 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
+            covers: Covers::default(),
             lines: Vec::new(),
+            chosen: (0, 0),
             blocking: Cell::new(0),
         }
     }
@@ -162,6 +169,7 @@ impl VelocityObstaclePlanner {
                 legs,
             });
         }
+        self.covers.take(&self.cones);
     }
 
     fn time_to_contact(&self, velocity: Vector) -> f64 {
@@ -289,52 +297,10 @@ impl VelocityObstaclePlanner {
         to_goal * (1.0 / distance)
     }
 
-    /// Speeds that differ by roundings have the same rank.
-    fn rank(&self, speed: f64) -> f64 {
-        (speed / (self.max_speed * ON_THE_LIMIT)).round()
-    }
-
-    /// Time to the goal at full speed after a control period at a velocity, in s.
-    fn time_left(&self, situation: &Situation<'_, f64>, velocity: Vector) -> f64 {
-        let left = self.goal - situation.robot.position - velocity * situation.interval;
-        left.dot(&left).sqrt() / self.max_speed
-    }
-
-    /// The least such time of all velocities with no larger component toward the goal.
-    fn least_time_left(&self, situation: &Situation<'_, f64>, forward: f64) -> f64 {
-        let to_goal = self.goal - situation.robot.position;
-        let left = to_goal.dot(&to_goal).sqrt() - forward * situation.interval;
-        left.max(0.0) / self.max_speed
-    }
-
-    /// What a rule prefers: larger is better, then by the second number.
-    fn worth(&self, situation: &Situation<'_, f64>, aim: Vector, velocity: Vector) -> (f64, f64) {
-        let forward = velocity.dot(&aim);
-        let speed = velocity.dot(&velocity).sqrt();
-        match self.settings.selection {
-            Selection::ToGoal => (forward, speed),
-            Selection::Fastest { sector } => {
-                let within = forward >= speed * (sector.cos() - ON_THE_LIMIT);
-                let rank = self.rank(speed);
-                (
-                    if within {
-                        rank
-                    } else {
-                        rank - 2.0 / ON_THE_LIMIT
-                    },
-                    forward,
-                )
-            }
-            Selection::TimeAndRisk { risk } => {
-                let time = self.time_left(situation, velocity);
-                (-(time + risk / self.time_to_contact(velocity)), forward)
-            }
-        }
-    }
-
     /// The best free velocity by the rule, the first one among equals in the order of
     /// [`Self::candidates`]. Lines come by what they promise: those that promise less than what is
-    /// found, and their crossings, are not looked at.
+    /// found, and their crossings, are not looked at, nor are those that one obstacle forbids as far as
+    /// they promise more.
     fn select(&mut self, situation: &Situation<'_, f64>) -> Option<Vector> {
         let reachable = self.reachable(situation);
         let aim = self.direction_to_goal(situation);
@@ -352,10 +318,17 @@ impl VelocityObstaclePlanner {
         for (number, velocity) in last {
             best.offer((usize::MAX, number), velocity);
         }
-        let promising = best.promising(&self.lines);
-        for (rank, line) in promising.iter().enumerate() {
+        // The lines that gave the best velocity a control period ago mostly do so again.
+        if let Some(velocity) = self.candidate(self.chosen, wanted, &reachable) {
+            best.offer(self.chosen, velocity);
+        }
+        let mut open: Vec<Promising> = Vec::new();
+        for line in &best.promising(&self.lines) {
             if best.is_better_than(line.promise) {
                 break;
+            }
+            if self.is_covered(&best, line) {
+                continue;
             }
             let own = line.line.own(wanted, &reachable);
             for (number, velocity) in own.into_iter().enumerate() {
@@ -363,7 +336,7 @@ impl VelocityObstaclePlanner {
                     best.offer((1 + line.index, number), velocity);
                 }
             }
-            for other in &promising[..rank] {
+            for other in &open {
                 let (later, earlier) = if line.index > other.index {
                     (line, other)
                 } else {
@@ -373,8 +346,32 @@ impl VelocityObstaclePlanner {
                     best.offer((1 + later.index, best::OWN + earlier.index), velocity);
                 }
             }
+            open.push(*line);
         }
-        best.velocity()
+        let (place, velocity) = best.chosen()?;
+        self.chosen = place;
+        Some(velocity)
+    }
+
+    /// The velocity at a place, if that is on a line.
+    fn candidate(
+        &self,
+        (line, number): Place,
+        wanted: Vector,
+        reachable: &Reachable,
+    ) -> Option<Vector> {
+        let line = self.lines.get(line.checked_sub(1)?)?;
+        match number.checked_sub(best::OWN) {
+            None => line.own(wanted, reachable)[number],
+            Some(other) => line.crossing(self.lines.get(other)?),
+        }
+    }
+
+    /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
+    fn is_covered(&self, best: &Best<'_>, line: &Promising) -> bool {
+        let horizon = self.settings.horizon;
+        let part = best.better_part(line);
+        part.is_some_and(|ends| self.covers.cover(&self.cones, ends, horizon))
     }
 
     /// The reachable velocity with the latest contact, for want of a free one.

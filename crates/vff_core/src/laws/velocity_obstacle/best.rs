@@ -1,6 +1,6 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
-use super::lines::{Line, Reachable};
+use super::lines::{Line, ON_THE_LIMIT, Reachable};
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
@@ -18,10 +18,12 @@ pub(super) struct Promising {
     pub index: usize,
     /// The line.
     pub line: Line,
+    /// Ends of its part that is reachable, generously.
+    ends: [Vector; 2],
 }
 
 /// Place of a candidate in the order of all: the line, and its number there.
-type Place = (usize, usize);
+pub(super) type Place = (usize, usize);
 
 /// The best free velocity of those that were offered, in any order: the same as in the order of
 /// their places.
@@ -51,8 +53,9 @@ impl<'a> Best<'a> {
         }
     }
 
-    pub fn velocity(&self) -> Option<Vector> {
-        self.found.map(|(_, _, velocity)| velocity)
+    /// The best velocity and its place.
+    pub fn chosen(&self) -> Option<(Place, Vector)> {
+        self.found.map(|(_, place, velocity)| (place, velocity))
     }
 
     /// Takes a velocity if it is reachable, better than the one before, and free. Most are far out
@@ -98,6 +101,7 @@ impl<'a> Best<'a> {
                 promise: self.promise(ends),
                 index,
                 line: *line,
+                ends,
             })
         };
         let mut found: Vec<Promising> = lines.iter().enumerate().filter_map(promise).collect();
@@ -123,8 +127,79 @@ impl<'a> Best<'a> {
         exact + SLACK * (1.0 + exact.abs())
     }
 
+    /// Ends of the part of a line that may be worth as much as what was found, generously; `None` where
+    /// worth is no component of the velocity.
+    pub fn better_part(&self, line: &Promising) -> Option<[Vector; 2]> {
+        if self.planner.settings.selection != Selection::ToGoal {
+            return None;
+        }
+        let least = self.least - SLACK * (1.0 + self.least.abs());
+        let ends = line.ends;
+        let [first, second] = ends.map(|end| end.dot(&self.aim));
+        let between = |low: f64, high: f64| (least - low) / (high - low);
+        let way = ends[1] - ends[0];
+        Some(if first < least && least < second {
+            [ends[0] + way * between(first, second), ends[1]]
+        } else if second < least && least < first {
+            [ends[0], ends[1] - way * between(second, first)]
+        } else {
+            ends
+        })
+    }
+
     /// Whether what was found is worth more than a promise.
     pub fn is_better_than(&self, promise: f64) -> bool {
         self.found.is_some_and(|(known, ..)| known.0 > promise)
+    }
+}
+
+/// What velocities are worth.
+impl VelocityObstaclePlanner {
+    /// Speeds that differ by roundings have the same rank.
+    fn rank(&self, speed: f64) -> f64 {
+        (speed / (self.max_speed * ON_THE_LIMIT)).round()
+    }
+
+    /// Time to the goal at full speed after a control period at a velocity, in s.
+    fn time_left(&self, situation: &Situation<'_, f64>, velocity: Vector) -> f64 {
+        let left = self.goal - situation.robot.position - velocity * situation.interval;
+        left.dot(&left).sqrt() / self.max_speed
+    }
+
+    /// The least such time of all velocities with no larger component toward the goal.
+    fn least_time_left(&self, situation: &Situation<'_, f64>, forward: f64) -> f64 {
+        let to_goal = self.goal - situation.robot.position;
+        let left = to_goal.dot(&to_goal).sqrt() - forward * situation.interval;
+        left.max(0.0) / self.max_speed
+    }
+
+    /// What a rule prefers: larger is better, then by the second number.
+    pub(super) fn worth(
+        &self,
+        situation: &Situation<'_, f64>,
+        aim: Vector,
+        velocity: Vector,
+    ) -> (f64, f64) {
+        let forward = velocity.dot(&aim);
+        let speed = velocity.dot(&velocity).sqrt();
+        match self.settings.selection {
+            Selection::ToGoal => (forward, speed),
+            Selection::Fastest { sector } => {
+                let within = forward >= speed * (sector.cos() - ON_THE_LIMIT);
+                let rank = self.rank(speed);
+                (
+                    if within {
+                        rank
+                    } else {
+                        rank - 2.0 / ON_THE_LIMIT
+                    },
+                    forward,
+                )
+            }
+            Selection::TimeAndRisk { risk } => {
+                let time = self.time_left(situation, velocity);
+                (-(time + risk / self.time_to_contact(velocity)), forward)
+            }
+        }
     }
 }

@@ -6,6 +6,9 @@ use crate::world::motion::Motion;
 use crate::world::obstacle::{Limits, Obstacle};
 use crate::world::scenario::{PlacedObstacle, Rules};
 
+/// Control period, in s.
+const INTERVAL: f64 = 0.06;
+
 /// Numbers between two bounds, the same in every run.
 struct Draws(u64);
 
@@ -80,48 +83,53 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
         Selection::TimeAndRisk { risk: 0.5 },
     ];
     let (mut found, mut nothing) = (0, 0);
-    for case in 0..96 {
-        let count = [1, 8, 20, 40][case % 4];
+    for case in 0..120 {
+        let count = [1, 8, 20, 40, 80][case % 5];
         let scenario = crowd(&mut draws, count);
         let settings = VelocityObstacle {
             selection: selections[case % 3],
             horizon: if case % 2 == 0 { f64::INFINITY } else { 3.0 },
+            margin: if case % 7 < 3 { 0.01 } else { 0.3 },
             ..VelocityObstacle::default()
         };
         let mut planner = VelocityObstaclePlanner::new(settings, &scenario);
-        let time = draws.between(0.0, 3.0);
-        let body = |placed: &PlacedObstacle| Body {
-            shape: placed.obstacle.shape,
-            regions: placed.regions,
-            state: placed.obstacle.motion.at(time, &mut 0),
-        };
-        let bodies: Vec<Body> = scenario.obstacles.iter().map(body).collect();
-        let robot = RobotState {
+        let mut time = draws.between(0.0, 3.0);
+        let mut robot = RobotState {
             position: Vector2::new(draws.between(0.0, 6.0), draws.between(-1.0, 1.0)),
             velocity: Vector2::new(draws.between(-0.4, 0.6), draws.between(-0.4, 0.4)),
         };
-        let situation = Situation {
-            time,
-            bodies: &bodies,
-            ages: &[],
-            robot,
-            heading: 0.0,
-            interval: 0.06,
-            stop: Stop::never(),
-        };
-        planner.look(&situation, settings.margin);
-        let chosen = planner.select(&situation);
-        let wanted = best_of_all(&planner, &situation);
-        assert_eq!(
-            chosen.map(|velocity| velocity.lane(0).map(f64::to_bits)),
-            wanted.map(|velocity| velocity.lane(0).map(f64::to_bits)),
-            "case {case}"
-        );
-        if wanted.is_some() {
-            found += 1;
-        } else {
-            nothing += 1;
+        // The planner remembers what it chose a control period ago.
+        for period in 0..4 {
+            let body = |placed: &PlacedObstacle| Body {
+                shape: placed.obstacle.shape,
+                regions: placed.regions,
+                state: placed.obstacle.motion.at(time, &mut 0),
+            };
+            let bodies: Vec<Body> = scenario.obstacles.iter().map(body).collect();
+            let situation = Situation {
+                time,
+                bodies: &bodies,
+                ages: &[],
+                robot,
+                heading: 0.0,
+                interval: INTERVAL,
+                stop: Stop::never(),
+            };
+            planner.look(&situation, settings.margin);
+            let chosen = planner.select(&situation);
+            let wanted = best_of_all(&planner, &situation);
+            let bits = |velocity: Vector| velocity.lane(0).map(f64::to_bits);
+            let place = format!("case {case}, period {period}");
+            assert_eq!(chosen.map(bits), wanted.map(bits), "{place}");
+            if let Some(velocity) = wanted {
+                found += 1;
+                robot.velocity = velocity;
+            } else {
+                nothing += 1;
+            }
+            robot.position += robot.velocity * INTERVAL;
+            time += INTERVAL;
         }
     }
-    assert!(found > 40 && nothing > 2, "{found} {nothing}");
+    assert!(found > 160 && nothing > 20, "{found} {nothing}");
 }
