@@ -252,7 +252,7 @@ mod tests {
                     reach: model.cutoff(),
                     step: 0.25,
                 };
-                let mut decide = |snapshot: &mut Snapshot, models: [&Model; 2]| {
+                let decide = |snapshot: &mut Snapshot, models: [&Model; 2]| {
                     let mut decisions = Vec::new();
                     let model_of = |number: usize| models[number % 2];
                     snapshot.decide(
