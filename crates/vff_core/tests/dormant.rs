@@ -65,7 +65,7 @@ fn motion(draws: &mut Draws, reach: f64) -> Motion {
 
 fn scene(draws: &mut Draws, measured: bool) -> Option<Scenario> {
     let reach = [6.0, 15.0, 80.0][draws.below(3)];
-    let count = 8 + draws.below(50);
+    let count = 16 + draws.below(50);
     let mut obstacles = Vec::new();
     for _ in 0..count {
         let limits = Limits {

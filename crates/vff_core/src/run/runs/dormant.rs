@@ -12,7 +12,7 @@ use crate::run::scene::{Scene, body_at};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Fewest obstacles for which it pays to tell the far ones from the near ones.
-const FEWEST: usize = 8;
+const FEWEST: usize = 16;
 
 /// Fewest control periods for which it pays to leave an obstacle alone.
 const FEWEST_PERIODS: usize = 8;
