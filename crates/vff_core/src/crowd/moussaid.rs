@@ -9,7 +9,9 @@ use std::f64::consts::PI;
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, awareness_of, drive, drives};
+use crate::crowd::pedestrian::{
+    Around, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2};
 use numeric::angle::unsigned_angle;
@@ -162,11 +164,9 @@ impl Moussaid {
             }
         }
         let grouped = around.company.any();
-        for (agent, sum) in people.iter().zip(sums) {
-            let number = agent.number as usize;
-            if let Some(own) = walkers[number].as_ref().filter(|own| own.decides) {
-                decisions[number] = self.beside_others(*sum, own, (around, grouped));
-            }
+        for (place, own) in deciding(people, walkers) {
+            let decision = self.beside_others(sums[place], own, (around, grouped));
+            decisions[own.agent.number as usize] = decision;
         }
     }
 }

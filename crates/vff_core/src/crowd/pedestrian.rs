@@ -178,6 +178,17 @@ pub(super) fn drives<'a>(
     })
 }
 
+/// Those who decide, with their places in a grid.
+#[inline(always)]
+pub(super) fn deciding<'a>(
+    people: &'a [Agent],
+    walkers: &'a [Option<Walker>],
+) -> impl Iterator<Item = (usize, &'a Walker)> {
+    let walkers = people.iter().map(|agent| &walkers[agent.number as usize]);
+    let present = walkers.enumerate();
+    present.filter_map(|(place, own)| Some((place, own.as_ref().filter(|own| own.decides)?)))
+}
+
 /// Awareness of robots of somebody at a place of a grid.
 #[inline(always)]
 pub(super) fn awareness_of<'a>(

@@ -2,7 +2,7 @@
 
 use crate::crowd::mutual::Known;
 use crate::crowd::pairs::Each;
-use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of};
+use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
 use crate::crowd::reciprocal_people::{Meeting, ReciprocalPeople, away, permitted};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
@@ -21,11 +21,7 @@ impl ReciprocalPeople {
         decisions: &mut [Vector],
     ) {
         self.meet(walkers, around, room);
-        for (place, agent) in around.neighbors.people.agents().iter().enumerate() {
-            let number = agent.number as usize;
-            let Some(own) = walkers[number].as_ref().filter(|own| own.decides) else {
-                continue;
-            };
+        for (place, own) in deciding(around.neighbors.people.agents(), walkers) {
             let hard = self.keep_off_walls(own, around, room);
             let Room {
                 nearest,
@@ -42,11 +38,11 @@ impl ReciprocalPeople {
                     change, direction, ..
                 } = known[*index as usize];
                 planes.push(HalfPlane {
-                    point: agent.velocity + change,
+                    point: own.agent.velocity + change,
                     direction,
                 });
             }
-            decisions[number] = permitted(own, hard, around.step, room);
+            decisions[own.agent.number as usize] = permitted(own, hard, around.step, room);
         }
     }
 

@@ -107,10 +107,8 @@ impl<'m, F: Fn(usize) -> &'m Model> Job<'_, F> {
     #[inline(always)]
     fn mutual(&self) -> Option<&'m Model> {
         let people = self.around.neighbors.people;
-        let mut models = people.agents().iter();
-        let mut models = models
-            .by_ref()
-            .map(|agent| (self.model_of)(agent.number as usize));
+        let numbers = people.agents().iter().map(|agent| agent.number as usize);
+        let mut models = numbers.map(&self.model_of);
         let model = models.next()?;
         let shared = models.all(|other| std::ptr::eq(other, model));
         (shared && people.period == Period::default()).then_some(model)

@@ -6,7 +6,9 @@
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::others::Each;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, awareness_of, drive, drives};
+use crate::crowd::pedestrian::{
+    Around, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+};
 use crate::crowd::walls::pushes;
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use numeric::elementary::decay;
@@ -120,11 +122,9 @@ impl SocialForce1995 {
             .extend(drives(people, walkers, self.relaxation_time));
         room.sums.resize(ways.len(), Vector::zeros());
         self.push_together(neighbors, awareness_of(people, walkers), room);
-        for (agent, sum) in people.iter().zip(&room.sums) {
-            let number = agent.number as usize;
-            if walkers[number].as_ref().is_some_and(|own| own.decides) {
-                decisions[number] = *sum + self.walls(agent.position, around);
-            }
+        for (place, own) in deciding(people, walkers) {
+            let decision = room.sums[place] + self.walls(own.agent.position, around);
+            decisions[own.agent.number as usize] = decision;
         }
     }
 
