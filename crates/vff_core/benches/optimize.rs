@@ -9,6 +9,7 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::laws::field::gains::Gains;
 use vff_core::robots::HolonomicRobot;
+use vff_core::run::metrics::Weights;
 use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Outcome, run_batch};
 use vff_core::search::{
     Bounds, GainOptions, GainProblem, GlobalMethod, GlobalOptions, GridOptions, LocalOptions,
@@ -27,7 +28,7 @@ fn problem() -> GainProblem {
     let scenarios = [1, 2, 3].map(scenes::configuration).to_vec();
     let options = GainOptions {
         run: Options::default(),
-        weights: scenes::THIRDS,
+        weights: Weights::EQUAL,
         objectives: vec![Objective {
             metric: Metric::Performance,
             over: Over::Mean,

@@ -252,15 +252,10 @@ fn batches_agree(law: impl Into<AnyLaw>, points: &[f64], singles: &[AnyLaw]) {
     let law: AnyLaw = law.into();
     let scenarios = [2, 4].map(|number| crossing(obstacles(number), Rules::default()));
     let run = Options::default();
-    let third = 1.0 / 3.0;
     let batch = |width, threads| {
         let options = BatchOptions {
             run,
-            weights: Weights {
-                arrival_time: third,
-                avoidance: third,
-                energy_saving: third,
-            },
+            weights: Weights::EQUAL,
             descent: false,
             threads: Some(threads),
             width: Some(width),

@@ -3,18 +3,18 @@
 
 mod bitwise;
 mod draws;
+mod fields;
 
 use bitwise::computed;
 use draws::Draws;
-use vff_core::laws::field::gains::Gains;
-use vff_core::laws::field::side::SideRules;
+use fields::field;
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::impedance::{Attraction, Form, Impedance, ImpedanceFamily};
 use vff_core::laws::pairwise::Pairwise;
 use vff_core::laws::planning::family::Planned;
 use vff_core::laws::reciprocal::ReciprocalAvoidance;
 use vff_core::laws::velocity_obstacle::VelocityObstacle;
-use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, VirtualForceField};
+use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::Weights;
 use vff_core::run::{
@@ -116,14 +116,9 @@ fn scenes(seed: u64, count: usize) -> Vec<Scenario> {
 /// Runs one by one and recorded runs; returns how they ended.
 fn assert_same(law: impl Into<AnyLaw>, scenes: &[Scenario], run: Options) -> Vec<Outcome> {
     let law = law.into();
-    let third = 1.0 / 3.0;
     let options = BatchOptions {
         run,
-        weights: Weights {
-            arrival_time: third,
-            avoidance: third,
-            energy_saving: third,
-        },
+        weights: Weights::EQUAL,
         descent: false,
         threads: Some(1),
         width: Some(Width::One),
@@ -171,15 +166,6 @@ fn assert_same(law: impl Into<AnyLaw>, scenes: &[Scenario], run: Options) -> Vec
         }
     }
     table.outcome
-}
-
-fn field(stabilizing: Stabilizing, hysteresis: f64) -> VirtualForceField {
-    let gains = Gains::of([3.0, 20.0, 17.0, 0.25]);
-    let rules = SideRules {
-        pass_behind: hysteresis > 1.0,
-        hysteresis,
-    };
-    VirtualForceField::new(gains, stabilizing, rules).unwrap()
 }
 
 #[test]

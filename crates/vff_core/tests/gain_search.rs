@@ -18,12 +18,6 @@ use vff_core::search::{
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::world::scenario::{Rules, Scenario};
 
-const THIRDS: Weights = Weights {
-    arrival_time: 1.0 / 3.0,
-    avoidance: 1.0 / 3.0,
-    energy_saving: 1.0 / 3.0,
-};
-
 /// The optimum of appendix C of the source.
 const PUBLISHED: [f64; 4] = [4.3, 20.3, 240.7, 0.68];
 
@@ -44,7 +38,7 @@ fn mean_performance() -> GainOptions {
             step: 0.06,
             ..Options::default()
         },
-        weights: THIRDS,
+        weights: Weights::EQUAL,
         objectives: vec![Objective {
             metric: Metric::Performance,
             over: Over::Mean,
@@ -102,7 +96,7 @@ fn shortcuts_change_no_score() {
             stop_on_contact: true,
             ..mean_performance().run
         },
-        weights: THIRDS,
+        weights: Weights::EQUAL,
         descent: false,
         threads: Some(2),
         width: None,
@@ -295,7 +289,7 @@ fn objectives_are_put_together_as_they_say() {
     let law = law(PUBLISHED, Stabilizing::Off);
     let options = BatchOptions {
         run: mean_performance().run,
-        weights: THIRDS,
+        weights: Weights::EQUAL,
         descent: false,
         threads: None,
         width: None,

@@ -1,13 +1,13 @@
 //! Different scenes side by side have the rows of scenes one after the other, bit for bit.
 
 mod bitwise;
+mod fields;
 
 use bitwise::computed;
-use vff_core::laws::field::gains::Gains;
-use vff_core::laws::field::side::SideRules;
+use fields::field;
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::pairwise::Pairwise;
-use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, VirtualForceField};
+use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::Weights;
 use vff_core::run::{
@@ -135,16 +135,10 @@ fn bits(table: &BatchTable) -> Vec<(String, Vec<u64>)> {
 }
 
 fn assert_same(law: &AnyLaw, scenes: &[Scenario], points: &[f64], run: Options) -> BatchTable {
-    let third = 1.0 / 3.0;
-    let weights = Weights {
-        arrival_time: third,
-        avoidance: third,
-        energy_saving: third,
-    };
     let table = |width, threads: usize, instructions| {
         let options = BatchOptions {
             run,
-            weights,
+            weights: Weights::EQUAL,
             descent: false,
             threads: Some(threads),
             width,
@@ -178,15 +172,6 @@ fn rules() -> Rules {
         heading: 0.3,
         ..Rules::default()
     }
-}
-
-fn field(stabilizing: Stabilizing, hysteresis: f64) -> VirtualForceField {
-    let gains = Gains::of([3.0, 20.0, 17.0, 0.25]);
-    let rules = SideRules {
-        pass_behind: hysteresis > 1.0,
-        hysteresis,
-    };
-    VirtualForceField::new(gains, stabilizing, rules).unwrap()
 }
 
 #[test]

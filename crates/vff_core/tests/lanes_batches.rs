@@ -141,16 +141,10 @@ fn assert_same_in_every_width(
     run: Options,
     descent: bool,
 ) -> Vec<(String, Vec<u64>)> {
-    let third = 1.0 / 3.0;
-    let weights = Weights {
-        arrival_time: third,
-        avoidance: third,
-        energy_saving: third,
-    };
     let table = |lanes: usize, threads: usize, instructions: Instructions| {
         let options = BatchOptions {
             run,
-            weights,
+            weights: Weights::EQUAL,
             descent,
             threads: Some(threads),
             width: Some(Width::of(lanes).unwrap()),

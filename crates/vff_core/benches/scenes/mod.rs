@@ -68,18 +68,11 @@ pub fn always_active() -> Scenario {
     ])
 }
 
-/// All three goals weigh the same.
-pub const THIRDS: Weights = Weights {
-    arrival_time: 1.0 / 3.0,
-    avoidance: 1.0 / 3.0,
-    energy_saving: 1.0 / 3.0,
-};
-
 /// Runs on one thread.
 pub fn one_thread() -> BatchOptions {
     BatchOptions {
         run: Options::default(),
-        weights: THIRDS,
+        weights: Weights::EQUAL,
         descent: false,
         threads: Some(1),
         width: None,

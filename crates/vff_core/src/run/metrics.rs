@@ -14,6 +14,15 @@ pub struct Weights {
     pub energy_saving: f64,
 }
 
+impl Weights {
+    /// A third each.
+    pub const EQUAL: Self = Self {
+        arrival_time: 1.0 / 3.0,
+        avoidance: 1.0 / 3.0,
+        energy_saving: 1.0 / 3.0,
+    };
+}
+
 /// Score of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Performance {
