@@ -29,6 +29,7 @@ pub mod joint;
 pub mod metrics;
 pub mod motion;
 pub mod parameters;
+mod quantile;
 pub mod response;
 pub mod roots;
 pub mod separation;

@@ -12,7 +12,6 @@
 mod base;
 mod numeric;
 mod probability;
-mod quantile;
 mod row;
 mod rows;
 mod setup;

@@ -5,10 +5,10 @@ use numeric::random::Stream;
 use numeric::threads::{map, on_threads};
 
 use super::Governs;
-use super::quantile::quantiles;
 use super::row::{Row, is_of_law};
 use super::setup::Setup;
 use crate::error::{Failure, Given, Result, at_most, finite, positive};
+use crate::quantile::quantiles;
 
 /// Draws of one stream.
 const BLOCK: usize = 1024;

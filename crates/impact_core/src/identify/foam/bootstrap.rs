@@ -5,6 +5,7 @@ use numeric::random::Stream;
 use super::super::least_squares::Minimum;
 use super::measured::Tests;
 use crate::error::{Failure, Result};
+use crate::quantile::quantiles;
 use numeric::parallel::Work;
 
 /// Residuals that the bootstrap keeps together: rounding repeats itself while the slide is slow.
@@ -30,10 +31,11 @@ impl Tests<'_> {
             (work.progress)(1);
         }
         let outside = 0.5 * (1.0 - self.settings.confidence);
-        Ok(values.map(|mut values| {
-            values.sort_by(f64::total_cmp);
-            [outside, 1.0 - outside].map(|share| percentile(&values, share))
-        }))
+        let mut intervals = [[0.0; 2]; 3];
+        for (interval, values) in intervals.iter_mut().zip(&values) {
+            *interval = quantiles(values, [outside, 1.0 - outside], work.interrupted)?;
+        }
+        Ok(intervals)
     }
 
     fn resampled(&self, parameters: &[f64], stream: &mut Stream) -> Self {
@@ -58,13 +60,4 @@ impl Tests<'_> {
         }
         result
     }
-}
-
-/// Value below which a share of the sorted values lies, linear between them.
-fn percentile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let below = place.floor() as usize;
-    let above = sorted[(below + 1).min(sorted.len() - 1)];
-    sorted[below] + (place - below as f64) * (above - sorted[below])
 }
