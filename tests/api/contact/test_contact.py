@@ -263,3 +263,32 @@ def test_margins_along_a_run(kind: Any) -> None:
     assert closing.any()
     assert (refused.verdict[closing] == "not_permitted").all()
     assert len(found.columns()["margin_m_per_s"]) == found.margin.size
+
+
+def test_only_compressions_err_by_many_tolerances_where_the_motion_turns_beside_a_plateau() -> None:
+    covering = contact.Covering(
+        material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9),
+        thickness=0.02,
+        area=4e-3,
+        rate=(0.05, 0.02, 0.1),
+    )
+    speeds = np.concatenate([np.linspace(0.1799, 0.1806, 60), np.linspace(0.4976, 0.4983, 60)])
+
+    def found(tolerance: float) -> contact.ContactBatch:
+        return contact.batch(
+            robot_mass=8.0,
+            body_mass=40.0,
+            closing_speed=speeds,
+            region=25e3,
+            covering=covering,
+            tolerance=tolerance,
+        )
+
+    coarse, exact = found(1e-6), found(1e-12)
+
+    def most(name: str) -> float:
+        return float(np.abs(getattr(coarse, name) / getattr(exact, name) - 1.0).max()) / 1e-6
+
+    assert most("peak_force") < 1.0
+    assert 3.0 < most("peak_covering_compression") < 100.0
+    assert most("rebound_speed") < 100.0
