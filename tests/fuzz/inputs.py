@@ -28,7 +28,7 @@ ANSWERS = ("results", "errors", "escapes")
 # Of all inputs: calls of functions take milliseconds, constructors microseconds.
 FUNCTION_SHARE, FILE_SHARE = 0.04, 0.02
 # Functions whose documentation says where a result holds NaN, without a status beside it.
-DOCUMENTED = frozenset({"metrics.evaluate", "crowd.simulate"})
+DOCUMENTED = frozenset({"metrics.evaluate", "crowd.simulate", "force_field"})
 MOST_SHOWN = 2000
 
 

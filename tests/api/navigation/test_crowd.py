@@ -13,7 +13,7 @@ import pytest
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.datasets import Recording
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 
 MODELS = (
     nav.crowd.SocialForce1995(),
@@ -293,3 +293,14 @@ def test_what_would_not_fit_into_memory_is_refused_before_any_is_taken() -> None
     robots = [nav.crowd.CrowdRobot(start=start, goal=goal, law=law) for start, goal in ends]
     with pytest.raises(InvalidParameterError, match="robots must see at most 10000000 people and robots together"):
         nav.crowd.simulate_crowd(nav.crowd.World(robots=robots))
+
+
+@pytest.mark.parametrize("kind", ["Moussaid", "SocialForce1995", "SocialForce2000"])
+def test_a_decision_that_is_not_finite_is_an_error(kind: str) -> None:
+    model = getattr(nav.crowd, kind)()
+    given = {"position": [(0.0, 0.0), (0.3, 0.0)], "goal": [(5, 0), (1, 4)]}
+    with pytest.raises(SimulationError, match=r"the decision of row \d is not finite: .* are too large"):
+        nav.crowd.decide(model, velocity=[(1e308, 1e308), (-1e308, 0.0)], **given)
+    person, robot = nav.crowd.decide(model, velocity=np.zeros((2, 2)), robot=[False, True], **given)
+    assert np.isfinite(person).all()
+    assert np.isnan(robot).all()

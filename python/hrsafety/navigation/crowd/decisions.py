@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, numbers, pair, points, positive, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import WallShape, native_walls
 
@@ -107,6 +107,8 @@ def decide(
         If a value is not finite or out of range.
     ShapeError
         If lengths differ.
+    SimulationError
+        If a decision is not finite.
 
     Examples
     --------
@@ -153,4 +155,9 @@ def decide(
         period=lengths,
     )
     decision: Array = found["decision"]
+    lost = ~robots & ~np.isfinite(decision).all(axis=1)
+    if lost.any():
+        raise SimulationError(
+            f"the decision of row {int(np.argmax(lost))} is not finite: positions, velocities or goals are too large"
+        )
     return decision
