@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -87,6 +88,22 @@ def run_python(*arguments: str, folder: Path) -> str:
     )
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     return done.stdout
+
+
+def files_of_the_tree() -> set[str]:
+    """Return what stands in the root, and what stands in the folders that are read or run here."""
+    found = [path for path in REPOSITORY.iterdir() if path.is_file()]
+    for folder in ("docs", "examples", "python"):
+        found += [path for path in (REPOSITORY / folder).rglob("*") if "__pycache__" not in path.parts]
+    return {title(path) for path in found}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def nothing_is_left_in_the_tree() -> Iterator[None]:
+    """Fail if what a reader can copy wrote elsewhere than into the folder that it runs in."""
+    before = files_of_the_tree()
+    yield
+    assert files_of_the_tree() - before == set()
 
 
 # The gallery runs where its pictures are looked at, in test_images.py.
