@@ -15,7 +15,7 @@ from hrsafety._arguments import Array, Pair, instance, positive, sequence
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
-from hrsafety.contact.covering import Covering
+from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.contact.doubts import Doubts
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
@@ -167,8 +167,9 @@ class ContactMargins(Table):
         Allowed less closing speed in m/s; NaN where nothing limits it.
     verdict : ndarray of str, shape (n, m)
         ``"within_limits"``, also where both move apart; ``"exceeds"``; ``"not_permitted"``; ``"not_checked"``
-        where a limit of some region was not checked, or its speed or the velocity of the person is not known,
-        and no other limit is exceeded; ``"absent"``.
+        where a limit of some region was not checked, its speed or the velocity of the person is not known, or
+        the model of the covering does not hold (see `Column.status`), and no other limit is exceeded;
+        ``"absent"``.
     touching : ndarray of bool, shape (n, m)
         Whether there is contact.
     region, contact : str
@@ -338,9 +339,17 @@ def _limit_at(
     found = allowed_speeds(robot_mass=masses, covering=covering, area=area, **_bounds(limit))
     unlimited = found.status == "unlimited_up_to_20"
     known = np.isfinite(found.speed) | unlimited
-    known &= ~found.rising & (not found.not_checked)
+    known &= ~_doubted(found, covering) & (not found.not_checked)
     speed = np.where(np.isnan(found.speed), np.inf, found.speed)
     return _Limits(limit, np.broadcast_to(speed, shape), np.broadcast_to(known, shape), tuple(_named(limit, found)))
+
+
+def _doubted(found: AllowedSpeeds, covering: Covering | Mapping[str, object] | None) -> npt.NDArray[np.bool_]:
+    """Return where loads may be larger than the model of the covering says."""
+    pad = covering_of(covering)
+    depth = found.covering_compression
+    deeper = np.zeros(depth.shape, dtype=bool) if pad is None else depth > pad.thickness
+    return np.asarray(found.rising | found.outside_paraboloid | found.beyond_pad | found.edge | deeper)
 
 
 def _named(limit: Any, found: AllowedSpeeds) -> Iterator[Any]:

@@ -251,6 +251,23 @@ def test_a_limit_that_is_not_checked_is_not_kept() -> None:
     assert set(slow.verdict.ravel()) == {"exceeds"}
 
 
+@pytest.mark.parametrize(
+    ("covering", "code"),
+    [
+        ({"radius": 0.003, "shape": "sphere"}, "edge"),
+        ({"radius": 0.08, "shape": "sphere", "half_width": 1e-3}, "beyond_pad"),
+        ({"radius": 0.012, "shape": "sphere"}, "outside_paraboloid"),
+    ],
+)
+def test_a_covering_outside_its_model_keeps_no_limit(covering: dict[str, Any], code: str) -> None:
+    given = {"material": {"law": "linear", "E": 3e5}, "thickness": 0.02} | covering
+    found = margins(STANDING, [limit()], covering=given, area=None)
+    assert code in codes(found)
+    assert set(found.verdict.ravel()) == {"not_checked"}
+    sound = margins(STANDING, [limit()], covering=given | {"radius": 0.08, "half_width": None}, area=None)
+    assert set(sound.verdict.ravel()) == {"within_limits"}
+
+
 def test_who_appears_is_present_at_once() -> None:
     gone = (math.nan, math.nan)
     found = margins([gone, gone, (2.0, 0.0), (1.9, 0.0), (1.8, 0.0), gone], [limit()])
