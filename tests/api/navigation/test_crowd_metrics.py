@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -206,3 +207,24 @@ def test_a_world_counts_who_left() -> None:
         )
     with pytest.raises(ShapeError, match=r"person_goals .*\(2, 2\)"):
         nav.metrics.evaluate_world(walk, person_goals=[(2.5, 1.0)], step=0.5, time_limit=10.0)
+
+
+def test_what_is_not_scored_of_a_run_is_told() -> None:
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0), obstacles=[], time_limit=20.0)
+    wall = nav.StaticMap.from_polylines([[(2.0, -0.05), (2.0, 3.0)]])
+    blind = nav.SafeNavigation(nav.VirtualForceField(attractive_gain=200.0), map=wall)
+    run = nav.simulate(scene, blind)
+    assert run.outcome == "collided"
+    found = nav.metrics.evaluate(run)
+    (doubt,) = found.warnings
+    assert (doubt.code, found.wall_contacts) == ("not_scored", 0)
+    assert f"touched it at {run.map_contact_time:.2f} s" in doubt.message
+    walled = nav.metrics.evaluate(run, walls=[[(2.0, -0.05), (2.0, 3.0)]])
+    assert (walled.warnings, walled.wall_contacts, walled.success) == ((), 1, False)
+    assert [each.code for each in nav.metrics.evaluate_many([run]).warnings] == ["not_scored"]
+
+    cart = nav.MovingRectangle(center=(2.0, 0.0), velocity=(-3.0, 0.0), length=0.5, width=3.0)
+    met = nav.simulate(replace(scene, obstacles=[cart]), nav.VirtualForceField())
+    touched = bool(np.isfinite(met.contact_time[0]))
+    assert [each.code for each in nav.metrics.evaluate(met).warnings].count("not_scored") == touched
+    assert touched

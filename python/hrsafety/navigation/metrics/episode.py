@@ -167,8 +167,10 @@ class Episode(Parameters):
     def from_trajectory(cls, trajectory: Trajectory, **options: Any) -> Self:
         """Return a run of `simulate` as an episode.
 
-        The people of its scenario are the people, what stands still are walls; other robots (`MovingDisc`)
-        are left out. The last row, the arrival inside a step, is moved to the end of the step.
+        The people of its scenario are the people, what stands still are walls. Other robots (`MovingDisc`,
+        `MovingRectangle`) and maps of laws and sensors are left out: metrics of the run warn ``not_scored``
+        where there is a map, or such a robot was touched. The last row, the arrival inside a step, is moved to
+        the end of the step.
 
         Parameters
         ----------

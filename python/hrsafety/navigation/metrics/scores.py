@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
+from hrsafety.navigation.metrics.sources import doubts_of_run
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.tables import Columns, Table, unit_suffix
@@ -193,14 +194,15 @@ def evaluate(
     episode = _episode(run, people, options)
     found = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
-    return EpisodeMetrics(
-        values, (*_warnings(run), *doubts_between(episode, values["arrival_time"], values["min_time_to_collision"]))
-    )
+    doubts = doubts_between(episode, values["arrival_time"], values["min_time_to_collision"])
+    return EpisodeMetrics(values, (*_warnings(run, options), *doubts))
 
 
-def _warnings(run: object) -> tuple[ResultWarning, ...]:
-    """Return the warnings of a run; positions have none."""
-    return run.warnings if isinstance(run, Trajectory) else ()
+def _warnings(run: object, options: Collection[str] = ()) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a run with those of what is not scored of it; positions have none."""
+    if not isinstance(run, Trajectory):
+        return ()
+    return (*run.warnings, *doubts_of_run(run, walls="walls" not in options, people="people" not in options))
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,8 +15,9 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.plausibility import ResultWarning
 
-__all__ = ["at_instants", "steps_of_run"]
+__all__ = ["at_instants", "doubts_of_run", "steps_of_run"]
 
 # Instants of a run that differ by less are the same, relative to the step.
 _ROUNDING = 1e-9
@@ -42,6 +45,28 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
         "arrival_tolerance": scene.arrival_tolerance,
         "max_speed": scene.robot.max_speed,
     }
+
+
+def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[ResultWarning]:
+    """Yield warnings of what an episode from a run leaves out: maps, and what moves and is nobody.
+
+    ``walls`` and ``people``: whether those of the episode are those of the scenario.
+    """
+    if walls and math.isfinite(run.map_clearance):
+        touched = "" if math.isnan(run.map_contact_time) else f" and touched it at {run.map_contact_time:.2f} s"
+        message = (
+            f"the map that the law or a sensor knows is not scored as a wall: the robot came within "
+            f"{run.map_clearance:.3g} m of it{touched}; give its outlines as walls"
+        )
+        yield ResultWarning("not_scored", "walls", message)
+    scored = (Human, Disc, Rectangle)
+    for index, each in enumerate(run.scenario.obstacles if people and run.scenario else ()):
+        if not isinstance(each, scored) and math.isfinite(run.contact_time[index]):
+            message = (
+                f"obstacles[{index}] ({type(each).__name__}) is not scored, neither a person nor a wall: the robot "
+                f"touched it at {run.contact_time[index]:.2f} s"
+            )
+            yield ResultWarning("not_scored", f"obstacles[{index}]", message)
 
 
 def _whole_last_step(time: Array, places: Array, step: float) -> Array:
