@@ -209,6 +209,21 @@ def test_a_world_counts_who_left() -> None:
         nav.metrics.evaluate_world(walk, person_goals=[(2.5, 1.0)], step=0.5, time_limit=10.0)
 
 
+def test_a_long_recording_is_an_episode() -> None:
+    # Somebody passes another one in 100 s at 0.1 s; instants are not equal.
+    time = np.sort(np.random.default_rng(1).uniform(0.0, 100.0, 300))
+    places = [np.stack([sign * (0.1 * time - 5.0), 0.0 * time + side], axis=1) for sign, side in ((1, 0.0), (-1, 0.8))]
+    both = datasets.Recording(
+        time_s=np.repeat(time, 2), person=np.tile([1, 2], 300), position=np.stack(places, axis=1).reshape(-1, 2)
+    )
+    episode = nav.metrics.Episode.from_recording(both, 1, step=0.1, robot_radius=0.25)
+    assert len(np.asarray(episode.position)) == int((time[-1] - time[0]) / 0.1) + 1
+    found = nav.metrics.evaluate(both, robot=1, step=0.1, robot_radius=0.25)
+    assert found.min_clearance == pytest.approx(0.3, abs=1e-4)
+    with pytest.raises(InvalidParameterError, match="step must be at most"):
+        nav.metrics.Episode.from_recording(both, 1, step=1e-9, robot_radius=0.25)
+
+
 def test_what_is_not_scored_of_a_run_is_told() -> None:
     scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0), obstacles=[], time_limit=20.0)
     wall = nav.StaticMap.from_polylines([[(2.0, -0.05), (2.0, 3.0)]])

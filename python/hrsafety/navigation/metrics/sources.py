@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, numbers, whole_steps
-from hrsafety._bounds import MOST_INSTANTS
+from hrsafety._bounds import MOST_PATH_NUMBERS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
@@ -90,7 +90,8 @@ def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict
         ids = ids[ids != who]
     else:
         time, path = _given_path(robot)
-    steps = int(whole_steps("step", float(time[-1] - time[0]), step, MOST_INSTANTS) + _ROUNDING)
+    most = MOST_PATH_NUMBERS // (2 * len(ids) + 2)
+    steps = int(whole_steps("step", float(time[-1] - time[0]), step, most) + _ROUNDING)
     instants = time[0] + step * np.arange(steps + 1)
     people = np.empty((len(instants), len(ids), 2))
     for index, person in enumerate(ids):
