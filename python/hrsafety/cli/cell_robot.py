@@ -151,9 +151,11 @@ def _arm(values: dict[str, Any], folder: Path) -> RobotFacts:
         given = checked("payload", values["payload"], _PAYLOAD, required=("link", "mass"))
         payload = arms.Payload(**given)
     motors = {name: kind.number(f"armature.{name}", value) for name, value in values.get("armature", {}).items()}
-    arm = arms.Arm.from_urdf(
-        folder / values["urdf"], payload=payload, armature=motors or None, locked=values.get("locked") or None
-    )
+    options: dict[str, Any] = {"payload": payload, "armature": motors or None, "locked": values.get("locked") or None}
+    try:
+        arm = arms.Arm.from_urdf(folder / values["urdf"], **options)
+    except InvalidParameterError as error:
+        raise error.renamed("urdf" if error.argument == "path_or_text" else error.argument) from None
     if not arm.moved_links:
         raise InvalidParameterError("urdf", "have a link that some joint moves", values["urdf"])
     rule = one_of("mass_rule", values.get("mass_rule", "larger"), RULES)

@@ -265,7 +265,7 @@ def test_a_file_to_start_from(judged: Any, capsys: pytest.CaptureFixture[str]) -
         ("speed = 0.25", "speed = nan", "contacts[0].speed must be above 0"),
         ("speed = 0.25", "sped = 0.25", 'did you mean "speed"?'),
         ("mass = 16.35", "mass = -1", "robot.mass must be finite and positive"),
-        ("mass = 16.35", 'urdf = "gone.urdf"', "gone.urdf"),
+        ("mass = 16.35", 'urdf = "gone.urdf"', "robot.urdf must name a readable file"),
         ("thickness = 0.02", "thickness = 0", "coverings[0].covering.thickness must be finite and positive"),
         ("plateau = 15e3", "platau = 15e3", 'did you mean "plateau"?'),
         ("plateau = 15e3", "plateau = 15e6", "coverings[0]"),
