@@ -237,7 +237,7 @@ impl Contact<'_> {
                 // Past bottoming the pressure at the apex is not known.
                 match free {
                     Some(compression) => Some(there(compression.min(pad.bottom()))),
-                    None if pad.bottom().is_finite() => Some(there(pad.bottom())),
+                    None if pad.bottom() <= pad.bound() => Some(there(pad.bottom())),
                     None => None,
                 }
             }

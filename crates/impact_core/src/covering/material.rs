@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::gibson_ashby::GibsonAshby;
 use super::powers::{MOST_EXPONENT, power, raised, within};
-use super::quadrature::unit_integral;
+use super::quadrature::integral_before_pole;
 use super::table::Table;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
@@ -186,7 +186,9 @@ impl Material {
                 strain
                     * (power(*a, *p, strain)[0] / (p + 1.0) + power(*b, *q, strain)[0] / (q + 1.0))
             }
-            Self::Avalle { .. } => strain * unit_integral(|y| self.stress(strain * y)[0]),
+            Self::Avalle { .. } => {
+                strain * integral_before_pole(1.0 / strain - 1.0, |y| self.stress(strain * y)[0])
+            }
             Self::Table(table) => table.works(strain)[0],
         }
     }
@@ -226,7 +228,8 @@ impl Material {
                 square * (part(*a, *p) + part(*b, *q))
             }
             Self::Avalle { .. } => {
-                square * unit_integral(|y| (1.0 - y) * self.stress(strain * y)[0])
+                let column = |y: f64| (1.0 - y) * self.stress(strain * y)[0];
+                square * integral_before_pole(1.0 / strain - 1.0, column)
             }
             Self::Table(table) => table.works(strain)[1],
         }

@@ -52,9 +52,67 @@ pub fn unit_integral(function: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
+/// Distances from 1, as shares of the way from 0, within which a pole beyond it would cost digits.
+const NEAR_POLE: f64 = 0.11;
+const NEAR_PAIR: f64 = 0.25;
+/// Shortest distance that counts.
+const NO_DISTANCE: f64 = 1e-15;
+
+/// The same of a function with a pole at `1 + gap`: towards it pieces get shorter as it gets nearer.
+#[must_use]
+pub fn integral_before_pole(gap: f64, function: impl Fn(f64) -> f64) -> f64 {
+    if gap.is_nan() || gap >= NEAR_POLE {
+        return unit_integral(function);
+    }
+    let nearest = gap.max(NO_DISTANCE);
+    halved(
+        2.0 * NEAR_POLE,
+        nearest,
+        |distance| 1.0 + gap - distance,
+        function,
+    )
+}
+
+/// The same of a function with poles at `1 - gap i` and `1 + gap i`.
+#[must_use]
+pub fn integral_between_poles(gap: f64, function: impl Fn(f64) -> f64) -> f64 {
+    if gap.is_nan() || gap >= NEAR_PAIR {
+        return unit_integral(function);
+    }
+    let nearest = gap.max(NO_DISTANCE);
+    let last = piece(1.0 - nearest, 1.0, &function);
+    last + halved(NEAR_PAIR, nearest, |distance| 1.0 - distance, function)
+}
+
+/// Integral up to the nearest of some distances, over a first piece and pieces that halve them.
+fn halved(
+    first: f64,
+    nearest: f64,
+    place: impl Fn(f64) -> f64,
+    function: impl Fn(f64) -> f64,
+) -> f64 {
+    let begin = place(first);
+    let mut sum = begin * unit_integral(|y| function(begin * y));
+    let mut far = first;
+    while far > nearest {
+        let near = (0.5 * far).max(nearest);
+        sum += piece(place(far), place(near), &function);
+        far = near;
+    }
+    sum
+}
+
+/// Integral of a smooth function over [`from`, `to`].
+fn piece(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let both = |x: f64| function(middle - half * x) + function(middle + half * x);
+    let sum: f64 = NODES.iter().map(|&(x, weight)| weight * both(x)).sum();
+    half * sum
+}
+
 #[cfg(test)]
 mod tests {
-    use super::unit_integral;
+    use super::{integral_before_pole, integral_between_poles, unit_integral};
 
     #[test]
     fn powers_are_exact() {
@@ -62,5 +120,20 @@ mod tests {
             let found = unit_integral(|x| x.powf(power));
             assert!((found * (power + 1.0) - 1.0).abs() < 1e-13, "{power}");
         }
+    }
+
+    #[test]
+    fn poles_cost_no_digits() {
+        for gap in [0.5, 0.11, 0.1, 0.01, 1e-4, 1e-7] {
+            // int (1 + gap - x)^-3, and int gap/(gap^2 + (1 - x)^2).
+            let found = integral_before_pole(gap, |x| (1.0 + gap - x).powi(-3));
+            let exact = 0.5 * (gap.powi(-2) - (1.0 + gap).powi(-2));
+            assert!((found / exact - 1.0).abs() < 1e-15 / gap + 1e-13, "{gap}");
+            let found = integral_between_poles(gap, |x| gap / (gap * gap + (1.0 - x).powi(2)));
+            let exact = (1.0 / gap).atan();
+            assert!((found / exact - 1.0).abs() < 1e-15 / gap + 1e-13, "{gap}");
+        }
+        assert!(integral_before_pole(0.0, |x| (1.0 - x).powf(-0.5)).is_finite());
+        assert!(integral_before_pole(f64::NAN, |x| x).is_finite());
     }
 }

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use super::material::Material;
 use super::powers::power;
-use super::quadrature::unit_integral;
+use super::quadrature::integral_between_poles;
 use crate::error::{Result, positive};
 
 /// `1/Gamma(5/2)`.
@@ -169,9 +169,10 @@ impl HalfOrders {
             // int_0^sqrt(x) h(x - u^2) du with u = sqrt(x) (1 - y).
             let length = strain - origin;
             let scale = 2.0 * (length / PI).sqrt();
+            let gap = pole(material, strain, length);
             for (index, entry) in sum.iter_mut().enumerate() {
                 let column = |y: f64| rest(material, origin + length * y * (2.0 - y))[index];
-                *entry += scale * unit_integral(column);
+                *entry += scale * integral_between_poles(gap, column);
             }
         }
         sum
@@ -195,10 +196,17 @@ impl HalfOrders {
                 let left = 1.0 - y;
                 left * left * rest(material, origin + length * y * (2.0 - y))[0]
             };
-            sum += 4.0 * length * (length / PI).sqrt() * unit_integral(column);
+            let gap = pole(material, strain, length);
+            let scale = 4.0 * length * (length / PI).sqrt();
+            sum += scale * integral_between_poles(gap, column);
         }
         sum
     }
+}
+
+/// How far beside 1 the law is infinite at a complex `y`: `strain - length (1 - y)^2` is its bound.
+fn pole(material: &Material, strain: f64, length: f64) -> f64 {
+    ((material.bound() - strain) / length).sqrt()
 }
 
 /// What a law adds to its powers, and the slope of that.

@@ -194,6 +194,31 @@ mod tests {
     }
 
     #[test]
+    fn who_is_ahead_only_while_the_robot_turns_back_is_ahead() {
+        let mut guard = guard();
+        guard.limits.drive = DifferentialLimits {
+            max_turn_rate: 12.0,
+            max_angular_acceleration: 400.0,
+            ..guard.limits.drive
+        };
+        // The heading is 0 at both ends of the ramp, and 0.18 rad between them.
+        let twist = |turn_rate| Twist {
+            speed: 0.7,
+            turn_rate,
+        };
+        let robot = TwistState {
+            twist: twist(12.0),
+            ..state(0.7)
+        };
+        let mut beside = Person::disc([-0.025, 0.505], 0.3);
+        beside.max_speed = 0.0;
+        assert!(!guard.verified(&view(robot, &[beside]), twist(-12.0)));
+        let mut behind = Person::disc([-0.2, 0.505], 0.3);
+        behind.max_speed = 0.0;
+        assert!(guard.verified(&view(robot, &[behind]), twist(-12.0)));
+    }
+
+    #[test]
     fn a_turn_ends_as_the_plan_behind_it_does() {
         let guard = guard();
         let ordered = Twist {

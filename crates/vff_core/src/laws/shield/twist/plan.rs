@@ -81,6 +81,19 @@ fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1
     nodes
 }
 
+/// Outermost headings of a part in which the twist changes evenly: its ends, and where it turns back.
+fn swept(nodes: &[Node; PARTS + 1], from: Twist, to: Twist) -> [f64; 2] {
+    let (first, last) = (nodes[0], nodes[PARTS]);
+    let ends = [first.heading, last.heading];
+    if from.turn_rate * to.turn_rate >= 0.0 {
+        return ends;
+    }
+    let share = from.turn_rate / (from.turn_rate - to.turn_rate);
+    let apex = first.heading + 0.5 * from.turn_rate * share * (last.time - first.time);
+    let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+    [low.min(apex), high.max(apex)]
+}
+
 impl Ahead {
     /// Between two headings, at speeds of one sign or none; a half turn or more looks all around.
     fn over(headings: [f64; 2], speeds: [f64; 2]) -> Self {
@@ -116,12 +129,14 @@ impl TwistPlan {
         let ramp = nodes(first, limits.period, state.twist, command);
         let braking = limits.braking_periods(command) * limits.period;
         let braking = nodes(ramp[PARTS], braking, command, Twist::default());
-        let turned = |nodes: &[Node; PARTS + 1]| [nodes[0].heading, nodes[PARTS].heading];
         let speeds = [state.twist.speed, command.speed];
         Self {
             ahead: [
-                Ahead::over(turned(&ramp), speeds),
-                Ahead::over(turned(&braking), [command.speed; 2]),
+                Ahead::over(swept(&ramp, state.twist, command), speeds),
+                Ahead::over(
+                    swept(&braking, command, Twist::default()),
+                    [command.speed; 2],
+                ),
             ],
             ramp,
             braking,
