@@ -248,7 +248,7 @@ def _bounds(obstacle: Obstacle, shield: Shield) -> Pair:
     accelerates = isinstance(obstacle, Mobile) and (
         any(getattr(obstacle, "acceleration", ())) or any(any(each[2]) for each in obstacle.segments or ())
     )
-    return math.inf if accelerates else own_speed(obstacle), shield.position_error
+    return math.inf if accelerates else own_speed(obstacle, 0.0), shield.position_error
 
 
 def _pair(row: Array) -> Pair:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Protocol
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
 from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.motions import Segment
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
@@ -18,7 +19,7 @@ from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicR
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "found", "own_speed"]
+__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "found", "own_speed", "pieces"]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
@@ -73,7 +74,7 @@ def _regions(scenario: Described) -> Iterator[ResultWarning]:
     """Yield critical regions in which the robot cannot be sure to stop."""
     for index, obstacle in enumerate(scenario.obstacles):
         given = obstacle.as_given()
-        sized, speed = _sized_for(given), own_speed(given)
+        sized, speed = _sized_for(given, scenario.time_limit), own_speed(given, scenario.time_limit)
         faster = speed > sized + ROUNDING
         if not faster and given.critical_radius is None and given.critical_clearance is None:
             continue  # computed as the safe one
@@ -101,20 +102,22 @@ def _up(value: float) -> float:
     return math.ceil(value * 1e4 - 1e-4) / 1e4
 
 
-def _sized_for(obstacle: Obstacle) -> float:
+def _sized_for(obstacle: Obstacle, until: float) -> float:
     """Return the speed that the regions of an obstacle are sized for, in m/s."""
     if obstacle.max_speed is not None:
         return obstacle.max_speed
-    return 1.0 if isinstance(obstacle, Human) else own_speed(obstacle)
+    return 1.0 if isinstance(obstacle, Human) else own_speed(obstacle, until)
 
 
-def own_speed(obstacle: Obstacle) -> float:
+def own_speed(obstacle: Obstacle, until: float) -> float:
     """Return the largest speed that the motion of an obstacle is known to have, in m/s.
 
     Parameters
     ----------
     obstacle : Obstacle
         Who moves.
+    until : float
+        When a segment without an end counts as over, in s.
 
     Returns
     -------
@@ -130,12 +133,29 @@ def own_speed(obstacle: Obstacle) -> float:
     if obstacle.segments is None:
         return math.hypot(*obstacle.velocity)
     # The speed of an even acceleration is largest at one of its ends.
-    ends = (
-        math.hypot(*(speed + share * duration * gained for speed, gained in zip(velocity, acceleration, strict=True)))
-        for duration, velocity, acceleration in obstacle.segments
-        for share in (0.0, 1.0)
-    )
-    return max(ends, default=0.0)
+    ends = ((math.hypot(*first), math.hypot(*last)) for first, last, _ in pieces(obstacle.segments, until))
+    return max((max(pair) for pair in ends), default=0.0)
+
+
+def pieces(segments: Iterable[Segment], until: float) -> Iterator[tuple[Pair, Pair, float]]:
+    """Yield velocities in m/s at both ends of segments of a motion, and their accelerations in m/s^2.
+
+    Parameters
+    ----------
+    segments : iterable of (duration, velocity, acceleration)
+        As an obstacle keeps them.
+    until : float
+        How long one without an end counts, in s.
+
+    Yields
+    ------
+    tuple of two pairs and a float
+        In the order of the segments.
+    """
+    for duration, velocity, acceleration in segments:
+        length = until if math.isinf(duration) else duration
+        last = [speed + length * more for speed, more in zip(velocity, acceleration, strict=True)]
+        yield velocity, (last[0], last[1]), math.hypot(*acceleration)
 
 
 def _starts(scenario: Described) -> Iterator[ResultWarning]:
@@ -192,13 +212,13 @@ def _plausibility(scenario: Described) -> tuple[ResultWarning, ...]:
         values["measurement.latency"] = scenario.measurement.latency
         quantities |= {"measurement.scale": "measurement_scale", "measurement.latency": "latency"}
     for index, obstacle in enumerate(scenario.obstacles):
-        for name, (value, quantity) in _numbers(obstacle).items():
+        for name, (value, quantity) in _numbers(obstacle, scenario.time_limit).items():
             values[f"obstacles[{index}].{name}"] = value
             quantities[f"obstacles[{index}].{name}"] = quantity
     return implausible(values, quantities)
 
 
-def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
+def _numbers(obstacle: Obstacle, until: float) -> dict[str, tuple[object, str]]:
     """Return the numbers of an obstacle with their quantities."""
     found: dict[str, tuple[object, str]] = {}
     for place in ("start", "center"):
@@ -211,7 +231,7 @@ def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     person = isinstance(obstacle, Human)
     kind = "person_speed" if person else "obstacle_speed"
     found["radius"] = (getattr(obstacle, "radius", None), "person_radius" if person else "obstacle_size")
-    return found | {"velocity": (own_speed(obstacle), kind), "max_speed": (obstacle.max_speed, kind)}
+    return found | {"velocity": (own_speed(obstacle, until), kind), "max_speed": (obstacle.max_speed, kind)}
 
 
 def _reach(scenario: Described) -> Iterator[ResultWarning]:

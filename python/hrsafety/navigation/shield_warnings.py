@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
+from hrsafety._arguments import Pair
 from hrsafety._records import dataclass
 from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_warnings import own_speed
+from hrsafety.navigation.scenario_warnings import own_speed, pieces
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["ASSUMES_LESS", "Motion", "of_shield", "of_surroundings"]
+__all__ = ["ASSUMES_LESS", "Motion", "Mover", "of_shield", "of_surroundings"]
 
 ASSUMES_LESS = "shield_assumes_less"
 SEES_LESS = "shield_sees_less"
@@ -47,6 +50,56 @@ class Motion:
         return 0.5 * change * min(self.step, self.control_period)
 
 
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """How somebody moves.
+
+    Attributes
+    ----------
+    who : str
+        Who it is.
+    speed, acceleration : float
+        Largest speed in m/s and acceleration in m/s^2.
+    jump : float
+        Largest sudden change of the velocity in m/s.
+    """
+
+    who: str
+    speed: float
+    acceleration: float = 0.0
+    jump: float = 0.0
+
+
+def _mover(who: str, obstacle: Obstacle, until: float) -> Mover:
+    """Return how an obstacle moves before a time limit in s."""
+    speed = own_speed(obstacle, until)
+    if not isinstance(obstacle, Mobile):
+        return Mover(who, speed)
+    if obstacle.path is not None:
+        steps = [
+            ((x2 - x1) / (late - soon), (y2 - y1) / (late - soon))
+            for soon, late, (x1, y1), (x2, y2) in _pairs(*obstacle.path)
+        ]
+        return Mover(who, speed, 0.0, _jump(steps[:-1], steps[1:]))
+    if obstacle.segments is not None:
+        parts = list(pieces(obstacle.segments, until))
+        jump = _jump([last for _, last, _ in parts[:-1]], [first for first, _, _ in parts[1:]])
+        return Mover(who, speed, max((gained for _, _, gained in parts), default=0.0), jump)
+    gained = getattr(obstacle, "acceleration", (0.0, 0.0))
+    ends = [first + until * more for first, more in zip(obstacle.velocity, gained, strict=True)]
+    # Who stops does so at once.
+    jump = 0.0 if obstacle.stop is None else speed
+    return Mover(who, max(speed, math.hypot(*ends)) if any(gained) else speed, math.hypot(*gained), jump)
+
+
+def _pairs(time: Sequence[float], places: Sequence[Pair]) -> Iterator[tuple[float, float, Pair, Pair]]:
+    return zip(time, time[1:], places, places[1:], strict=False)
+
+
+def _jump(before: Iterable[Pair], after: Iterable[Pair]) -> float:
+    return max((math.dist(one, other) for one, other in zip(before, after, strict=True)), default=0.0)
+
+
 def of_shield(
     scenario: Scenario, shield: Shield, built: AsBuilt | None = None, motion_step: float = 0.01
 ) -> Iterator[ResultWarning]:
@@ -68,7 +121,8 @@ def of_shield(
     ResultWarning
         Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
-    others = ((f"obstacles[{index}]", own_speed(obstacle)) for index, obstacle in enumerate(scenario.obstacles))
+    named = ((f"obstacles[{index}]", obstacle) for index, obstacle in enumerate(scenario.obstacles))
+    others = [_mover(who, obstacle, scenario.time_limit) for who, obstacle in named]
     yield from of_surroundings(
         shield,
         others,
@@ -122,7 +176,7 @@ def of_controller(
     """
     # How the robot carries out what it is told is its own: no motion steps here.
     motion = Motion(robot, 1.0, 0.0)
-    yield from of_surroundings(shield, [("people", person_speed)], measurement=None, motion=motion, walls=False)
+    yield from of_surroundings(shield, [Mover("people", person_speed)], measurement=None, motion=motion, walls=False)
     if lidar:
         yield ResultWarning(
             SEES_LESS,
@@ -135,7 +189,7 @@ def of_controller(
 
 def of_surroundings(
     shield: Shield,
-    others: Iterable[tuple[str, float]],
+    others: Sequence[Mover],
     *,
     measurement: Measurement | None,
     motion: Motion,
@@ -148,8 +202,8 @@ def of_surroundings(
     ----------
     shield : Shield
         What is assumed.
-    others : iterable of (str, float)
-        Who moves, and the largest speed in m/s.
+    others : sequence of Mover
+        Who moves.
     measurement : Measurement or None
         How the robot knows them.
     motion : Motion
@@ -164,8 +218,7 @@ def of_surroundings(
     ResultWarning
         With the code ``"shield_assumes_less"``.
     """
-    people = () if shield.person_speed is None else others
-    needed = [("person_speed", shield.person_speed or 0.0, speed, f"{who} {_moves(speed)}") for who, speed in people]
+    needed = list(_of_motions(shield, others))
     needed += _of_measurement(shield, measurement, motion)
     error = motion.execution_error
     why = f"with motion steps of {motion.step:g} s the robot is up to {error:.4g} m off the motion that is planned"
@@ -178,6 +231,19 @@ def of_surroundings(
                 f"{owner}.{name}",
                 f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; {mended}",
             )
+
+
+def _of_motions(shield: Shield, others: Iterable[Mover]) -> Iterator[tuple[str, float, float, str]]:
+    """Yield name, assumed value, the least one that covers a motion, and what asks for it."""
+    for each in others:
+        if shield.person_speed is not None:
+            yield "person_speed", shield.person_speed, each.speed, f"{each.who} {_moves(each.speed)}"
+        if shield.velocity_error is not None:
+            why = f"{each.who} changes its velocity by up to {each.jump:.4g} m/s at once"
+            yield "velocity_error", shield.velocity_error, each.jump, why
+        if shield.person_acceleration is not None:
+            why = f"{each.who} accelerates by {each.acceleration:.4g} m/s^2"
+            yield "person_acceleration", shield.person_acceleration, each.acceleration, why
 
 
 def _moves(speed: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +14,7 @@ from hrsafety.navigation.sensing import Measurement
 
 FIELD = nav.VirtualForceField()
 WALKER = nav.Human(start=(3.0, 3.0), velocity=(0.0, -1.2), max_speed=1.6)
+TURNS_BACK = nav.Human.from_segments((3.0, 3.0), [(1.0, (0.0, -0.5), (0.0, -0.3)), (1.0, (0.0, 0.1), (0.0, 0.0))])
 SCENE = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=(WALKER,))
 
 
@@ -63,6 +65,59 @@ def test_a_speed_that_is_reached_later_counts() -> None:
     scene = replace(SCENE, obstacles=(runner,))
     assert warned(scene, Shield(person_speed=2.0)) == {("shield_assumes_less", "shield.person_speed")}
     assert warned(scene, Shield(person_speed=2.5)) == set()
+
+
+def test_an_acceleration_that_goes_on_counts_up_to_the_time_limit() -> None:
+    faster = nav.MovingDisc(center=(6.0, 0.2), radius=0.3, velocity=(-0.1, 0.0), acceleration=(-2.0, 0.0))
+    scene = replace(SCENE, obstacles=(faster,), time_limit=5.0)
+    assert nav.simulate(scene, SafeNavigation(FIELD, shield=Shield(person_speed=1.0))).contact_at_fault.any()
+    assert warned(scene, Shield(person_speed=1.0)) == {("shield_assumes_less", "shield.person_speed")}
+    assert warned(scene, Shield(person_speed=10.1)) == set()
+
+
+@pytest.mark.parametrize(("acceleration", "speed"), [(0.0, 3.0), (0.5, 5.5)])
+def test_a_segment_without_an_end_counts(acceleration: float, speed: float) -> None:
+    runner = nav.Human.from_segments((9.0, 3.0), [(math.inf, (-3.0, 0.0), (-acceleration, 0.0))], max_speed=6.0)
+    scene = replace(SCENE, obstacles=(runner,), time_limit=5.0)
+    assert warned(scene, Shield(person_speed=0.99 * speed)) == {("shield_assumes_less", "shield.person_speed")}
+    assert warned(scene, Shield(person_speed=speed)) == set()
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "velocity_error", "person_acceleration"),
+    [
+        (nav.Human(start=(3.0, 3.0), velocity=(0.0, -0.9), stop=(3.0, 1.0)), 0.9, 0.0),
+        (nav.Human.from_path([0.0, 1.0, 2.0, 3.0], [(3.0, 3.0), (3.0, 2.0), (3.0, 2.0), (3.6, 2.0)]), 1.0, 0.0),
+        (nav.MovingDisc(center=(3.0, 3.0), radius=0.2, velocity=(0.0, -0.1), acceleration=(0.0, -0.4)), 0.0, 0.4),
+        (
+            nav.Human.from_segments((3.0, 3.0), [(1.0, (0.0, -0.5), (0.0, -0.3)), (1.0, (0.0, 0.1), (0.0, 0.0))]),
+            0.9,
+            0.3,
+        ),
+    ],
+)
+def test_velocities_that_are_known_change_no_faster_than_assumed(
+    obstacle: Any, velocity_error: float, person_acceleration: float
+) -> None:
+    scene = replace(SCENE, obstacles=(obstacle,), time_limit=5.0)
+
+    def subjects(less: float, slower: float) -> set[str]:
+        shield = Shield(
+            person_speed=4.0, velocity_error=less * velocity_error, person_acceleration=slower * person_acceleration
+        )
+        return {subject for _, subject in warned(scene, shield)}
+
+    assert subjects(1.0, 1.0) == set()
+    assert subjects(0.9, 1.0) == ({"shield.velocity_error"} if velocity_error else set())
+    assert subjects(1.0, 0.9) == ({"shield.person_acceleration"} if person_acceleration else set())
+
+
+def test_people_who_decide_may_turn_at_once() -> None:
+    shield = Shield(person_speed=2.0, velocity_error=0.1, person_acceleration=1.0)
+    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0), law=SafeNavigation(FIELD, shield=shield))
+    person = nav.crowd.Person(start=(6, 1), route=[(-1, 1)], desired_speed=1.0)
+    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=1.0))
+    assert "robots[0].law.shield.velocity_error" in {each.subject for each in run.warnings}
 
 
 def test_sensors_that_hide_people_are_told() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
-from hrsafety.navigation.shield_warnings import Motion, of_surroundings
+from hrsafety.navigation.shield_warnings import Motion, Mover, of_surroundings
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_robots"]
@@ -41,7 +41,8 @@ def of_robots(
         fastest = max(others, key=lambda each: each[1], default=None)
         found += of_surroundings(
             law.shield,
-            () if fastest is None else (fastest,),
+            # Everybody decides anew at each step, for any velocity up to the largest speed.
+            () if fastest is None else (Mover(*fastest, jump=2.0 * fastest[1]),),
             measurement=robot.measurement,
             motion=Motion(robot.robot, step if robot.control_period is None else robot.control_period, step),
             walls=walls,
