@@ -9,7 +9,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import callback, checked_seed, count, number, positive, thread_count, word
 from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.doubts import Doubts, implausible_numbers, not_checked
+from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.rows import TOLERANCE, applying, contact_row, in_order, limits_of, row_name, spring_of
 from hrsafety.contact.speed import missing_limits
 from hrsafety.errors import InvalidParameterError
@@ -37,7 +37,7 @@ class Exceedance(NamedTuple):
     not_checked : tuple of str
         Limits that were not checked; they never count as kept.
     warnings : tuple of ResultWarning
-        That they were not, and implausible numbers.
+        That they were not, implausible numbers, and a covering outside its model with the values in the middle.
     """
 
     probability: float
@@ -145,7 +145,7 @@ def probability(
         if isinstance(value, Mapping):
             kind, parts = _distribution(name, value)
             inputs.append((place, kind, parts))
-            # The middle one of three, else the first: only its size matters, for what is implausible.
+            # The middle one of three, else the first: for what is implausible, and where a covering has its limits.
             values[place] = parts[1] if kind == "triangular" else parts[0]
         else:
             values[place] = positive(name, value)
@@ -161,5 +161,8 @@ def probability(
         progress=callback("progress", progress),
     )
     found |= {name: tuple(found[name]) for name in ("interval", "quantiles")}
-    doubts = (*not_checked(missing), *implausible_numbers(pad, str(shared["region"]), values))
-    return Exceedance(**found, not_checked=missing, warnings=doubts)
+    doubts = [*not_checked(missing), *implausible_numbers(pad, str(shared["region"]), values)]
+    if pad is not None:
+        depth = _hrsafety.contact_speed(shared, in_order(values))["covering_compression"]
+        doubts += flagged(covering_flags(pad, depth, values))
+    return Exceedance(**found, not_checked=missing, warnings=tuple(doubts))

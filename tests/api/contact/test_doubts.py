@@ -264,6 +264,10 @@ def test_a_covering_outside_its_model_keeps_no_limit(covering: dict[str, Any], c
     found = margins(STANDING, [limit()], covering=given, area=None)
     assert code in codes(found)
     assert set(found.verdict.ravel()) == {"not_checked"}
+    leg = limit()
+    case = {"region": leg.spring_constant, "body_mass": leg.body_mass, "limits": leg, "covering": given}
+    drawn = contact.probability(speed=0.01, robot_mass={"lognormal": [4.4, 0.1]}, draws=200, **case)
+    assert (drawn.probability, code in codes(drawn)) == (0.0, True)
     sound = margins(STANDING, [limit()], covering=given | {"radius": 0.08, "half_width": None}, area=None)
     assert set(sound.verdict.ravel()) == {"within_limits"}
 
