@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Protocol
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
 from hrsafety.navigation.obstacles.base import Obstacle
-from hrsafety.navigation.obstacles.motions import Segment
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
@@ -74,7 +73,7 @@ def _regions(scenario: Described) -> Iterator[ResultWarning]:
     """Yield critical regions in which the robot cannot be sure to stop."""
     for index, obstacle in enumerate(scenario.obstacles):
         given = obstacle.as_given()
-        sized, speed = _sized_for(given, scenario.time_limit), own_speed(given, scenario.time_limit)
+        sized, speed = _sized_for(given), own_speed(given, scenario.time_limit)
         faster = speed > sized + ROUNDING
         if not faster and given.critical_radius is None and given.critical_clearance is None:
             continue  # computed as the safe one
@@ -88,7 +87,8 @@ def _regions(scenario: Described) -> Iterator[ResultWarning]:
         if scenario.measurement is not None:
             why += " with this measurement"
         if faster:
-            why += f" for the {speed:.4g} m/s at which it moves, above the {sized:g} m/s of max_speed"
+            how = "at which it moves" if speed <= own_speed(given, 0.0) else "that it reaches by time_limit"
+            why += f" for the {speed:.4g} m/s {how}, above the {sized:g} m/s of max_speed"
             remedy = f"give max_speed={_up(speed):g}"
         yield ResultWarning(
             BELOW_SAFE,
@@ -102,11 +102,15 @@ def _up(value: float) -> float:
     return math.ceil(value * 1e4 - 1e-4) / 1e4
 
 
-def _sized_for(obstacle: Obstacle, until: float) -> float:
+def _sized_for(obstacle: Obstacle) -> float:
     """Return the speed that the regions of an obstacle are sized for, in m/s."""
     if obstacle.max_speed is not None:
         return obstacle.max_speed
-    return 1.0 if isinstance(obstacle, Human) else own_speed(obstacle, until)
+    if isinstance(obstacle, Human):
+        return 1.0
+    if isinstance(obstacle, Mobile) and obstacle.segments is not None:
+        return max(math.hypot(*velocity) for _, velocity, _ in obstacle.segments)
+    return own_speed(obstacle, 0.0)
 
 
 def own_speed(obstacle: Obstacle, until: float) -> float:
@@ -117,7 +121,7 @@ def own_speed(obstacle: Obstacle, until: float) -> float:
     obstacle : Obstacle
         Who moves.
     until : float
-        When a segment without an end counts as over, in s.
+        When an acceleration without an end counts as over, in s.
 
     Returns
     -------
@@ -130,20 +134,18 @@ def own_speed(obstacle: Obstacle, until: float) -> float:
         instants, places = obstacle.path
         steps = zip(instants, instants[1:], places, places[1:], strict=False)
         return max((math.dist(first, second) / (late - soon) for soon, late, first, second in steps), default=0.0)
-    if obstacle.segments is None:
-        return math.hypot(*obstacle.velocity)
     # The speed of an even acceleration is largest at one of its ends.
-    ends = ((math.hypot(*first), math.hypot(*last)) for first, last, _ in pieces(obstacle.segments, until))
+    ends = ((math.hypot(*first), math.hypot(*last)) for first, last, _ in pieces(obstacle, until))
     return max((max(pair) for pair in ends), default=0.0)
 
 
-def pieces(segments: Iterable[Segment], until: float) -> Iterator[tuple[Pair, Pair, float]]:
+def pieces(obstacle: Mobile, until: float) -> Iterator[tuple[Pair, Pair, float]]:
     """Yield velocities in m/s at both ends of segments of a motion, and their accelerations in m/s^2.
 
     Parameters
     ----------
-    segments : iterable of (duration, velocity, acceleration)
-        As an obstacle keeps them.
+    obstacle : Human, MovingDisc or MovingRectangle
+        Who follows no recording.
     until : float
         How long one without an end counts, in s.
 
@@ -152,7 +154,8 @@ def pieces(segments: Iterable[Segment], until: float) -> Iterator[tuple[Pair, Pa
     tuple of two pairs and a float
         In the order of the segments.
     """
-    for duration, velocity, acceleration in segments:
+    endless = (math.inf, obstacle.velocity, getattr(obstacle, "acceleration", (0.0, 0.0)))
+    for duration, velocity, acceleration in obstacle.segments or (endless,):
         length = until if math.isinf(duration) else duration
         last = [speed + length * more for speed, more in zip(velocity, acceleration, strict=True)]
         yield velocity, (last[0], last[1]), math.hypot(*acceleration)
@@ -212,13 +215,13 @@ def _plausibility(scenario: Described) -> tuple[ResultWarning, ...]:
         values["measurement.latency"] = scenario.measurement.latency
         quantities |= {"measurement.scale": "measurement_scale", "measurement.latency": "latency"}
     for index, obstacle in enumerate(scenario.obstacles):
-        for name, (value, quantity) in _numbers(obstacle, scenario.time_limit).items():
+        for name, (value, quantity) in _numbers(obstacle).items():
             values[f"obstacles[{index}].{name}"] = value
             quantities[f"obstacles[{index}].{name}"] = quantity
     return implausible(values, quantities)
 
 
-def _numbers(obstacle: Obstacle, until: float) -> dict[str, tuple[object, str]]:
+def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     """Return the numbers of an obstacle with their quantities."""
     found: dict[str, tuple[object, str]] = {}
     for place in ("start", "center"):
@@ -231,7 +234,7 @@ def _numbers(obstacle: Obstacle, until: float) -> dict[str, tuple[object, str]]:
     person = isinstance(obstacle, Human)
     kind = "person_speed" if person else "obstacle_speed"
     found["radius"] = (getattr(obstacle, "radius", None), "person_radius" if person else "obstacle_size")
-    return found | {"velocity": (own_speed(obstacle, until), kind), "max_speed": (obstacle.max_speed, kind)}
+    return found | {"velocity": (own_speed(obstacle, 0.0), kind), "max_speed": (obstacle.max_speed, kind)}
 
 
 def _reach(scenario: Described) -> Iterator[ResultWarning]:

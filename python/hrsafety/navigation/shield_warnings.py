@@ -81,15 +81,10 @@ def _mover(who: str, obstacle: Obstacle, until: float) -> Mover:
             for soon, late, (x1, y1), (x2, y2) in _pairs(*obstacle.path)
         ]
         return Mover(who, speed, 0.0, _jump(steps[:-1], steps[1:]))
-    if obstacle.segments is not None:
-        parts = list(pieces(obstacle.segments, until))
-        jump = _jump([last for _, last, _ in parts[:-1]], [first for first, _, _ in parts[1:]])
-        return Mover(who, speed, max((gained for _, _, gained in parts), default=0.0), jump)
-    gained = getattr(obstacle, "acceleration", (0.0, 0.0))
-    ends = [first + until * more for first, more in zip(obstacle.velocity, gained, strict=True)]
+    parts = list(pieces(obstacle, until))
+    jump = _jump([last for _, last, _ in parts[:-1]], [first for first, _, _ in parts[1:]])
     # Who stops does so at once.
-    jump = 0.0 if obstacle.stop is None else speed
-    return Mover(who, max(speed, math.hypot(*ends)) if any(gained) else speed, math.hypot(*gained), jump)
+    return Mover(who, speed, max(gained for _, _, gained in parts), jump if obstacle.stop is None else speed)
 
 
 def _pairs(time: Sequence[float], places: Sequence[Pair]) -> Iterator[tuple[float, float, Pair, Pair]]:

@@ -260,3 +260,16 @@ def test_many_runs_carry_what_their_sensors_do_not_see() -> None:
     (compared,) = nav.compare(place, [LAW, nav.Khatib()], built=short).warnings
     assert compared.message == f"scenarios[0]: {alone.message}"
     assert nav.simulate_many(place, LAW, built=nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()])).warnings == ()
+
+
+def test_regions_of_what_speeds_up_are_too_small() -> None:
+    faster = nav.MovingDisc(center=(5.0, 0.05), radius=0.3, velocity=(-0.1, 0.0), acceleration=(-1.0, 0.0))
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(6.0, 0.0), obstacles=[faster], time_limit=12.0)
+    run = nav.simulate(scene, nav.VirtualForceField())
+    assert run.contact_at_fault.any()
+    (doubt,) = run.warnings
+    assert doubt.code == "region_below_safe"
+    assert "12.1 m/s that it reaches by time_limit" in doubt.message
+    for sized in (replace(faster, max_speed=12.1), replace(faster, acceleration=(0.0, 0.0))):
+        found = replace(scene, obstacles=[sized]).warnings
+        assert "region_below_safe" not in {each.code for each in found}
