@@ -304,7 +304,8 @@ def _busiest(instants: Array, traffic: npt.NDArray[np.int64], runs: int, spacing
             chosen.append(float(instants[index]))
     if len(chosen) < runs:
         rule = f"be at most {len(chosen)}, the number of free start instants {spacing:g} s apart"
-        raise InvalidParameterError("runs", rule, runs)
+        remedy = f"ask for {len(chosen)}, or take a longer recording" if chosen else None
+        raise InvalidParameterError("runs", rule, runs, remedy)
     return sorted(chosen)
 
 

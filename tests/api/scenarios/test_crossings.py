@@ -158,3 +158,11 @@ def test_most_crossings_of_recorded_scenes_meet_many_people(name: str) -> None:
     table = nav.simulate_batch([run.scenario for run in runs], nav.VirtualForceField(stabilizing="off"))
     assert np.count_nonzero(table.entered_active >= MANY) > RUNS // 2
     assert set(table.outcome.tolist()) <= {"arrived", "collided", "timed_out"}
+
+
+def test_a_short_recording_tells_how_many_runs_it_holds() -> None:
+    time = np.arange(0.0, 12.0, 0.4)
+    places = np.stack([0.5 * time - 3.0, np.full(len(time), 4.0)], axis=1)
+    short = Recording(time_s=time, person=np.ones(len(time), dtype=np.int64), position=places)
+    with pytest.raises(InvalidParameterError, match=r"runs must be at most (\d+),.* got 24; ask for \1, or"):
+        scenarios.crossings(short)
