@@ -292,3 +292,22 @@ def test_only_compressions_err_by_many_tolerances_where_the_motion_turns_beside_
     assert most("peak_force") < 1.0
     assert 3.0 < most("peak_covering_compression") < 100.0
     assert most("rebound_speed") < 100.0
+
+
+@pytest.mark.parametrize("strain", [0.5, 0.89, 0.91, 0.99, 0.9999])
+def test_work_near_the_end_of_a_law_is_exact(strain: float) -> None:
+    plateau, modulus, dense = 2e4, 3e5, 9e3
+    law = {"law": "avalle", "A": plateau, "E": modulus, "m": 0.0, "B": dense, "n": 2.0}
+    pad = contact.Covering(material=law, thickness=1.0, area=1.0, bottom=(0.8, 0.0))
+    risen = plateau * strain + plateau**2 / modulus * math.expm1(-modulus / plateau * strain)
+    densified = strain + 2.0 * math.log1p(-strain) + strain / (1.0 - strain)
+    assert pad.column(strain).energy == pytest.approx(risen + dense * densified, rel=1e-10)
+
+
+def test_a_pressure_beyond_a_table_is_no_limit_where_the_backing_lies_beyond_it() -> None:
+    law = {"law": "table", "strain": [0.0, 0.3, 0.6], "stress": [0.0, 1e4, 3e4]}
+    for bottom, known in ((0.8, False), (0.5, True)):
+        pad = contact.Covering(material=law, thickness=0.02, shape="sphere", radius=0.08, bottom=(bottom, 1e7))
+        found = contact.allowed_speed(robot_mass=10.0, region=25e3, limits={"pressure": 1e6}, covering=pad)
+        assert (found.speeds["pressure"] is not None) == known
+        assert found.governs == ("pressure" if known else "strain")
