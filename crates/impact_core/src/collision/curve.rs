@@ -97,10 +97,14 @@ pub fn step(
 ) -> Step {
     let mut slopes = [[0.0; 2]; 12];
     slopes[0] = first;
-    for (index, (weights, node)) in STAGES.iter().zip(NODES).enumerate() {
-        let inner = moved(state, length, weights, &slopes);
-        slopes[index + 1] = rates(at + node * length, inner);
+    // Written out, so that every sum of weights becomes straight code.
+    macro_rules! stages {
+        ($($index:literal)*) => {$(
+            let inner = moved(state, length, STAGES[$index], &slopes);
+            slopes[$index + 1] = rates(at + NODES[$index] * length, inner);
+        )*};
     }
+    stages!(0 1 2 3 4 5 6 7 8 9 10);
     let mut sums = [[0.0; 2]; 3];
     for (place, weights) in RESULT {
         for (sum, weight) in sums.iter_mut().zip(weights) {
@@ -130,7 +134,7 @@ pub fn step(
 }
 
 /// A state moved along the slopes of some stages.
-#[inline]
+#[inline(always)]
 fn moved(state: [f64; 2], length: f64, weights: &[(usize, f64)], slopes: &[[f64; 2]]) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for &(place, weight) in weights {
