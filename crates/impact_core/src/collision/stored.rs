@@ -28,6 +28,9 @@ const MIDDLE: [f64; 2] = [0.20948214108472782, 0.4179591836734694];
 /// Halvings of a piece before the motion itself is solved.
 const HALVINGS: u32 = 4;
 
+/// Shares of the largest compression between which a kink ends the first piece; else half of it does.
+const FIRST_MARK: [f64; 2] = [0.01, 0.5];
+
 /// Integral over an interval, and the error of the smaller rule.
 fn kronrod(low: f64, high: f64, function: &impl Fn(f64) -> f64) -> [f64; 2] {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -120,6 +123,14 @@ impl Column<'_> {
         smooth_power(exponent)
     }
 
+    /// Whether the force of a cylinder goes on from a kink of the law like a half power.
+    fn starts_with_half_power(&self, mark: f64) -> bool {
+        self.pad.is_some_and(|pad| {
+            let round = matches!(pad.covering.shape, Shape::Cylinder { .. });
+            round && pad.kinks().contains(&mark)
+        })
+    }
+
     /// Time to a largest compression.
     fn time(&self, largest: f64, mass: f64, size: f64, tolerance: f64) -> Option<f64> {
         let all = self.at(largest)[0];
@@ -127,9 +138,11 @@ impl Column<'_> {
             let [work, rate] = self.at(compression);
             rate / (2.0 * (all - work) / mass).sqrt()
         };
-        let mut marks = vec![0.5 * largest];
-        if let Some(pad) = self.pad {
-            marks.extend(pad.kinks().into_iter().filter(|kink| *kink < largest));
+        let mut marks = self.pad.map_or_else(Vec::new, Pad::kinks);
+        marks.retain(|kink| *kink < largest);
+        let early = FIRST_MARK[0] * largest..=FIRST_MARK[1] * largest;
+        if !marks.first().is_some_and(|kink| early.contains(kink)) {
+            marks.push(0.5 * largest);
             marks.sort_by(f64::total_cmp);
         }
         marks.push(largest);
@@ -140,8 +153,15 @@ impl Column<'_> {
             f64::from(power) * first * x.powi(power - 1) * late(first * x.powi(power))
         })?;
         for pair in marks.windows(2) {
+            let mut from = pair[0];
+            if self.starts_with_half_power(from) {
+                from = 0.5 * (pair[0] + pair[1]);
+                time += integral([0.0, (from - pair[0]).sqrt()], goal, HALVINGS, &|x| {
+                    2.0 * x * late(pair[0] + x * x)
+                })?;
+            }
             // The speed falls like the square root of what is left.
-            let [near, far] = [pair[1], pair[0]].map(|mark| (largest - mark).max(0.0).sqrt());
+            let [near, far] = [pair[1], from].map(|mark| (largest - mark).max(0.0).sqrt());
             if far > near {
                 time += integral([near, far], goal, HALVINGS, &|s| {
                     2.0 * s * late(largest - s * s)
