@@ -27,7 +27,7 @@ use crate::covering::{Pad, Shape};
 use crate::roots::Peak;
 use plane::{Point, Scales};
 use steps::{Progress, finer_than_usual};
-use variable::{DEPTH, Variable};
+use variable::Variable;
 
 /// Most evaluations of the forces.
 const MOST_EVALUATIONS: usize = 20_000;
@@ -57,6 +57,8 @@ struct Loading<'a> {
     mass: f64,
     scales: Scales,
     curved: bool,
+    /// Whether the force goes on from a kink of the law like a half power.
+    half_powers: bool,
     kinks: Vec<f64>,
     /// The next one.
     kink: f64,
@@ -132,12 +134,7 @@ impl Loading<'_> {
     /// At the touch.
     fn touch(&self) -> Progress {
         let variable = Variable::from_touch(self.size, self.exponent);
-        Progress {
-            variable,
-            point: self.point(variable, 0.0, [1.0, 0.0]),
-            length: f64::INFINITY,
-            to_kink: false,
-        }
+        Progress::new(variable, self.point(variable, 0.0, [1.0, 0.0]))
     }
 
     fn travel(&mut self) -> Option<Turn> {
@@ -151,6 +148,7 @@ impl Loading<'_> {
             let growth = match self.judged(&now, &reach, state, taken.error) {
                 Ok(growth) => growth,
                 Err(factor) => {
+                    now.new = false;
                     now.length = reach.length * factor;
                     if now.length <= SHORTEST * (now.point.at + now.length) {
                         return None;
@@ -164,12 +162,14 @@ impl Loading<'_> {
                 continue;
             }
             let next = self.point(now.variable, now.point.at + reach.length, state);
+            let shorter = now.variable.room(next.at) / now.variable.room(now.point.at);
             if next.depth >= self.pad.bound() {
                 return None;
             }
             self.offer((now.variable, &taken), [&now.point, &next], &mut tops);
             now.point = next;
-            now.length = reach.length * growth;
+            now.length = reach.length * growth * shorter;
+            now.new = false;
             match reach.last {
                 true if self.deepens(&now) => self.pass_kink(&mut now),
                 true => return Some(self.turn(&now.point, tops)),
@@ -192,12 +192,11 @@ impl Loading<'_> {
     fn pass_kink(&mut self, now: &mut Progress) {
         now.point.depth = self.kink;
         self.enter(self.kink);
-        *now = Progress {
-            variable: DEPTH,
-            point: self.over(DEPTH, &now.point),
-            length: f64::INFINITY,
-            to_kink: false,
-        };
+        if self.half_powers {
+            self.to_turn = Variable::to_turn(self.pad, now.point.speed);
+        }
+        let variable = self.variable(&now.point, false);
+        *now = Progress::new(variable, self.over(variable, &now.point));
     }
 }
 
@@ -236,6 +235,7 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
             },
         },
         curved: !matches!(pad.covering.shape, Shape::Flat { .. }),
+        half_powers: matches!(pad.covering.shape, Shape::Cylinder { .. }),
         kinks: pad.kinks(),
         kink: f64::INFINITY,
         piece: [0.0; 2],

@@ -102,8 +102,13 @@ impl Loading<'_> {
     #[inline]
     pub(super) fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> Place {
         match variable {
-            Variable::Depth { first, power } => {
-                let [depth, change] = deepened(first, power, at);
+            Variable::Depth {
+                origin,
+                first,
+                power,
+            } => {
+                let [beyond, change] = deepened(first, power, at);
+                let depth = origin + beyond;
                 let speed = self.collision.closing_speed * state[0].sqrt();
                 let forces = self.forces(depth, speed);
                 let ratio = change * forces.share / forces.inertia;

@@ -7,18 +7,24 @@ use super::variable::{DEPTH, Variable};
 /// Share of the kinetic energy at which the variable changes.
 const EARLY: f64 = 0.83;
 /// Share of the energy that the first step takes, if the law is a power.
-const FIRST: f64 = 0.05;
+const FIRST: f64 = 0.03;
 /// Share of the energy below which the compression is a poor variable, unless a kink is near.
 const LATE: f64 = 0.1;
 /// Share of the present energy that has to be left at a kink, to first order, to go there.
 const LEFT: f64 = 0.2;
+/// Share of the energy, over the tolerance, with which no kink is looked for: on a plateau little carries far.
+const UNFELT: f64 = 0.01;
 /// Errors of steps over the tolerance.
-const CAUTION: f64 = 0.4;
+const CAUTION: f64 = 0.7;
 /// How much less the estimate of the first step, which has no step before it, is trusted.
 const DOUBT: f64 = 10.0;
+/// How much of the length of a step over one variable is trusted over the next one.
+const MOVED: f64 = 0.8;
+/// How much longer a step may be that ends at the kink or at the turn, so that no short one follows.
+const STRETCH: f64 = 1.1;
 /// Shares of what is left of a variable: the first step towards the turn, and the longest over the compression.
 const FIRST_TO_TURN: f64 = 0.3;
-const LONGEST: f64 = 0.33;
+const LONGEST: f64 = 0.36;
 
 /// How far the motion is.
 pub(super) struct Progress {
@@ -26,8 +32,23 @@ pub(super) struct Progress {
     pub(super) point: Point,
     /// Length of the next step; infinite if none is known.
     pub(super) length: f64,
+    /// Whether no step over the variable was tried yet.
+    pub(super) new: bool,
     /// Whether a step has met the kink.
     pub(super) to_kink: bool,
+}
+
+impl Progress {
+    /// At a point from which no step was tried yet.
+    pub(super) fn new(variable: Variable, point: Point) -> Self {
+        Self {
+            variable,
+            point,
+            length: f64::INFINITY,
+            new: true,
+            to_kink: false,
+        }
+    }
 }
 
 /// How far the next step goes.
@@ -39,7 +60,7 @@ pub(super) struct Reach {
 
 impl Loading<'_> {
     /// The variable for the next step.
-    fn variable(&self, point: &Point, to_kink: bool) -> Variable {
+    pub(super) fn variable(&self, point: &Point, to_kink: bool) -> Variable {
         let energy = self.energy(point);
         let near = energy + point.fall * (self.kink - point.depth) > LEFT * energy;
         let early = energy > EARLY && point.depth < 0.95 * self.size;
@@ -47,6 +68,8 @@ impl Loading<'_> {
             self.to_turn
         } else if self.piece[0] == 0.0 {
             Variable::from_touch(self.size, self.exponent)
+        } else if self.half_powers {
+            Variable::from_half_power(self.piece[0], self.size)
         } else {
             DEPTH
         }
@@ -57,9 +80,10 @@ impl Loading<'_> {
             variable,
             point,
             length,
+            new,
             to_kink,
+            ..
         } = *now;
-        let new = length.is_infinite();
         let (end, most) = match variable {
             Variable::Pace { .. } if new => (1.0, self.finer * FIRST_TO_TURN * (1.0 - point.at)),
             Variable::Pace { .. } => (1.0, f64::INFINITY),
@@ -76,7 +100,7 @@ impl Loading<'_> {
         };
         let left = end - point.at;
         let length = length.min(most.max(1e-3 * left));
-        let last = length >= left * (1.0 - 1e-9);
+        let last = STRETCH * length >= left;
         Reach {
             length: if last { left } else { length },
             last,
@@ -92,13 +116,18 @@ impl Loading<'_> {
         error: f64,
     ) -> Result<f64, f64> {
         let doubt = if now.point.at == 0.0 { DOUBT } else { 1.0 };
-        let excess = doubt * error / (CAUTION * self.collision.tolerance);
-        if excess.is_nan() || (self.deepens(now) && state[0].is_nan()) {
+        // An error of the energy moves the turn the farther the less of it is left; NaN if there is none.
+        let left = if self.deepens(now) {
+            state[0].sqrt()
+        } else {
+            1.0
+        };
+        let excess = doubt * error / (left * CAUTION * self.collision.tolerance);
+        if excess.is_nan() {
             return Err(0.5);
         }
-        let factor = (0.85 / eighth_root(excess.max(1e-12))).clamp(0.2, 6.0);
         if excess > 1.0 {
-            return Err(factor.min(0.9));
+            return Err(longer(excess).min(0.9));
         }
         let least = if reach.last {
             0.0
@@ -108,7 +137,7 @@ impl Loading<'_> {
         if self.deepens(now) && state[0] <= least {
             return Err(0.5);
         }
-        Ok(factor)
+        Ok(longer(excess))
     }
 
     pub(super) fn deepens(&self, now: &Progress) -> bool {
@@ -117,17 +146,18 @@ impl Loading<'_> {
 
     /// Takes the variable for the next step.
     pub(super) fn choose(&mut self, now: &mut Progress) {
-        if self.energy(&now.point) < CAUTION * self.collision.tolerance {
+        if self.energy(&now.point) < UNFELT * self.collision.tolerance {
             self.forget_kink();
             now.to_kink = false;
         }
         let wanted = self.variable(&now.point, now.to_kink);
         if wanted != now.variable {
+            let point = self.over(wanted, &now.point);
+            let change = now.variable.deepening(&now.point) / wanted.deepening(&point);
             *now = Progress {
-                variable: wanted,
-                point: self.over(wanted, &now.point),
-                length: f64::INFINITY,
+                length: MOVED * change * now.length,
                 to_kink: now.to_kink,
+                ..Progress::new(wanted, point)
             };
         }
     }
@@ -136,6 +166,11 @@ impl Loading<'_> {
 /// How much shorter first steps are than at a tolerance of 1e-6.
 pub fn finer_than_usual(tolerance: f64) -> f64 {
     eighth_root(tolerance / 1e-6).min(1.0)
+}
+
+/// Factor for the length of a step from its error over what is allowed.
+fn longer(excess: f64) -> f64 {
+    (0.85 / eighth_root(excess.max(1e-12))).clamp(0.2, 6.0)
 }
 
 fn eighth_root(value: f64) -> f64 {

@@ -1,5 +1,6 @@
 //! What the plane of `d` and `eps'` is integrated over.
 
+use super::plane::Point;
 use crate::covering::Pad;
 
 /// Largest power of a substitution.
@@ -12,9 +13,11 @@ const NOWHERE: f64 = 1e-16;
 /// A variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Variable {
-    /// `x` of `d = first x^power`; the state is `(eps'/v)^2` and the time.
+    /// `x` of `d = origin + first x^power`; the state is `(eps'/v)^2` and the time.
     Depth {
-        /// `d` at `x = 1`, in m.
+        /// `d` at `x = 0`, in m.
+        origin: f64,
+        /// What `d` rises by up to `x = 1`, in m.
         first: f64,
         /// The power.
         power: i32,
@@ -32,6 +35,7 @@ pub enum Variable {
 
 /// `d` itself.
 pub const DEPTH: Variable = Variable::Depth {
+    origin: 0.0,
     first: 1.0,
     power: 1,
 };
@@ -41,13 +45,26 @@ impl Variable {
     #[must_use]
     pub fn from_touch(size: f64, exponent: f64) -> Self {
         Self::Depth {
+            origin: 0.0,
             first: size,
             power: smooth_power(exponent),
         }
     }
 
+    /// The variable from a kink of the law on in which the force of a cylinder is smooth, a half power of what follows
+    /// the kink.
+    #[must_use]
+    pub fn from_half_power(kink: f64, size: f64) -> Self {
+        Self::Depth {
+            origin: kink,
+            first: size,
+            power: 2,
+        }
+    }
+
     /// The variable towards the turn. Over `eps'` the rate factor `(1 + eps'/(T e0))^n` is singular at `-T e0`, which
-    /// may be near the turn, and `d` starts like a root of `v - eps'`; over `w` both are far.
+    /// may be near the turn, and `d` starts like a root of `v - eps'`, at the touch or at a half power; over `w` both are
+    /// far.
     #[must_use]
     pub fn to_turn(pad: &Pad, speed: f64) -> Self {
         let unit = pad.covering.thickness * pad.covering.rate.reference;
@@ -71,11 +88,31 @@ impl Variable {
         }
     }
 
+    /// Rate of `d` at a point.
+    pub(super) fn deepening(self, point: &Point) -> f64 {
+        match self {
+            Self::Depth { first, power, .. } => deepened(first, power, point.at)[1],
+            Self::Pace { .. } => point.rates[0],
+        }
+    }
+
+    /// How far the nearest singularity of the rate factor is, as far as it is known.
+    pub(super) fn room(self, at: f64) -> f64 {
+        match self {
+            Self::Depth { .. } => 1.0,
+            Self::Pace { range, .. } => (1.0 + 1.0 / range).sqrt() - at,
+        }
+    }
+
     /// Where `d` and `eps'` have some values.
     #[must_use]
     pub fn at(self, depth: f64, speed: f64) -> f64 {
         match self {
-            Self::Depth { first, power } => root_of(depth / first, power),
+            Self::Depth {
+                origin,
+                first,
+                power,
+            } => root_of((depth - origin).max(0.0) / first, power),
             Self::Pace {
                 unit,
                 doublings,
@@ -103,7 +140,7 @@ pub fn smooth_power(exponent: f64) -> i32 {
     })
 }
 
-/// `d` and its rate over `x`.
+/// `d` beyond its origin and its rate over `x`.
 #[inline]
 #[must_use]
 pub fn deepened(first: f64, power: i32, x: f64) -> [f64; 2] {
@@ -119,6 +156,7 @@ pub fn deepened(first: f64, power: i32, x: f64) -> [f64; 2] {
 #[inline]
 #[must_use]
 pub fn slowed([unit, range]: [f64; 2], doublings: u32, at: f64) -> [f64; 2] {
+    let at = at.max(NOWHERE);
     let mut power = 1.0 + range * (1.0 - at * at);
     let mut rate = -2.0 * range * at * unit;
     for _ in 0..doublings {
@@ -169,8 +207,12 @@ mod tests {
             let rate = deepened(0.02, power, x)[1];
             assert!((rate * 2.0 * h / (ahead - behind) - 1.0).abs() < 1e-8);
             let depth = deepened(0.02, power, x)[0];
-            let variable = Variable::Depth { first: 0.02, power };
-            assert!((variable.at(depth, 0.0) - x).abs() < 1e-14);
+            let variable = Variable::Depth {
+                origin: 0.01,
+                first: 0.02,
+                power,
+            };
+            assert!((variable.at(0.01 + depth, 0.0) - x).abs() < 1e-14);
         }
         for doublings in 0..4 {
             let variable = Variable::Pace {
