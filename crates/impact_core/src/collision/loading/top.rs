@@ -8,6 +8,8 @@ use crate::roots::Peak;
 
 /// Most steps towards a top.
 const MOST_TRIALS: usize = 12;
+/// Shares of a step from a half power at which a load is looked at.
+const RISES: [f64; 2] = [0.5, 0.2];
 
 impl Loading<'_> {
     /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
@@ -26,11 +28,24 @@ impl Loading<'_> {
         top: &mut Peak,
     ) {
         top.offer(to.loads[load][0], to.state[1]);
-        if !(from.loads[load][1] > 0.0 && to.loads[load][1] < 0.0) {
+        let rises = from.loads[load][1] > 0.0;
+        // Beyond a half power a load that falls may rise once more, ever faster at first.
+        let may_rise = self.half_powers && from.depth <= self.piece[0];
+        if !(to.loads[load][1] < 0.0 && (rises || may_rise)) {
             return;
         }
-        let (mut low, mut high) = (*from, *to);
         let inside = self.inside(variable, taken, [from, to]);
+        let (mut low, mut high) = (*from, *to);
+        if !rises {
+            let tried = RISES.map(|share| {
+                let at = from.at + share * (to.at - from.at);
+                self.tried(variable, (from, taken), &inside, at)
+            });
+            let Some(rising) = tried.into_iter().find(|point| point.loads[load][1] > 0.0) else {
+                return;
+            };
+            low = rising;
+        }
         let near = 0.01 * self.collision.tolerance.cbrt() * (to.at - from.at);
         let mut last: Option<Point> = None;
         for _ in 0..MOST_TRIALS {
