@@ -9,6 +9,13 @@ const ALIKE: f64 = 1e-9;
 /// Bodies whose centers are nearer than this have no direction between them, in m.
 const NOWHERE: f64 = 1e-9;
 
+/// A person who is touched at an instant.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Touch {
+    pub person: usize,
+    pub instant: usize,
+}
+
 /// Events up to the end; an event is a longest run of instants in which one person is touched.
 pub(super) struct Contacts {
     pub robot_on_person: u32,
@@ -20,7 +27,7 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    pub fn of(episode: &Episode<'_>, end: usize) -> Self {
+    pub fn of(episode: &Episode<'_>, end: usize, mut touches: Vec<Touch>) -> Self {
         let (walls, wall_clearance) = at_walls(episode, end);
         let mut contacts = Self {
             robot_on_person: 0,
@@ -30,17 +37,15 @@ impl Contacts {
             walls,
             wall_clearance,
         };
-        for (person, radius) in episode.radii.iter().enumerate() {
-            let reach = episode.rules.robot_radius + radius;
-            let mut touched = false;
-            for instant in 0..=end {
-                // NaN, who is absent, is not nearer.
-                let touches = offset(episode, instant, person).norm() - reach < 0.0;
-                if touches && !touched {
-                    contacts.add(closing(episode, (instant, end), person));
-                }
-                touched = touches;
+        touches.sort_unstable();
+        let mut before: Option<Touch> = None;
+        for Touch { person, instant } in touches {
+            let goes_on =
+                before.is_some_and(|last| last.person == person && last.instant + 1 == instant);
+            if !goes_on {
+                contacts.add(closing(episode, (instant, end), person));
             }
+            before = Some(Touch { person, instant });
         }
         contacts
     }

@@ -39,8 +39,8 @@ pub fn evaluate(episode: &Episode<'_>) -> Result<RobotMetrics> {
 #[must_use]
 pub fn evaluate_checked(episode: &Episode<'_>) -> RobotMetrics {
     let travel = Travel::of(episode);
-    let near = Proximity::of(episode, travel.end);
-    let contacts = Contacts::of(episode, travel.end);
+    let (near, touches) = Proximity::of(episode, travel.end);
+    let contacts = Contacts::of(episode, travel.end, touches);
     let effect = Effect::of(episode);
     let success = travel.arrived && contacts.none();
     RobotMetrics {

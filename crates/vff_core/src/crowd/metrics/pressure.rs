@@ -2,9 +2,15 @@
 
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::moussaid::Moussaid;
-use crate::lanes::Vector2;
+use crate::lanes::{Lanes, Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
+
+/// How many pairs are looked at side by side.
+const WIDTH: usize = 8;
+
+/// A number of each of them.
+type Each = Lanes<WIDTH>;
 
 /// The model of Moussaid et al. (2009) without preference for a side; of its parameters only those of the push
 /// between two people matter here.
@@ -42,9 +48,119 @@ pub(super) fn forces(to_person: Vector, closing: Vector) -> [Vector; 2] {
     [on_person, -on_person]
 }
 
+/// Sums of the forces over the instants. Pairs wait until there are enough of them to be looked at side by side, and
+/// are added in the order in which they came, so that no bit of a sum depends on it.
+pub(super) struct Pressures {
+    processor: pulp::Arch,
+    to_person: Vector2<Each>,
+    closing: Vector2<Each>,
+    instants: [usize; WIDTH],
+    waiting: usize,
+    on_people: f64,
+    on_robot: f64,
+    /// Force on the robot at an instant so far.
+    at_instant: Vector,
+    instant: usize,
+}
+
+impl Pressures {
+    pub fn new() -> Self {
+        let nothing: Vector2<Each> = Planar::<Each>::splat([0.0; 2]);
+        Self {
+            processor: pulp::Arch::new(),
+            to_person: nothing,
+            closing: nothing,
+            instants: [0; WIDTH],
+            waiting: 0,
+            on_people: 0.0,
+            on_robot: 0.0,
+            at_instant: Vector::zeros(),
+            instant: 0,
+        }
+    }
+
+    /// Adds a person at an instant; instants never fall.
+    #[inline]
+    pub fn add(&mut self, instant: usize, to_person: Vector, closing: Vector) {
+        let lane = self.waiting;
+        self.instants[lane] = instant;
+        self.to_person.x.set(lane, to_person.x);
+        self.to_person.y.set(lane, to_person.y);
+        self.closing.x.set(lane, closing.x);
+        self.closing.y.set(lane, closing.y);
+        self.waiting += 1;
+        if self.waiting == WIDTH {
+            self.add_waiting();
+        }
+    }
+
+    fn add_waiting(&mut self) {
+        let [to_person, closing] = [self.to_person, self.closing];
+        let found = self.processor.dispatch(Pushes { to_person, closing });
+        for lane in 0..self.waiting {
+            let mut on_person = Vector::from(found.force.lane(lane));
+            let (mut on_robot, mut size) = (-on_person, found.size.lane(lane));
+            if found.distance.lane(lane) < SHORTEST {
+                let [way, relative] = [to_person, closing].map(|each| each.lane(lane).into());
+                [on_person, on_robot] = forces(way, relative);
+                size = on_person.norm();
+            }
+            self.on_people += size;
+            if self.instants[lane] > self.instant {
+                self.end_instant();
+                self.instant = self.instants[lane];
+            }
+            self.at_instant += on_robot;
+        }
+        self.waiting = 0;
+    }
+
+    fn end_instant(&mut self) {
+        self.on_robot += self.at_instant.norm();
+        self.at_instant = Vector::zeros();
+    }
+
+    /// Sums over all instants of the sizes of the forces on people and of that of the force on the robot, in m/s^2.
+    pub fn sums(mut self) -> [f64; 2] {
+        self.add_waiting();
+        self.end_instant();
+        [self.on_people, self.on_robot]
+    }
+}
+
+/// Forces on people side by side, compiled once for each instruction set; their bits are the same for all.
+struct Pushes {
+    to_person: Vector2<Each>,
+    closing: Vector2<Each>,
+}
+
+/// Forces on people, their sizes, and the distances.
+struct Pushed {
+    force: Vector2<Each>,
+    size: Each,
+    distance: Each,
+}
+
+impl pulp::NullaryFnOnce for Pushes {
+    type Output = Pushed;
+
+    #[inline(always)]
+    fn call(self) -> Pushed {
+        let way = self.to_person;
+        let distance = way.length();
+        let force = MODEL.push(way.over(distance), distance, self.closing);
+        Pushed {
+            force,
+            size: force.length(),
+            distance,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use numeric::random::Stream;
 
     #[test]
     fn both_are_pushed_alike_in_opposite_directions() {
@@ -61,6 +177,35 @@ mod tests {
         let [on_person, on_robot] = forces(Vector::new(2.0, 0.0), Vector::new(-1.0, 0.0));
         assert!(on_person.x > 0.0 && on_person.y == 0.0);
         assert_eq!(on_robot, -on_person);
+    }
+
+    #[test]
+    fn sums_have_the_bits_of_one_pair_after_the_other() {
+        let mut random = Stream::new(7, 0);
+        let mut vector =
+            |scale: f64| Vector::new(random.uniform(-scale, scale), random.uniform(-scale, scale));
+        for count in 0..40 {
+            let mut sums = Pressures::new();
+            let (mut on_people, mut on_robots) = (0.0, 0.0);
+            for instant in 0..count {
+                let mut on_robot = Vector::zeros();
+                for person in 0..instant % 4 {
+                    let nowhere = (instant + person) % 7 == 0;
+                    let way = if nowhere {
+                        Vector::zeros()
+                    } else {
+                        vector(5.0)
+                    };
+                    let closing = vector(2.0);
+                    sums.add(instant, way, closing);
+                    let [on_person, back] = forces(way, closing);
+                    on_people += on_person.norm();
+                    on_robot += back;
+                }
+                on_robots += on_robot.norm();
+            }
+            assert_eq!(sums.sums(), [on_people, on_robots]);
+        }
     }
 
     #[test]

@@ -2,8 +2,9 @@
 
 use crate::lanes::Vector2;
 
+use super::contacts::Touch;
 use super::episode::Episode;
-use super::pressure;
+use super::pressure::Pressures;
 
 /// Ends of the intimate, personal and social zones of E. T. Hall (1966), in m.
 const ZONES: [f64; 3] = [0.45, 1.2, 3.6];
@@ -40,30 +41,31 @@ struct Sums {
     discomfort: u32,
     low_time: u32,
     intrusion: u32,
-    force_on_people: f64,
-    force_on_robot: f64,
 }
 
 impl Proximity {
-    pub fn of(episode: &Episode<'_>, end: usize) -> Self {
+    /// Looks at everybody once at every instant, and tells who is touched.
+    pub fn of(episode: &Episode<'_>, end: usize) -> (Self, Vec<Touch>) {
         let groups = members(episode.groups);
         let mut sums = Sums::default();
+        let mut watch = Watch {
+            end,
+            pressures: Pressures::new(),
+            touches: Vec::new(),
+        };
         let (mut least, mut least_time) = (f64::INFINITY, f64::INFINITY);
         for instant in 0..=end {
-            let near = Near::at(episode, instant);
-            let moves = instant < end;
-            sums.count(&near, moves);
+            let near = watch.at(episode, instant);
+            sums.count(&near, instant < end);
             least = least.min(near.gap);
-            if moves {
-                let time = sums.step(episode, instant);
-                least_time = least_time.min(time);
-            }
+            least_time = least_time.min(near.time);
             let intruded = groups.iter().any(|group| intrudes(episode, instant, group));
             sums.intrusion += u32::from(intruded);
         }
+        let [force_on_people, force_on_robot] = watch.pressures.sums();
         let (step, steps) = (episode.rules.step, end as f64);
         let share = |count: u32| f64::from(count) / (steps + 1.0);
-        Self {
+        let proximity = Self {
             min_clearance: least,
             mean_clearance: sums.clearance / f64::from(sums.with_people),
             intimate_share: share(sums.zones[0]),
@@ -74,32 +76,60 @@ impl Proximity {
             min_time_to_collision: least_time,
             low_time_to_collision_share: f64::from(sums.low_time) / steps,
             group_intrusion_share: share(sums.intrusion),
-            force_on_people: sums.force_on_people * step,
-            force_on_robot: sums.force_on_robot * step,
-        }
+            force_on_people: force_on_people * step,
+            force_on_robot: force_on_robot * step,
+        };
+        (proximity, watch.touches)
     }
 }
 
-/// Least distances at an instant, in m; infinite without people.
+/// What is least at an instant; infinite without people.
 struct Near {
-    /// Between the surfaces.
+    /// Between the surfaces, in m.
     gap: f64,
-    /// From the surface of the robot to a center.
+    /// From the surface of the robot to a center, in m.
     zone: f64,
+    /// To a collision over the next step, in s.
+    time: f64,
 }
 
-impl Near {
-    fn at(episode: &Episode<'_>, instant: usize) -> Self {
-        let (rules, robot) = (&episode.rules, episode.robot[instant]);
-        let mut near = Self {
+/// What is gathered on the way.
+struct Watch {
+    end: usize,
+    pressures: Pressures,
+    touches: Vec<Touch>,
+}
+
+impl Watch {
+    fn at(&mut self, episode: &Episode<'_>, instant: usize) -> Near {
+        let (rules, robot, people) = (&episode.rules, episode.robot, &episode.people);
+        let next = instant + usize::from(instant < self.end);
+        let velocity = (robot[next] - robot[instant]) / rules.step;
+        let mut near = Near {
             gap: f64::INFINITY,
             zone: f64::INFINITY,
+            time: f64::INFINITY,
         };
-        for (place, radius) in episode.people.at(instant).iter().zip(episode.radii) {
-            // Comparisons with NaN, who is absent, change nothing.
-            let zone = rules.period.wrap(place - robot).norm() - rules.robot_radius;
+        let moves = people.at(instant).iter().zip(people.at(next));
+        for (person, ((from, to), radius)) in moves.zip(episode.radii).enumerate() {
+            if from.x.is_nan() {
+                continue;
+            }
+            let to_person = rules.period.wrap(from - robot[instant]);
+            let distance = to_person.norm();
+            let (zone, reach) = (distance - rules.robot_radius, rules.robot_radius + radius);
             near.zone = near.zone.min(zone);
             near.gap = near.gap.min(zone - radius);
+            if distance - reach < 0.0 {
+                self.touches.push(Touch { person, instant });
+            }
+            if next == instant || to.x.is_nan() {
+                continue;
+            }
+            let closing = (to - from) / rules.step - velocity;
+            let time = time_to_collision(to_person, closing, reach);
+            near.time = near.time.min(time);
+            self.pressures.add(instant, to_person, closing);
         }
         near
     }
@@ -116,30 +146,7 @@ impl Sums {
         }
         self.comfort += u32::from(near.gap >= COMFORT);
         self.discomfort += u32::from(moves && near.gap < DISCOMFORT);
-    }
-
-    /// Adds the forces over a step, and returns the least time to a collision at its start, in s.
-    fn step(&mut self, episode: &Episode<'_>, instant: usize) -> f64 {
-        let (rules, people) = (&episode.rules, &episode.people);
-        let robot = episode.robot[instant];
-        let velocity = (episode.robot[instant + 1] - robot) / rules.step;
-        let (mut least, mut on_robot) = (f64::INFINITY, Vector2::zeros());
-        let (places, nexts) = (people.at(instant), people.at(instant + 1));
-        for ((place, next), radius) in places.iter().zip(nexts).zip(episode.radii) {
-            if place.x.is_nan() || next.x.is_nan() {
-                continue;
-            }
-            let to_person = rules.period.wrap(place - robot);
-            let closing = (next - place) / rules.step - velocity;
-            let reach = rules.robot_radius + radius;
-            least = least.min(time_to_collision(to_person, closing, reach));
-            let [on_person, back] = pressure::forces(to_person, closing);
-            self.force_on_people += on_person.norm();
-            on_robot += back;
-        }
-        self.force_on_robot += on_robot.norm();
-        self.low_time += u32::from(least < LOW_TIME);
-        least
+        self.low_time += u32::from(moves && near.time < LOW_TIME);
     }
 }
 
