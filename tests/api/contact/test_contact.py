@@ -265,7 +265,7 @@ def test_margins_along_a_run(kind: Any) -> None:
     assert len(found.columns()["margin_m_per_s"]) == found.margin.size
 
 
-def test_only_compressions_err_by_many_tolerances_where_the_motion_turns_beside_a_plateau() -> None:
+def test_errors_are_some_tolerances_at_most_where_the_motion_turns_beside_a_plateau() -> None:
     covering = contact.Covering(
         material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9),
         thickness=0.02,
@@ -290,8 +290,8 @@ def test_only_compressions_err_by_many_tolerances_where_the_motion_turns_beside_
         return float(np.abs(getattr(coarse, name) / getattr(exact, name) - 1.0).max()) / 1e-6
 
     assert most("peak_force") < 1.0
-    assert 3.0 < most("peak_covering_compression") < 100.0
-    assert most("rebound_speed") < 100.0
+    assert most("peak_covering_compression") < 10.0
+    assert most("rebound_speed") < 10.0
 
 
 @pytest.mark.parametrize("strain", [0.5, 0.89, 0.91, 0.99, 0.9999])
