@@ -2,7 +2,8 @@
 
 use numeric::threads;
 
-use crate::crowd::simulation::{MOST_ROWS, Simulation, size_of_record};
+use crate::crowd::record::{MOST_ROWS, size_of_record};
+use crate::crowd::simulation::Simulation;
 use crate::crowd::world::CrowdWorld;
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;

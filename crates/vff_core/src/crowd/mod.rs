@@ -4,6 +4,7 @@
 //! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
 
 pub mod agent;
+mod alike;
 mod batch;
 pub mod circle;
 pub mod collision_free_speed;
@@ -19,6 +20,7 @@ pub mod others;
 pub mod pairs;
 pub mod pedestrian;
 pub mod people;
+mod permits;
 pub mod reciprocal_pairs;
 pub mod reciprocal_people;
 mod record;

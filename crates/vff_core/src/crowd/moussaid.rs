@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::alike::{Figures, Vectors};
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -167,6 +168,28 @@ impl Moussaid {
         for (place, own) in deciding(people, walkers) {
             let decision = self.beside_others(sums[place], own, (around, grouped));
             decisions[own.agent.number as usize] = decision;
+        }
+    }
+}
+
+impl Moussaid {
+    /// Decides for the people of worlds side by side.
+    #[inline(always)]
+    pub(super) fn decide_alike(&self, figures: &Figures, decisions: &mut Vec<Vectors>) {
+        decisions.extend(figures.drives(self.relaxation_time));
+        for (one, other) in figures.pairs() {
+            let Some(pair) = figures.pair((one, other), self.cutoff) else {
+                continue;
+            };
+            let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
+            pair.add(push, &mut decisions[one]);
+            if let Some(sum) = decisions.get_mut(other) {
+                pair.add(-push, sum);
+            }
+        }
+        // As without walls.
+        for decision in decisions {
+            *decision += Vectors::zeros();
         }
     }
 }

@@ -1,13 +1,18 @@
 //! A few people who avoid each other reciprocally, each pair of them looked at once.
 
+use crate::crowd::alike::{self, Figures};
 use crate::crowd::mutual::Known;
 use crate::crowd::pairs::Each;
 use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
+use crate::crowd::permits::{self, Asked, Permits};
 use crate::crowd::reciprocal_people::{Meeting, ReciprocalPeople, away, permitted};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
 type Vector = Vector2<f64>;
+
+/// Change of the velocity of one of two, and the direction of the line of permitted velocities.
+type Side<R> = (Vector2<R>, Vector2<R>);
 
 impl ReciprocalPeople {
     /// Decides for a few people in a world that does not repeat itself: two of them who do not touch change their
@@ -46,6 +51,70 @@ impl ReciprocalPeople {
         }
     }
 
+    /// Changes of the velocities of the two of each pair, and directions of their lines.
+    #[inline(always)]
+    fn sides<R: Real>(&self, meeting: &Meeting<R>, weight: R, step: f64) -> [Side<R>; 2] {
+        let share = R::splat(0.5) * weight;
+        let (direction, change) = meeting.avoided(self.horizon, step);
+        let mut sides = [(change * share, direction), (-change * share, -direction)];
+        if meeting.touching().any() {
+            let (direction, change) = meeting.reversed().avoided(self.horizon, step);
+            sides[1] = (change * share, direction);
+        }
+        sides
+    }
+
+    /// Decides for the people of worlds side by side.
+    #[inline(always)]
+    pub(super) fn decide_alike(
+        &self,
+        figures: &Figures,
+        step: f64,
+        room: &mut alike::Room,
+        decisions: &mut Vec<Vector2<alike::Each>>,
+    ) {
+        self.meet_alike(figures, step, &mut room.permits);
+        for (person, wish) in figures.wishes.iter().enumerate() {
+            let own = &figures.all[person];
+            let speed = wish.desired_speed.min(wish.to_go / Real::splat(step));
+            let asked = Asked {
+                max_speed: wish.desired_speed,
+                wanted: own.direction * speed,
+            };
+            let who = (person, own.velocity);
+            let most = self.max_neighbors;
+            decisions.push(room.permits.nearest(who, most, &asked, &mut room.solver));
+        }
+    }
+
+    /// Finds how everybody of worlds side by side keeps off the others.
+    #[inline(always)]
+    fn meet_alike(&self, figures: &Figures, step: f64, permits: &mut Permits) {
+        permits.open(figures.people());
+        for places in figures.pairs() {
+            let Some(pair) = figures.pair(places, self.cutoff) else {
+                continue;
+            };
+            let [first, second] = [places.0, places.1].map(|place| figures.all[place].radius);
+            let meeting = Meeting {
+                way: -away(pair.offset, pair.distance, pair.normal),
+                relative: pair.relative,
+                touch: first + second + Real::splat(2.0 * self.margin),
+            };
+            let sides = self.sides(&meeting, pair.weight, step);
+            let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
+            for (person, (change, direction)) in [places.0, places.1].into_iter().zip(sides) {
+                let known = permits::Known {
+                    change,
+                    direction,
+                    distance,
+                    near: pair.near,
+                };
+                permits.know(person, known);
+            }
+        }
+    }
+
     /// Finds how everybody keeps off the others.
     #[inline(always)]
     fn meet(&self, walkers: &[Option<Walker>], around: &Around<'_>, room: &mut Room) {
@@ -62,14 +131,7 @@ impl ReciprocalPeople {
                     relative: pair.relative,
                     touch: pairs.touch(&pair) + Each::splat(2.0 * self.margin),
                 };
-                let share = Each::splat(0.5) * pair.weight;
-                let (direction, change) = meeting.avoided(self.horizon, around.step);
-                let mut sides = [(change * share, direction), (-change * share, -direction)];
-                if meeting.touching().any() {
-                    let reversed = meeting.reversed();
-                    let (direction, change) = reversed.avoided(self.horizon, around.step);
-                    sides[1] = (change * share, direction);
-                }
+                let sides = self.sides(&meeting, pair.weight, around.step);
                 for lane in 0..pair.count {
                     let places = pair.places.map(|places| places[lane] as usize);
                     let distance = pair.distance.lane(lane);

@@ -2,7 +2,45 @@
 
 use crate::crowd::people::PersonState;
 use crate::crowd::robots::CrowdRobot;
+use crate::crowd::world::CrowdWorld;
+use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
+
+/// Share of a step by which a time limit may miss a whole number of them.
+const WHOLE: f64 = 1e-9;
+
+/// Most places of agents that records keep together: 3 GB, twice that while they are handed over.
+pub(super) const MOST_ROWS: f64 = 1e8;
+
+/// Steps of a world to its end, one at least.
+pub(super) fn whole_steps(world: &CrowdWorld) -> f64 {
+    (world.time_limit / world.step - WHOLE).ceil().max(1.0)
+}
+
+/// Instants of a record, and agents at each.
+pub(super) fn size_of_record(world: &CrowdWorld) -> (f64, f64) {
+    let instants = whole_steps(world) + 1.0;
+    let coming = world.sources.iter().map(|source| source.rate);
+    let coming = coming.sum::<f64>() * world.time_limit;
+    let agents = world.people.len() as f64 + world.robots.len() as f64 + coming;
+    (instants, agents)
+}
+
+/// Refuses a record that would not fit into memory.
+pub(super) fn check_rows(world: &CrowdWorld) -> Result<()> {
+    let (instants, agents) = size_of_record(world);
+    if instants * agents <= MOST_ROWS {
+        return Ok(());
+    }
+    let rule = format!("be at most {MOST_ROWS} agents times steps");
+    let given = Given::Number(world.time_limit);
+    Err(
+        Failure::invalid("time_limit", rule, given).mended_by(format!(
+            "{agents} agents at {instants} instants are {}",
+            instants * agents
+        )),
+    )
+}
 
 /// Where everybody was at every step of a world.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -7,20 +7,14 @@
 use crate::crowd::agent::Agent;
 use crate::crowd::pedestrian::Walker;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
-use crate::crowd::record::Trajectories;
+use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::snapshot::{Setting, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
-use crate::error::{Failure, Given, Result};
+use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
-
-/// Share of a step by which a time limit may miss a whole number of them.
-const WHOLE: f64 = 1e-9;
-
-/// Most places of agents that records keep together: 3 GB, twice that while they are handed over.
-pub(super) const MOST_ROWS: f64 = 1e8;
 
 /// Whose state is no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +53,8 @@ struct CrowdParts {
     sources: Vec<Source>,
     groups: Groups,
     room: Box<DecisionRoom>,
+    /// What people have decided for the next motion, if they have done so together with those of other worlds.
+    decided: Vec<Vector2<f64>>,
     reach: f64,
     /// Whether somebody follows a recording.
     replays: bool,
@@ -71,38 +67,13 @@ struct CrowdParts {
 
 fn clock_of(world: &CrowdWorld) -> Result<Clock> {
     let parts = world.parts()?;
-    let steps = count_of((world.time_limit / world.step - WHOLE).ceil()).max(1);
+    let steps = count_of(whole_steps(world));
     Ok(Clock {
         step: world.step / parts as f64,
         steps_per_sample: parts,
         steps: steps * parts,
         interval: world.step,
     })
-}
-
-/// Instants of a record, and agents at each.
-pub(super) fn size_of_record(world: &CrowdWorld) -> (f64, f64) {
-    let instants = (world.time_limit / world.step - WHOLE).ceil().max(1.0) + 1.0;
-    let coming = world.sources.iter().map(|source| source.rate);
-    let coming = coming.sum::<f64>() * world.time_limit;
-    let agents = world.people.len() as f64 + world.robots.len() as f64 + coming;
-    (instants, agents)
-}
-
-/// Refuses a record that would not fit into memory.
-fn check_rows(world: &CrowdWorld) -> Result<()> {
-    let (instants, agents) = size_of_record(world);
-    if instants * agents <= MOST_ROWS {
-        return Ok(());
-    }
-    let rule = format!("be at most {MOST_ROWS} agents times steps");
-    let given = Given::Number(world.time_limit);
-    Err(
-        Failure::invalid("time_limit", rule, given).mended_by(format!(
-            "{agents} agents at {instants} instants are {}",
-            instants * agents
-        )),
-    )
 }
 
 impl CrowdParts {
@@ -114,6 +85,7 @@ impl CrowdParts {
             sources: Vec::new(),
             groups: Groups::default(),
             room: Box::default(),
+            decided: Vec::new(),
             reach: 0.0,
             replays: false,
             record: record.then(Trajectories::default),
@@ -140,6 +112,7 @@ impl CrowdParts {
             let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
             self.robots.push(robot);
         }
+        self.decided.clear();
         self.sources.clear();
         let sources = world.sources.iter().enumerate();
         self.sources
@@ -166,6 +139,13 @@ impl CrowdParts {
     fn move_people(&mut self, part: f64) {
         let (world, people) = (&self.world, &mut self.people);
         if people.is_empty() {
+            return;
+        }
+        if !self.decided.is_empty() {
+            for (person, decision) in people.iter_mut().zip(self.decided.drain(..)) {
+                let model = &world.models[person.model as usize];
+                person.move_by(decision, model, part);
+            }
             return;
         }
         let DecisionRoom {
@@ -375,6 +355,43 @@ impl Simulation {
     #[inline]
     pub fn step(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         self.0.period((), interrupted)
+    }
+
+    /// The first part of a step of the world: robots decide; `false` if it has ended.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub(super) fn begin(&mut self, interrupted: Interrupted<'_>) -> Result<bool> {
+        self.0.begin((), interrupted)
+    }
+
+    /// The second part, again and again: people decide, unless they have done so, and all move; whether they have
+    /// to once more.
+    pub(super) fn travel(&mut self) -> bool {
+        self.0.travel()
+    }
+
+    /// The last part: who has arrived, come or left.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub(super) fn end(&mut self) -> Result<()> {
+        self.0.end()
+    }
+
+    /// Room for what the people decide together with those of other worlds for the next motion.
+    pub(super) fn decided(&mut self) -> &mut Vec<Vector2<f64>> {
+        &mut self.0.parts.decided
+    }
+
+    /// The robots as others see them.
+    pub(super) fn bodies(&self) -> &[Agent] {
+        &self.0.parts.bodies
+    }
+
+    /// Time that a decision of people holds, in s.
+    pub(super) fn part(&self) -> f64 {
+        self.0.motion_step()
     }
 
     /// Advances to the end.

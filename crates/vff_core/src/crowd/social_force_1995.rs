@@ -4,6 +4,7 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::alike::{Figures, Vectors};
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -128,6 +129,67 @@ impl SocialForce1995 {
         }
     }
 
+    /// Forces of the two of each pair: the second as the first sees him, `own` way and direction of the first, and
+    /// the direction of the second.
+    #[inline(always)]
+    fn both<R: Real>(
+        &self,
+        seen: &Seen<R>,
+        (way, ahead): (Vector2<R>, Vector2<R>),
+        back: Vector2<R>,
+        limits: (R, f64),
+    ) -> [Vector2<R>; 2] {
+        let reversed = Seen {
+            offset: -seen.offset,
+            normal: -seen.normal,
+            way,
+            ..*seen
+        };
+        [
+            self.viewed(self.push(seen), ahead, limits),
+            self.viewed(self.push(&reversed), back, limits),
+        ]
+    }
+
+    /// Decides for the people of worlds side by side.
+    #[inline(always)]
+    pub(super) fn decide_alike(
+        &self,
+        figures: &Figures,
+        ways: &mut Vec<Vectors>,
+        decisions: &mut Vec<Vectors>,
+    ) {
+        let cosine = self.view_angle.cos();
+        ways.clear();
+        ways.extend(figures.all.iter().map(|figure| {
+            let speed = Planar::<_>::length(figure.velocity);
+            figure.direction * (speed * Real::splat(self.step_time))
+        }));
+        decisions.extend(figures.drives(self.relaxation_time));
+        for (one, other) in figures.pairs() {
+            let Some(pair) = figures.pair((one, other), self.cutoff) else {
+                continue;
+            };
+            let seen = Seen {
+                offset: pair.offset,
+                distance: pair.distance,
+                normal: pair.normal,
+                way: ways[other],
+            };
+            let [first, second] = [one, other].map(|place| figures.all[place].direction);
+            let limits = (pair.weight, cosine);
+            let [mine, theirs] = self.both(&seen, (ways[one], first), second, limits);
+            pair.add(mine, &mut decisions[one]);
+            if let Some(sum) = decisions.get_mut(other) {
+                pair.add(theirs, sum);
+            }
+        }
+        // As without walls.
+        for decision in decisions {
+            *decision += Vectors::zeros();
+        }
+    }
+
     /// Adds the forces of all pairs to the sums of their people.
     #[inline(always)]
     fn push_together(
@@ -153,18 +215,9 @@ impl SocialForce1995 {
                     normal: pair.normal,
                     way: pair.gathered(1, ways),
                 };
-                let reversed = Seen {
-                    offset: -pair.offset,
-                    normal: -pair.normal,
-                    way: pair.gathered(0, ways),
-                    ..seen
-                };
+                let own = (pair.gathered(0, ways), pair.gathered(0, aheads));
                 let limits = (pair.weight, cosine);
-                let (ahead, back) = (pair.gathered(0, aheads), pair.gathered(1, aheads));
-                let both = [
-                    self.viewed(self.push(&seen), ahead, limits),
-                    self.viewed(self.push(&reversed), back, limits),
-                ];
+                let both = self.both(&seen, own, pair.gathered(1, aheads), limits);
                 pair.add_both(both, sums);
             }
         }

@@ -60,6 +60,8 @@ pub struct Episode<P> {
     clock: Clock,
     /// Motion steps so far.
     step: usize,
+    /// The number of them at the next sample.
+    sample: usize,
 }
 
 impl<P: Parts> Episode<P> {
@@ -69,6 +71,7 @@ impl<P: Parts> Episode<P> {
             parts,
             clock,
             step: 0,
+            sample: 0,
         };
         episode.restart(clock)?;
         Ok(episode)
@@ -94,6 +97,11 @@ impl<P: Parts> Episode<P> {
         self.clock.time(self.step)
     }
 
+    /// Motion step in s.
+    pub(crate) fn motion_step(&self) -> f64 {
+        self.clock.step
+    }
+
     /// Decides, moves for one control period, and senses what comes of it. Does nothing once the
     /// run has ended, or without a law where the law is to decide.
     ///
@@ -102,27 +110,50 @@ impl<P: Parts> Episode<P> {
     /// where it was.
     #[inline]
     pub fn period(&mut self, request: P::Request, interrupted: Interrupted<'_>) -> Result<()> {
-        if self.finished() {
+        if !self.begin(request, interrupted)? {
             return Ok(());
+        }
+        while self.travel() {}
+        self.end()
+    }
+
+    /// The first part of a control period: decides; `false` if there is nothing to do after it.
+    ///
+    /// # Errors
+    /// As [`Self::period`].
+    #[inline]
+    pub(crate) fn begin(
+        &mut self,
+        request: P::Request,
+        interrupted: Interrupted<'_>,
+    ) -> Result<bool> {
+        if self.finished() {
+            return Ok(false);
         }
         if (self.step + 1).is_multiple_of(P::ATTENTION) && interrupted() {
             return Err(Failure::Interrupted);
         }
-        if !self.parts.decide(self.stepped(), request, interrupted)? {
-            return Ok(());
-        }
-        let sample = self
-            .clock
-            .steps
-            .min(self.step + self.clock.steps_per_sample);
-        loop {
-            self.parts.travel(&self.clock, self.step);
-            self.step += 1;
-            self.parts.look_around(&self.clock, self.step);
-            if self.step == sample || self.finished() {
-                break;
-            }
-        }
+        let next = self.step + self.clock.steps_per_sample;
+        self.sample = self.clock.steps.min(next);
+        self.parts.decide(self.stepped(), request, interrupted)
+    }
+
+    /// The second part, again and again: moves by a motion step; whether another one belongs to the
+    /// control period.
+    #[inline]
+    pub(crate) fn travel(&mut self) -> bool {
+        self.parts.travel(&self.clock, self.step);
+        self.step += 1;
+        self.parts.look_around(&self.clock, self.step);
+        !(self.step == self.sample || self.finished())
+    }
+
+    /// The last part: senses what has come of it.
+    ///
+    /// # Errors
+    /// The state is not finite.
+    #[inline]
+    pub(crate) fn end(&mut self) -> Result<()> {
         let time = self.stepped();
         self.parts.check(time)?;
         if self.step == self.clock.steps {

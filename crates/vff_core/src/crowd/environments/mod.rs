@@ -7,12 +7,15 @@ mod layout;
 mod observation;
 mod one;
 mod settings;
+mod together;
 
 pub use layout::{Area, Layout, seed_of};
 pub use observation::{BOUND, RANGE};
 pub use one::{Environment, Shared, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
 
+use crate::crowd::alike;
+use crate::crowd::environments::together::{BLOCK, Move};
 use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
 use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
 use crate::error::{Failure, Given, Result};
@@ -124,15 +127,17 @@ impl Environments {
         let settings = &self.settings;
         let chosen = |index: usize| mask.get(index).copied().unwrap_or(true);
         let seed_of = |index: usize| seeds.get(index).copied().flatten();
-        let work = |(index, row): (usize, Row<'_>), shared: &mut Shared| -> Result<()> {
-            if chosen(index) {
-                row.environment.reset(settings, seed_of(index))?;
-                *row.started = true;
-            }
-            row.show(settings, shared);
-            Ok(())
+        let work = |rows: &mut [(usize, Row<'_>)], shared: &mut Shared| {
+            rows.iter_mut().try_for_each(|(index, row)| {
+                if chosen(*index) {
+                    row.environment.reset(settings, seed_of(*index))?;
+                    *row.started = true;
+                }
+                row.show(settings, shared);
+                Ok(())
+            })
         };
-        each_row((settings, self.threads), &mut self.each, outputs, work)
+        each_block((settings, self.threads), &mut self.each, outputs, work)
     }
 
     /// Steps all of them by actions in [-1, 1].
@@ -154,10 +159,14 @@ impl Environments {
             return Err(Failure::invalid(name, "be under way", given)
                 .mended_by("start its next episode by reset first"));
         }
-        let work = |(index, row): (usize, Row<'_>), shared: &mut Shared| {
-            row.step(settings, actions[index], interrupted, shared)
+        let step = Move {
+            settings,
+            model: alike::model_of(&settings.world),
+            actions,
+            interrupted,
         };
-        each_row((settings, self.threads), &mut self.each, outputs, work)
+        let work = |rows: &mut [(usize, Row<'_>)], shared: &mut Shared| step.step(rows, shared);
+        each_block((settings, self.threads), &mut self.each, outputs, work)
     }
 
     /// The first environment whose episode has ended.
@@ -190,12 +199,12 @@ fn check_size(world: &CrowdWorld, count: usize) -> Result<()> {
     Ok(())
 }
 
-/// Does something with each environment and its results, on so many threads.
-fn each_row(
+/// Does something with some environments at a time and their results, on so many threads.
+fn each_block(
     (settings, threads): (&Settings, Option<usize>),
     each: &mut [Environment],
     outputs: Outputs<'_>,
-    work: impl Fn((usize, Row<'_>), &mut Shared) -> Result<()> + Sync + Send,
+    work: impl Fn(&mut [(usize, Row<'_>)], &mut Shared) -> Result<()> + Sync + Send,
 ) -> Result<()> {
     let size = settings.size();
     let count = each.len();
@@ -224,70 +233,73 @@ fn each_row(
         )
         .enumerate();
     if threads == Some(1) {
-        let mut shared = Shared::default();
-        return rows.try_for_each(|row| work(row, &mut shared));
+        let (mut shared, mut block) = (Shared::default(), Vec::with_capacity(BLOCK));
+        loop {
+            block.extend(rows.by_ref().take(BLOCK));
+            if block.is_empty() {
+                return Ok(());
+            }
+            work(&mut block, &mut shared)?;
+            block.clear();
+        }
     }
     on_threads(threads, || {
         let share = count.div_ceil(4 * team()).max(LEAST_SHARE);
-        let rows: Vec<(usize, Row<'_>)> = rows.collect();
-        let mut blocks: Vec<Vec<(usize, Row<'_>)>> = Vec::with_capacity(count.div_ceil(share));
-        let mut rest = rows.into_iter();
-        loop {
-            let block: Vec<_> = rest.by_ref().take(share).collect();
-            if block.is_empty() {
-                break;
-            }
-            blocks.push(block);
-        }
-        try_each(blocks, |block| {
+        let mut rows: Vec<(usize, Row<'_>)> = rows.collect();
+        let shares = rows.chunks_mut(share.next_multiple_of(BLOCK)).collect();
+        try_each(shares, |rows: &mut [(usize, Row<'_>)]| {
             let mut shared = Shared::default();
-            let mut rows = block.into_iter();
-            rows.try_for_each(|row| work(row, &mut shared))
+            let mut blocks = rows.chunks_mut(BLOCK);
+            blocks.try_for_each(|block| work(block, &mut shared))
         })
     })
 }
 
 impl Row<'_> {
-    fn show(self, settings: &Settings, shared: &mut Shared) {
+    fn show(&mut self, settings: &Settings, shared: &mut Shared) {
         self.environment.observe(settings, shared, self.observation);
         self.seen[0] = count(self.environment.seen(settings));
         *self.state = self.environment.state().code();
     }
 
-    fn step(
-        self,
+    /// Starts the next episode where one has ended in the step before; else tells the robot what to do. Whether
+    /// the world is to be moved.
+    fn begin(
+        &mut self,
         settings: &Settings,
         action: [f64; 2],
-        interrupted: Interrupted<'_>,
         shared: &mut Shared,
-    ) -> Result<()> {
-        let environment = self.environment;
+    ) -> Result<bool> {
         *self.started = false;
-        if environment.state() != State::Running {
-            // The episode ended in the step before.
-            environment.reset(settings, None)?;
-            environment.observe(settings, shared, self.observation);
-            self.seen[0] = count(environment.seen(settings));
-            (*self.reward, *self.clearance) = (0.0, f64::INFINITY);
-            (*self.state, *self.started) = (State::Running.code(), true);
-            return Ok(());
+        if self.environment.state() == State::Running {
+            self.environment.begin(settings, action);
+            return Ok(true);
         }
-        let step = environment.step(settings, action, interrupted, shared)?;
+        self.environment.reset(settings, None)?;
+        self.show(settings, shared);
+        (*self.reward, *self.clearance) = (0.0, f64::INFINITY);
+        *self.started = true;
+        Ok(false)
+    }
+
+    /// Writes what the step has brought.
+    fn end(&mut self, settings: &Settings, shared: &mut Shared) -> Result<()> {
+        let step = self.environment.end(settings);
         (*self.reward, *self.clearance) = (step.reward, step.clearance);
-        *self.state = step.state.code();
         if step.state != State::Running {
-            if let Some(found) = environment.metrics(settings) {
+            if let Some(found) = self.environment.metrics(settings) {
                 *self.metrics = RobotMetrics::into_array(found);
             }
             if settings.autoreset == Autoreset::SameStep {
-                environment.observe(settings, shared, self.final_observation);
-                self.seen[1] = count(environment.seen(settings));
-                environment.reset(settings, None)?;
+                self.environment
+                    .observe(settings, shared, self.final_observation);
+                self.seen[1] = count(self.environment.seen(settings));
+                self.environment.reset(settings, None)?;
                 *self.started = true;
             }
         }
-        environment.observe(settings, shared, self.observation);
-        self.seen[0] = count(environment.seen(settings));
+        self.show(settings, shared);
+        *self.state = step.state.code();
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! One environment: an episode of a world, one step of the driven robot at a time.
 
+use crate::crowd::alike::Alike;
 use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe, seen};
@@ -8,7 +9,7 @@ use crate::crowd::metrics::RobotMetrics;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
 use crate::error::Result;
 use crate::lanes::Vector2;
-use crate::run::{Interrupted, Request};
+use crate::run::Request;
 
 type Vector = Vector2<f64>;
 
@@ -96,7 +97,8 @@ pub struct Step {
 #[derive(Default)]
 pub struct Shared {
     ranking: Ranking,
-    decisions: Box<DecisionRoom>,
+    pub(super) decisions: Box<DecisionRoom>,
+    pub(super) alike: Alike,
 }
 
 /// One environment.
@@ -111,6 +113,9 @@ pub struct Environment {
     /// Steps of the world in one of the robot.
     steps: usize,
     history: History,
+    /// Distance from the goal before the step, and least gap in it, in m.
+    distance: f64,
+    clearance: f64,
     /// From the robot to the people at the last instant; NaN for who was absent.
     ways: Vec<Vector>,
 }
@@ -136,6 +141,8 @@ impl Environment {
             state: State::Running,
             steps,
             history: History::default(),
+            distance: f64::NAN,
+            clearance: f64::INFINITY,
             ways: Vec::new(),
         };
         environment.open(settings);
@@ -203,59 +210,53 @@ impl Environment {
             .then(|| self.history.metrics(&self.simulation))
     }
 
-    /// Drives the robot for one step.
-    ///
-    /// # Errors
-    /// The caller asked to stop.
-    pub fn step(
-        &mut self,
-        settings: &Settings,
-        action: [f64; 2],
-        interrupted: Interrupted<'_>,
-        shared: &mut Shared,
-    ) -> Result<Step> {
-        let before = self.to_goal(settings).norm();
+    /// Tells the robot what to do in the next step.
+    pub(super) fn begin(&mut self, settings: &Settings, action: [f64; 2]) {
+        self.clearance = f64::INFINITY;
+        self.distance = self.to_goal(settings).norm();
         let request = self.request(settings, action);
         self.simulation.ask(0, request);
-        self.simulation.exchange_room(&mut shared.decisions);
-        let clearance = self.advance(settings, interrupted);
-        self.simulation.exchange_room(&mut shared.decisions);
-        let clearance = clearance?;
-        self.state = self.judged(settings, clearance);
-        let distance = self.to_goal(settings).norm();
-        let period = settings.world.robots[0].control_period;
-        let extra = settings.rewards.progress * (before - distance) + settings.rewards.step;
-        let reward = match self.state {
-            State::Arrived => ARRIVAL_REWARD,
-            State::Collided => CONTACT_REWARD,
-            State::Running | State::TimedOut if clearance < DISCOMFORT => {
-                -DISCOMFORT_REWARD * (DISCOMFORT - clearance) * period
-            }
-            State::Running | State::TimedOut => 0.0,
-            State::Diverged => {
-                return Ok(Step {
-                    state: self.state,
-                    reward: 0.0,
-                    clearance,
-                });
-            }
-        };
-        Ok(Step {
-            state: self.state,
-            reward: reward + extra,
-            clearance,
-        })
     }
 
-    /// Moves everybody until the next command; returns the least gap.
-    fn advance(&mut self, settings: &Settings, interrupted: Interrupted<'_>) -> Result<f64> {
-        let mut clearance = f64::INFINITY;
-        for _ in 0..self.steps {
-            self.simulation.step(interrupted)?;
-            clearance = clearance.min(self.look(settings));
-            self.note(settings);
+    /// The world, to be moved by a step.
+    pub(super) fn world(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    /// Steps of the world in one of the robot.
+    pub(super) fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Looks at what a step of the world has brought.
+    pub(super) fn look_around(&mut self, settings: &Settings) {
+        let clearance = self.look(settings);
+        self.clearance = self.clearance.min(clearance);
+        self.note(settings);
+    }
+
+    /// What the step has brought.
+    pub(super) fn end(&mut self, settings: &Settings) -> Step {
+        let clearance = self.clearance;
+        let distance = self.to_goal(settings).norm();
+        self.state = self.judged(settings, clearance, distance);
+        let period = settings.world.robots[0].control_period;
+        let progress = settings.rewards.progress * (self.distance - distance);
+        let extra = progress + settings.rewards.step;
+        let reward = match self.state {
+            State::Arrived => ARRIVAL_REWARD + extra,
+            State::Collided => CONTACT_REWARD + extra,
+            State::Running | State::TimedOut if clearance < DISCOMFORT => {
+                -DISCOMFORT_REWARD * (DISCOMFORT - clearance) * period + extra
+            }
+            State::Running | State::TimedOut => 0.0 + extra,
+            State::Diverged => 0.0,
+        };
+        Step {
+            state: self.state,
+            reward,
+            clearance,
         }
-        Ok(clearance)
     }
 
     // The robot, the walls and the period are those of the settings, which all environments read.
@@ -293,7 +294,7 @@ impl Environment {
     }
 
     /// How the episode stands at the end of a step.
-    fn judged(&self, settings: &Settings, clearance: f64) -> State {
+    fn judged(&self, settings: &Settings, clearance: f64, distance: f64) -> State {
         let (simulation, world) = (&self.simulation, &settings.world);
         let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
         let place = robot.state().position;
@@ -305,7 +306,7 @@ impl Environment {
             || walls.any(|wall| touches(wall.clearance(place) - setup.radius()))
         {
             State::Collided
-        } else if self.to_goal(settings).norm() <= setup.arrival_tolerance {
+        } else if distance <= setup.arrival_tolerance {
             State::Arrived
         } else if simulation.time() >= world.time_limit - ROUNDING * world.step {
             State::TimedOut

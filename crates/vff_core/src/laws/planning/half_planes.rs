@@ -4,12 +4,12 @@
 //! al. (2011), section 5.3, for programs without a solution: the velocity that violates the
 //! half-planes least.
 
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 
 /// Lines whose directions differ by less than this, as a sine, are parallel.
-const PARALLEL: f64 = 1e-9;
+pub(crate) const PARALLEL: f64 = 1e-9;
 
 /// Velocities on the left of a line.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +66,7 @@ impl Solver {
 
     /// Three-dimensional program: adds the half-planes from `failed` on, one after the other,
     /// and moves along the line on which two violations are equal.
-    fn least_violation(
+    pub(crate) fn least_violation(
         &mut self,
         planes: &[HalfPlane],
         hard: usize,
@@ -160,9 +160,9 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
         }
         let crossing = offset / sine;
         if sine > 0.0 {
-            high = high.min(crossing);
+            high = Real::min(high, crossing);
         } else {
-            low = low.max(crossing);
+            low = Real::max(low, crossing);
         }
         if low > high {
             return None;
@@ -176,7 +176,10 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
                 low
             }
         }
-        Wish::Near(wanted) => direction.dot(&(wanted - point)).max(low).min(high),
+        Wish::Near(wanted) => {
+            let share = direction.dot(&(wanted - point));
+            Real::min(Real::max(share, low), high)
+        }
     };
     Some(point + direction * share)
 }

@@ -1,0 +1,85 @@
+//! Steps of environments, some at a time: their worlds move in turn, and their people decide side by side.
+
+use crate::crowd::alike::WIDTH;
+use crate::crowd::environments::{Row, Settings, Shared};
+use crate::crowd::models::Model;
+use crate::crowd::simulation::Simulation;
+use crate::error::Result;
+use crate::run::Interrupted;
+
+/// How many environments are stepped at a time.
+pub(super) const BLOCK: usize = WIDTH;
+
+/// What a step of all environments consists of.
+pub(super) struct Move<'a> {
+    /// What they have in common.
+    pub settings: &'a Settings,
+    /// The model of the people, if those of several worlds can decide together.
+    pub model: Option<&'a Model>,
+    /// What the robots do.
+    pub actions: &'a [[f64; 2]],
+    /// Whether to stop.
+    pub interrupted: Interrupted<'a>,
+}
+
+impl Move<'_> {
+    /// Steps some environments.
+    pub fn step(&self, rows: &mut [(usize, Row<'_>)], shared: &mut Shared) -> Result<()> {
+        let mut moving = Vec::with_capacity(rows.len());
+        for (index, row) in rows {
+            if row.begin(self.settings, self.actions[*index], shared)? {
+                moving.push(row);
+            }
+        }
+        let steps = moving.first().map_or(0, |row| row.environment.steps());
+        for _ in 0..steps {
+            let worlds = moving.iter_mut().map(|row| row.environment.world());
+            self.step_worlds(worlds, shared)?;
+            for row in &mut moving {
+                row.environment.look_around(self.settings);
+            }
+        }
+        for row in moving {
+            row.end(self.settings, shared)?;
+        }
+        Ok(())
+    }
+
+    /// Moves worlds by a step each.
+    fn step_worlds<'w>(
+        &self,
+        worlds: impl ExactSizeIterator<Item = &'w mut Simulation>,
+        shared: &mut Shared,
+    ) -> Result<()> {
+        let mut begun = Vec::with_capacity(worlds.len());
+        for world in worlds {
+            if world.begin(self.interrupted)? {
+                begun.push(world);
+            }
+        }
+        let mut under_way = begun.len();
+        while under_way > 0 {
+            if let Some(model) = self.model {
+                shared.alike.decide(model, &mut begun[..under_way]);
+            }
+            for index in (0..under_way).rev() {
+                if !travel(begun[index], shared) {
+                    under_way -= 1;
+                    begun.swap(index, under_way);
+                }
+            }
+        }
+        begun.into_iter().try_for_each(Simulation::end)
+    }
+}
+
+/// Moves a world once, whose people may have decided.
+fn travel(world: &mut Simulation, shared: &mut Shared) -> bool {
+    if !world.decided().is_empty() {
+        return world.travel();
+    }
+    world.exchange_room(&mut shared.decisions);
+    let more = world.travel();
+    world.exchange_room(&mut shared.decisions);
+    more
+}

@@ -1,0 +1,211 @@
+//! Permitted velocities of one person in several worlds, side by side: half-planes in the order of the neighbors, and
+//! the linear program of [`half_planes`](crate::laws::planning::half_planes), lane by lane with the same bits.
+
+use crate::crowd::alike::{Each, Vectors, WIDTH};
+use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
+use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
+
+/// How one person of each world keeps off another one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    /// Change of the own velocity in m/s.
+    pub change: Vectors,
+    /// Direction of the line of permitted velocities.
+    pub direction: Vectors,
+    /// Distance in m; infinite where they are not near each other.
+    pub distance: Each,
+    /// Where they are.
+    pub near: LaneMask<WIDTH>,
+}
+
+/// A half-plane of each world.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    point: Vectors,
+    direction: Vectors,
+}
+
+/// What is asked of the program: speeds in m/s at most, velocities in m/s at best.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// Greatest speed in m/s.
+    pub max_speed: Each,
+    /// Wanted velocity in m/s.
+    pub wanted: Vectors,
+}
+
+/// Half-planes of the people of some worlds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Permits {
+    /// For each person a row of those whom it keeps off.
+    known: Vec<Vec<Known>>,
+    ranks: Vec<Each>,
+    planes: Vec<Plane>,
+    /// How many half-planes there are in each world.
+    counts: [usize; WIDTH],
+    /// Those of one world.
+    alone: Vec<HalfPlane>,
+}
+
+impl Permits {
+    /// Nobody of so many people knows anybody.
+    pub fn open(&mut self, people: usize) {
+        self.known.resize_with(people, Vec::new);
+        for row in &mut self.known {
+            row.clear();
+        }
+    }
+
+    /// Adds somebody with a higher number than those before to whom a person keeps off, robots excepted.
+    #[inline(always)]
+    pub fn know(&mut self, person: usize, known: Known) {
+        if let Some(row) = self.known.get_mut(person) {
+            row.push(known);
+        }
+    }
+
+    /// The permitted velocity of a person with a velocity, who avoids so many at most.
+    #[inline(always)]
+    pub fn nearest(
+        &mut self,
+        (person, velocity): (usize, Vectors),
+        most: usize,
+        asked: &Asked,
+        solver: &mut Solver,
+    ) -> Vectors {
+        self.rank(person, most);
+        self.line_up(person, velocity);
+        self.program(asked, solver)
+    }
+
+    /// Finds how many come before each: who is nearer, then who has a lower number.
+    #[inline(always)]
+    fn rank(&mut self, person: usize, most: usize) {
+        let row = &self.known[person];
+        let one = Each::splat(1.0);
+        let mut counts = Each::zero();
+        self.ranks.clear();
+        for (index, later) in row.iter().enumerate() {
+            let mut rank = Each::zero();
+            for (earlier, before) in self.ranks.iter_mut().zip(&row[..index]) {
+                let first = before.distance.le(later.distance);
+                rank += Each::select(first, one, Each::zero());
+                *earlier += Each::select(first, Each::zero(), one);
+            }
+            self.ranks.push(rank);
+            counts += Each::select(later.near, one, Each::zero());
+        }
+        self.counts = std::array::from_fn(|lane| place_of(counts.lane(lane)).min(most));
+    }
+
+    /// Writes the half-planes in that order.
+    #[inline(always)]
+    fn line_up(&mut self, person: usize, velocity: Vectors) {
+        let row = &self.known[person];
+        self.planes.resize(row.len(), Plane::everything());
+        let planes = &mut self.planes[..];
+        for (known, rank) in row.iter().zip(&self.ranks) {
+            let point = velocity + known.change;
+            for lane in 0..WIDTH {
+                let plane = &mut planes[place_of(rank.lane(lane))];
+                plane.point.x.set(lane, point.x.lane(lane));
+                plane.point.y.set(lane, point.y.lane(lane));
+                plane.direction.x.set(lane, known.direction.x.lane(lane));
+                plane.direction.y.set(lane, known.direction.y.lane(lane));
+            }
+        }
+    }
+
+    /// The program of each world; those without a solution are left to the solver.
+    #[inline(always)]
+    fn program(&mut self, asked: &Asked, solver: &mut Solver) -> Vectors {
+        let Asked { max_speed, wanted } = *asked;
+        let speed = wanted.dot(&wanted).sqrt();
+        let shorter = wanted * (max_speed / speed);
+        let mut velocity = Planar::<Each>::select(speed.gt(max_speed), shorter, wanted);
+        let mut failed = LaneMask::none();
+        let mut failures = [0; WIDTH];
+        for (index, plane) in self.planes.iter().enumerate() {
+            let violation = plane.direction.perp(&(plane.point - velocity));
+            let there = Each::from_fn(|lane| if index < self.counts[lane] { 1.0 } else { 0.0 });
+            let broken = violation.gt(Each::zero()) & there.gt(Each::zero()) & !failed;
+            if !broken.any() {
+                continue;
+            }
+            let (better, nothing) = on_line(&self.planes[..index], plane, asked);
+            let lost = broken & nothing;
+            velocity = Planar::<Each>::select(broken & !nothing, better, velocity);
+            if lost.any() {
+                failed = failed | lost;
+                for (lane, failure) in failures.iter_mut().enumerate() {
+                    if lost.lane(lane) {
+                        *failure = index;
+                    }
+                }
+            }
+        }
+        if failed.any() {
+            for (lane, failure) in failures.into_iter().enumerate() {
+                if failed.lane(lane) {
+                    self.isolate(lane);
+                    let (most, best) = (max_speed.lane(lane), Planar::<Each>::lane(velocity, lane));
+                    let found = solver.least_violation(&self.alone, 0, failure, most, best.into());
+                    velocity.x.set(lane, found.x);
+                    velocity.y.set(lane, found.y);
+                }
+            }
+        }
+        velocity
+    }
+
+    /// Takes out the half-planes of one world.
+    fn isolate(&mut self, lane: usize) {
+        let planes = self.planes[..self.counts[lane]].iter();
+        self.alone.clear();
+        self.alone.extend(planes.map(|plane| HalfPlane {
+            point: Planar::<Each>::lane(plane.point, lane).into(),
+            direction: Planar::<Each>::lane(plane.direction, lane).into(),
+        }));
+    }
+}
+
+impl Plane {
+    fn everything() -> Self {
+        Self {
+            point: Vector2::zeros(),
+            direction: Vector2::zeros(),
+        }
+    }
+}
+
+/// Best velocities on the lines of half-planes, and where there are none.
+#[inline(always)]
+fn on_line(earlier: &[Plane], plane: &Plane, asked: &Asked) -> (Vectors, LaneMask<WIDTH>) {
+    let Plane { point, direction } = *plane;
+    let foot = point.dot(&direction);
+    let away = point.perp(&direction);
+    let reach = asked.max_speed * asked.max_speed - away * away;
+    let mut nothing = reach.lt(Each::zero());
+    let reach = reach.sqrt();
+    let (mut low, mut high) = (-foot - reach, -foot + reach);
+    for other in earlier {
+        let sine = direction.perp(&other.direction);
+        let offset = other.direction.perp(&(point - other.point));
+        let parallel = sine.abs().le(Each::splat(PARALLEL));
+        nothing = nothing | (parallel & offset.lt(Each::zero()));
+        let crossing = offset / sine;
+        let ahead = sine.gt(Each::zero());
+        high = Each::select(!parallel & ahead, high.min(crossing), high);
+        low = Each::select(!parallel & !ahead, low.max(crossing), low);
+        nothing = nothing | low.gt(high);
+    }
+    let share = direction.dot(&(asked.wanted - point)).max(low).min(high);
+    (point + direction * share, nothing)
+}
+
+/// A small count as a place.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small counts
+fn place_of(count: f64) -> usize {
+    count as usize
+}
