@@ -1,7 +1,7 @@
 //! Permitted velocities of one person in several worlds, side by side: half-planes in the order of the neighbors, and
 //! the linear program of [`half_planes`](crate::laws::planning::half_planes), lane by lane with the same bits.
 
-use crate::crowd::alike::{Each, Vectors, WIDTH};
+use crate::crowd::alike::{Each, FEW, Vectors, WIDTH};
 use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
 use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
 
@@ -34,17 +34,32 @@ pub(super) struct Asked {
     pub wanted: Vectors,
 }
 
+/// Places for half-planes, as many as there are others at least.
+const PLACES: usize = FEW.next_power_of_two();
+
 /// Half-planes of the people of some worlds.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Permits {
     /// For each person a row of those whom it keeps off.
     known: Vec<Vec<Known>>,
     ranks: Vec<Each>,
-    planes: Vec<Plane>,
+    planes: [Plane; PLACES],
     /// How many half-planes there are in each world.
     counts: [usize; WIDTH],
     /// Those of one world.
     alone: Vec<HalfPlane>,
+}
+
+impl Default for Permits {
+    fn default() -> Self {
+        Self {
+            known: Vec::new(),
+            ranks: Vec::new(),
+            planes: [Plane::everything(); PLACES],
+            counts: [0; WIDTH],
+            alone: Vec::new(),
+        }
+    }
 }
 
 impl Permits {
@@ -102,8 +117,7 @@ impl Permits {
     #[inline(always)]
     fn line_up(&mut self, person: usize, velocity: Vectors) {
         let row = &self.known[person];
-        self.planes.resize(row.len(), Plane::everything());
-        let planes = &mut self.planes[..];
+        let planes = &mut self.planes;
         for (known, rank) in row.iter().zip(&self.ranks) {
             let point = velocity + known.change;
             for lane in 0..WIDTH {
@@ -125,7 +139,8 @@ impl Permits {
         let mut velocity = Planar::<Each>::select(speed.gt(max_speed), shorter, wanted);
         let mut failed = LaneMask::none();
         let mut failures = [0; WIDTH];
-        for (index, plane) in self.planes.iter().enumerate() {
+        let most = self.counts.into_iter().max().unwrap_or(0);
+        for (index, plane) in self.planes[..most].iter().enumerate() {
             let violation = plane.direction.perp(&(plane.point - velocity));
             let there = Each::from_fn(|lane| if index < self.counts[lane] { 1.0 } else { 0.0 });
             let broken = violation.gt(Each::zero()) & there.gt(Each::zero()) & !failed;
@@ -203,9 +218,10 @@ fn on_line(earlier: &[Plane], plane: &Plane, asked: &Asked) -> (Vectors, LaneMas
     (point + direction * share, nothing)
 }
 
-/// A small count as a place.
+/// A small count as a place: the last bits of the sum hold it.
 #[inline(always)]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small counts
+#[allow(clippy::cast_possible_truncation)] // below PLACES
 fn place_of(count: f64) -> usize {
-    count as usize
+    const SHIFT: f64 = (1_u64 << f64::MANTISSA_DIGITS - 1) as f64;
+    (count + SHIFT).to_bits() as usize % PLACES
 }
