@@ -73,9 +73,9 @@ impl Permits {
 
     /// Adds somebody with a higher number than those before to whom a person keeps off, robots excepted.
     #[inline(always)]
-    pub fn know(&mut self, person: usize, known: Known) {
+    pub fn know(&mut self, person: usize, known: &Known) {
         if let Some(row) = self.known.get_mut(person) {
-            row.push(known);
+            row.push(*known);
         }
     }
 
@@ -222,6 +222,6 @@ fn on_line(earlier: &[Plane], plane: &Plane, asked: &Asked) -> (Vectors, LaneMas
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation)] // below PLACES
 fn place_of(count: f64) -> usize {
-    const SHIFT: f64 = (1_u64 << f64::MANTISSA_DIGITS - 1) as f64;
+    const SHIFT: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
     (count + SHIFT).to_bits() as usize % PLACES
 }

@@ -110,7 +110,7 @@ impl ReciprocalPeople {
                     distance,
                     near: pair.near,
                 };
-                permits.know(person, known);
+                permits.know(person, &known);
             }
         }
     }
