@@ -25,15 +25,21 @@ impl Ways {
     pub fn new(scenarios: &[Scenario]) -> Self {
         let mut ways: Vec<Scenario> = Vec::new();
         let mut known: HashMap<[u64; 4], Vec<usize>> = HashMap::new();
-        let way_of = |scenario: &Scenario| {
+        let mut last = 0;
+        let mut way_of = |scenario: &Scenario| {
+            // Neighbors mostly share the way.
+            if ways.get(last).is_some_and(|way| way.same_way(scenario)) {
+                return last;
+            }
             let [from, to] = [scenario.start, scenario.goal].map(|end| end.map(f64::to_bits));
             let alike = known.entry([from[0], from[1], to[0], to[1]]).or_default();
             let found = alike.iter().find(|way| ways[**way].same_way(scenario));
-            found.copied().unwrap_or_else(|| {
+            last = found.copied().unwrap_or_else(|| {
                 ways.push(scenario.nominal());
                 alike.push(ways.len() - 1);
                 ways.len() - 1
-            })
+            });
+            last
         };
         let of = scenarios.iter().map(way_of).collect();
         Self {

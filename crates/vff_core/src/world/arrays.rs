@@ -47,22 +47,22 @@ impl SceneArrays<'_> {
         same_length("obstacle_radius", self.radius.len(), bodies)?;
         let width = bodies.checked_div(rows).unwrap_or(0);
         same_length("obstacle_position", bodies, width * rows)?;
-        (0..rows)
-            .map(|row| {
-                let scenario = self.scenario(row, width);
-                scenario.map_err(|error| error.within(&format!("scenarios[{row}]")))
-            })
-            .collect()
+        let mut made = Vec::with_capacity(rows);
+        for row in 0..rows {
+            let scenario = self.scenario(row, width);
+            made.push(scenario.map_err(|error| error.within(&format!("scenarios[{row}]")))?);
+        }
+        Ok(made)
     }
 
     fn scenario(&self, row: usize, width: usize) -> Result<Scenario> {
         let own = row * width..(row + 1) * width;
         let there = own.filter(|body| !self.position[*body].iter().all(|axis| axis.is_nan()));
-        let obstacle = |(index, body): (usize, usize)| {
-            self.obstacle(body)
-                .map_err(|error| error.within(&format!("obstacles[{index}]")))
-        };
-        let obstacles = there.enumerate().map(obstacle).collect::<Result<_>>()?;
+        let mut obstacles = Vec::with_capacity(width);
+        for (index, body) in there.enumerate() {
+            let obstacle = self.obstacle(body);
+            obstacles.push(obstacle.map_err(|error| error.within(&format!("obstacles[{index}]")))?);
+        }
         let ends = [self.start[row], self.goal[row]];
         let scenario = Scenario::sensed(self.robot, ends, obstacles, self.rules, None)?;
         Ok(scenario.reseeded(self.seed[row]))

@@ -64,7 +64,7 @@ pub struct Scenario {
     /// What planners of whole paths know of walls.
     pub(crate) map: Option<StaticMap>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
-    pub(crate) blocked: Option<Failure>,
+    pub(crate) blocked: Option<Box<Failure>>,
 }
 
 impl Scenario {
@@ -298,7 +298,7 @@ impl Scenario {
     /// # Errors
     /// The goal lies in the active region of a stationary obstacle.
     pub fn with_free_goal(&self) -> Result<()> {
-        self.blocked.clone().map_or(Ok(()), Err)
+        self.blocked.clone().map_or(Ok(()), |failure| Err(*failure))
     }
 
     /// Number of obstacles.

@@ -30,25 +30,25 @@ pub struct PlacedObstacle {
 pub(super) fn place_all(
     robot: &RobotLimits,
     [start, goal]: [[f64; 2]; 2],
-    obstacles: impl IntoIterator<Item = Obstacle>,
+    obstacles: impl IntoIterator<Item = Obstacle, IntoIter: ExactSizeIterator>,
     rules: &Rules,
     sensing: &Sensing,
-) -> Result<(Vec<PlacedObstacle>, Option<Failure>)> {
-    let obstacles = obstacles.into_iter().enumerate();
-    let obstacles = obstacles
-        .map(|(index, obstacle)| {
-            let placed = place(robot, obstacle, rules.control_period, sensing)
-                .map_err(|error| error.within(&format!("obstacles[{index}]")))?;
-            check_critical_region(&placed, index, robot, rules, sensing)?;
-            Ok(placed)
-        })
-        .collect::<Result<Vec<_>>>()?;
-    let mut blocked = None;
-    for (index, placed) in obstacles.iter().enumerate() {
-        check_start(placed, index, start)?;
-        blocked = blocked.or_else(|| goal_in_region(placed, index, goal));
+) -> Result<(Vec<PlacedObstacle>, Option<Box<Failure>>)> {
+    let obstacles = obstacles.into_iter();
+    // A result of a collection would forget how many there are.
+    let mut all = Vec::with_capacity(obstacles.len());
+    for (index, obstacle) in obstacles.enumerate() {
+        let placed = place(robot, obstacle, rules.control_period, sensing)
+            .map_err(|error| error.within(&format!("obstacles[{index}]")))?;
+        check_critical_region(&placed, index, robot, rules, sensing)?;
+        all.push(placed);
     }
-    Ok((obstacles, blocked))
+    let mut blocked = None;
+    for (index, placed) in all.iter().enumerate() {
+        check_start(placed, index, start)?;
+        blocked = blocked.or_else(|| goal_in_region(placed, index, goal).map(Box::new));
+    }
+    Ok((all, blocked))
 }
 
 /// An obstacle with its regions: those that are given, and the others as computed.
