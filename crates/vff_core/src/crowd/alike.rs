@@ -4,100 +4,26 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::agent::{Agent, SHORTEST};
+use crate::crowd::agent::Agent;
+use crate::crowd::figures::{Each, FEW, Figures, Vectors, WIDTH};
 use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
-use crate::crowd::others::parted;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::permits::Permits;
 use crate::crowd::simulation::Simulation;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2, Zero};
-use crate::laws::planning::half_planes::Solver;
+use crate::lanes::{Planar, Real, Vector2};
 
-/// How many worlds are looked at side by side.
-pub(super) const WIDTH: usize = 8;
-/// Most people and robots who are compared with each other without lists.
-pub(super) const FEW: usize = 12;
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;
-
-/// A number of each world.
-pub(super) type Each = Lanes<WIDTH>;
-/// A vector of each world.
-pub(super) type Vectors = Vector2<Each>;
-
-/// One person or robot of each world.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Figure {
-    /// Position in m.
-    pub position: Vectors,
-    /// Velocity in m/s.
-    pub velocity: Vectors,
-    /// Where a person wants to go, where a robot moves: of length 1, or zero.
-    pub direction: Vectors,
-    /// Radius in m.
-    pub radius: Each,
-}
-
-/// What one person of each world wants.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wish {
-    /// Speed `v0` in m/s.
-    pub desired_speed: Each,
-    /// Share by which robots are taken into account.
-    pub awareness: Each,
-    /// Next point of the route in m.
-    target: Vectors,
-    /// Distance from it in m.
-    pub to_go: Each,
-    /// Whether the person is on the way, not at the end of it.
-    pub walks: LaneMask<WIDTH>,
-}
-
-/// Two of each world.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
-    /// From the second to the first, in m.
-    pub offset: Vectors,
-    /// Velocity of the first relative to the second, in m/s.
-    pub relative: Vectors,
-    /// Their distance in m.
-    pub distance: Each,
-    /// Direction from the second to the first, of length 1.
-    pub normal: Vectors,
-    /// 1 for two people, the share by which the first is aware of the second if that is a robot.
-    pub weight: Each,
-    /// Where they act on each other.
-    pub near: LaneMask<WIDTH>,
-}
-
-/// Everybody in some worlds.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Figures {
-    /// People, then robots.
-    pub all: Vec<Figure>,
-    /// What the people want.
-    pub wishes: Vec<Wish>,
-}
 
 /// Room for the decisions of worlds side by side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Alike {
     figures: Figures,
     decisions: Vec<Vectors>,
-    room: Room,
-}
-
-/// Room that models need, used again and again.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Room {
-    /// Ways that everybody takes.
-    pub ways: Vec<Vectors>,
-    /// Half-planes of permitted velocities.
-    pub permits: Permits,
-    /// Linear programs without a solution.
-    pub solver: Solver,
+    ways: Vec<Vectors>,
+    permits: Permits,
 }
 
 /// The model of everybody in a world whose people can decide side by side with those of others that differ from it
@@ -130,7 +56,7 @@ impl Alike {
         if !(WORTH..=WIDTH).contains(&worlds.len()) || !worlds.iter().all(everybody_is_there) {
             return;
         }
-        self.figures.seat(worlds);
+        seat(&mut self.figures, worlds);
         pulp::Arch::new().dispatch(Job {
             model,
             step: worlds[0].part(),
@@ -160,168 +86,50 @@ impl pulp::NullaryFnOnce for Job<'_> {
         let Alike {
             figures,
             decisions,
-            room,
+            ways,
+            permits,
         } = self.alike;
         figures.look_ahead();
         decisions.clear();
         match self.model {
-            Model::SocialForce1995(model) => model.decide_alike(figures, &mut room.ways, decisions),
+            Model::SocialForce1995(model) => model.decide_alike(figures, ways, decisions),
             Model::Moussaid(model) => model.decide_alike(figures, decisions),
             Model::ReciprocalAvoidance(model) => {
-                model.decide_alike(figures, self.step, room, decisions);
+                model.decide_alike(figures, self.step, permits, decisions);
             }
             Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => {}
         }
     }
 }
 
-impl Figures {
-    /// Puts each world into a lane, the last one also into those that are left over.
-    fn seat(&mut self, worlds: &[&mut Simulation]) {
-        let (people, robots) = (worlds[0].people().len(), worlds[0].bodies().len());
-        self.all.resize(people + robots, Figure::nobody());
-        self.wishes.resize(people, Wish::none());
-        for lane in 0..WIDTH {
-            let world = &worlds[lane.min(worlds.len() - 1)];
-            let (walkers, machines) = self.all.split_at_mut(people);
-            let walkers = walkers.iter_mut().zip(&mut self.wishes);
-            for ((figure, wish), person) in walkers.zip(world.people()) {
-                figure.stand(lane, person.position, person.velocity, person.radius);
-                wish.be_of(lane, person);
-            }
-            for (figure, body) in machines.iter_mut().zip(world.bodies()) {
-                let Agent {
-                    position,
-                    velocity,
-                    direction,
-                    radius,
-                    ..
-                } = *body;
-                figure.stand(lane, position, velocity, radius);
-                set(&mut figure.direction, lane, direction);
-            }
-        }
-    }
-
-    /// Finds where everybody wants to go.
-    #[inline(always)]
-    fn look_ahead(&mut self) {
-        for (figure, wish) in self.all.iter_mut().zip(&mut self.wishes) {
-            let way = wish.target - figure.position;
-            let length = Planar::<Each>::length(way);
-            let nowhere = !wish.walks | length.lt(Each::splat(SHORTEST));
-            figure.direction = Planar::<Each>::select(
-                nowhere,
-                Vectors::zeros(),
-                Planar::<Each>::over(way, length),
+/// Puts each world into a lane, the last one also into those that are left over.
+fn seat(figures: &mut Figures, worlds: &[&mut Simulation]) {
+    let people = worlds[0].people().len();
+    figures.open(people, worlds[0].bodies().len());
+    for lane in 0..WIDTH {
+        let world = &worlds[lane.min(worlds.len() - 1)];
+        let (walkers, machines) = figures.all.split_at_mut(people);
+        let walkers = walkers.iter_mut().zip(&mut figures.wishes);
+        for ((figure, wish), person) in walkers.zip(world.people()) {
+            figure.stand(
+                lane,
+                &Agent {
+                    position: person.position,
+                    velocity: person.velocity,
+                    direction: Vector2::zeros(),
+                    radius: person.radius,
+                    number: 0,
+                },
             );
-            wish.to_go = Each::select(wish.walks, length, Each::zero());
+            wish.desired_speed.set(lane, person.desired_speed);
+            wish.awareness.set(lane, person.awareness);
+            let walks = person.presence == Presence::Walking;
+            wish.aim(lane, walks.then_some(person.target));
+        }
+        for (figure, body) in machines.iter_mut().zip(world.bodies()) {
+            figure.stand(lane, body);
         }
     }
-
-    /// How many people there are.
-    #[inline(always)]
-    pub fn people(&self) -> usize {
-        self.wishes.len()
-    }
-
-    /// Those who may be near a person and come later: people, then robots.
-    #[inline(always)]
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let (people, all) = (self.people(), self.all.len());
-        let mutual =
-            (0..people).flat_map(move |one| (one + 1..people).map(move |other| (one, other)));
-        mutual.chain((0..people).flat_map(move |one| (people..all).map(move |robot| (one, robot))))
-    }
-
-    /// Two who are within a distance in m of each other, if they are in any world.
-    #[inline(always)]
-    pub fn pair(&self, (one, other): (usize, usize), cutoff: f64) -> Option<Pair> {
-        let (first, second) = (&self.all[one], &self.all[other]);
-        let offset = first.position - second.position;
-        let mut near = !offset.dot(&offset).gt(Each::splat(cutoff * cutoff));
-        let mut weight = Each::splat(1.0);
-        if other >= self.people() {
-            weight = self.wishes[one].awareness;
-            near = near & weight.gt(Each::zero());
-        }
-        if !near.any() {
-            return None;
-        }
-        let (distance, normal) = parted(offset, |_| true);
-        Some(Pair {
-            offset,
-            relative: first.velocity - second.velocity,
-            distance,
-            normal,
-            weight,
-            near,
-        })
-    }
-
-    /// Drives `(v0 e - v)/tau` of everybody, where the sums of forces start.
-    #[inline(always)]
-    pub fn drives(&self, relaxation_time: f64) -> impl Iterator<Item = Vectors> {
-        self.all.iter().zip(&self.wishes).map(move |(own, wish)| {
-            let wanted = own.direction * wish.desired_speed;
-            Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
-        })
-    }
-}
-
-impl Pair {
-    /// Adds a vector where the two are near each other.
-    #[inline(always)]
-    pub fn add(&self, vector: Vectors, sum: &mut Vectors) {
-        *sum = Planar::<Each>::select(self.near, *sum + vector, *sum);
-    }
-}
-
-impl Figure {
-    fn nobody() -> Self {
-        Self {
-            position: Vectors::zeros(),
-            velocity: Vectors::zeros(),
-            direction: Vectors::zeros(),
-            radius: Each::zero(),
-        }
-    }
-
-    #[inline(always)]
-    fn stand(&mut self, lane: usize, position: Vector2<f64>, velocity: Vector2<f64>, radius: f64) {
-        set(&mut self.position, lane, position);
-        set(&mut self.velocity, lane, velocity);
-        self.radius.set(lane, radius);
-    }
-}
-
-impl Wish {
-    fn none() -> Self {
-        Self {
-            desired_speed: Each::zero(),
-            awareness: Each::zero(),
-            target: Vectors::zeros(),
-            to_go: Each::zero(),
-            walks: LaneMask::none(),
-        }
-    }
-
-    #[inline(always)]
-    fn be_of(&mut self, lane: usize, person: &PersonState) {
-        self.desired_speed.set(lane, person.desired_speed);
-        self.awareness.set(lane, person.awareness);
-        set(&mut self.target, lane, person.target);
-        self.walks = self.walks.without(lane);
-        if person.presence == Presence::Walking {
-            self.walks.set(lane);
-        }
-    }
-}
-
-#[inline(always)]
-fn set(vectors: &mut Vectors, lane: usize, vector: Vector2<f64>) {
-    vectors.x.set(lane, vector.x);
-    vectors.y.set(lane, vector.y);
 }
 
 #[cfg(test)]

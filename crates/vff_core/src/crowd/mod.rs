@@ -9,6 +9,7 @@ mod batch;
 pub mod circle;
 pub mod collision_free_speed;
 pub mod environments;
+mod figures;
 pub mod grid;
 pub mod metrics;
 pub mod models;

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::alike::{Figures, Vectors};
+use crate::crowd::figures::{Figures, Vectors};
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{

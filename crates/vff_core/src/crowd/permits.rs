@@ -1,7 +1,7 @@
 //! Permitted velocities of one person in several worlds, side by side: half-planes in the order of the neighbors, and
 //! the linear program of [`half_planes`](crate::laws::planning::half_planes), lane by lane with the same bits.
 
-use crate::crowd::alike::{Each, FEW, Vectors, WIDTH};
+use crate::crowd::figures::{Each, FEW, Vectors, WIDTH};
 use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
 use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
 
@@ -46,8 +46,9 @@ pub(super) struct Permits {
     planes: [Plane; PLACES],
     /// How many half-planes there are in each world.
     counts: [usize; WIDTH],
-    /// Those of one world.
+    /// Those of one world, and its program if it has no solution.
     alone: Vec<HalfPlane>,
+    solver: Solver,
 }
 
 impl Default for Permits {
@@ -58,6 +59,7 @@ impl Default for Permits {
             planes: [Plane::everything(); PLACES],
             counts: [0; WIDTH],
             alone: Vec::new(),
+            solver: Solver::default(),
         }
     }
 }
@@ -86,11 +88,10 @@ impl Permits {
         (person, velocity): (usize, Vectors),
         most: usize,
         asked: &Asked,
-        solver: &mut Solver,
     ) -> Vectors {
         self.rank(person, most);
         self.line_up(person, velocity);
-        self.program(asked, solver)
+        self.program(asked)
     }
 
     /// Finds how many come before each: who is nearer, then who has a lower number.
@@ -132,7 +133,7 @@ impl Permits {
 
     /// The program of each world; those without a solution are left to the solver.
     #[inline(always)]
-    fn program(&mut self, asked: &Asked, solver: &mut Solver) -> Vectors {
+    fn program(&mut self, asked: &Asked) -> Vectors {
         let Asked { max_speed, wanted } = *asked;
         let speed = wanted.dot(&wanted).sqrt();
         let shorter = wanted * (max_speed / speed);
@@ -162,9 +163,8 @@ impl Permits {
         if failed.any() {
             for (lane, failure) in failures.into_iter().enumerate() {
                 if failed.lane(lane) {
-                    self.isolate(lane);
-                    let (most, best) = (max_speed.lane(lane), Planar::<Each>::lane(velocity, lane));
-                    let found = solver.least_violation(&self.alone, 0, failure, most, best.into());
+                    let best = Planar::<Each>::lane(velocity, lane).into();
+                    let found = self.compromise(lane, failure, max_speed.lane(lane), best);
                     velocity.x.set(lane, found.x);
                     velocity.y.set(lane, found.y);
                 }
@@ -173,14 +173,22 @@ impl Permits {
         velocity
     }
 
-    /// Takes out the half-planes of one world.
-    fn isolate(&mut self, lane: usize) {
+    /// What violates the half-planes of one world least, of which the one with a number left nothing.
+    fn compromise(
+        &mut self,
+        lane: usize,
+        failure: usize,
+        max_speed: f64,
+        best: Vector2<f64>,
+    ) -> Vector2<f64> {
         let planes = self.planes[..self.counts[lane]].iter();
         self.alone.clear();
         self.alone.extend(planes.map(|plane| HalfPlane {
             point: Planar::<Each>::lane(plane.point, lane).into(),
             direction: Planar::<Each>::lane(plane.direction, lane).into(),
         }));
+        self.solver
+            .least_violation(&self.alone, 0, failure, max_speed, best)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A few people who avoid each other reciprocally, each pair of them looked at once.
 
-use crate::crowd::alike::{self, Figures};
+use crate::crowd::figures::{self, Figures};
 use crate::crowd::mutual::Known;
 use crate::crowd::pairs::Each;
 use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
@@ -70,10 +70,10 @@ impl ReciprocalPeople {
         &self,
         figures: &Figures,
         step: f64,
-        room: &mut alike::Room,
-        decisions: &mut Vec<Vector2<alike::Each>>,
+        permits: &mut Permits,
+        decisions: &mut Vec<figures::Vectors>,
     ) {
-        self.meet_alike(figures, step, &mut room.permits);
+        self.meet_alike(figures, step, permits);
         for (person, wish) in figures.wishes.iter().enumerate() {
             let own = &figures.all[person];
             let speed = wish.desired_speed.min(wish.to_go / Real::splat(step));
@@ -83,7 +83,7 @@ impl ReciprocalPeople {
             };
             let who = (person, own.velocity);
             let most = self.max_neighbors;
-            decisions.push(room.permits.nearest(who, most, &asked, &mut room.solver));
+            decisions.push(permits.nearest(who, most, &asked));
         }
     }
 

@@ -4,7 +4,7 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::alike::{Figures, Vectors};
+use crate::crowd::figures::{Figures, Vectors};
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{

@@ -26,7 +26,7 @@ impl Ways {
         let mut ways: Vec<Scenario> = Vec::new();
         let mut known: HashMap<[u64; 4], Vec<usize>> = HashMap::new();
         let mut last = 0;
-        let mut way_of = |scenario: &Scenario| {
+        let way_of = |scenario: &Scenario| {
             // Neighbors mostly share the way.
             if ways.get(last).is_some_and(|way| way.same_way(scenario)) {
                 return last;

@@ -6,6 +6,7 @@ mod history;
 mod layout;
 mod observation;
 mod one;
+mod row;
 mod settings;
 mod together;
 
@@ -15,8 +16,8 @@ pub use one::{Environment, Shared, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
 
 use crate::crowd::alike;
+use crate::crowd::environments::row::{METRICS, Row};
 use crate::crowd::environments::together::{BLOCK, Move};
-use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
 use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
@@ -28,9 +29,6 @@ pub const MOST_ENVIRONMENTS: usize = 1 << 20;
 const MOST_AGENTS: usize = 10_000_000;
 /// Fewest environments that are worth another thread.
 const LEAST_SHARE: usize = 16;
-/// Numbers of a row of metrics.
-const METRICS: usize = ROBOT_METRICS.len();
-
 /// Where results are written, a row for each environment.
 pub struct Outputs<'a> {
     /// What the robots see.
@@ -49,19 +47,6 @@ pub struct Outputs<'a> {
     pub clearances: &'a mut [f64],
     /// Metrics of episodes that have ended.
     pub metrics: &'a mut [[f64; METRICS]],
-}
-
-/// The results of one environment.
-struct Row<'a> {
-    environment: &'a mut Environment,
-    observation: &'a mut [f32],
-    final_observation: &'a mut [f32],
-    seen: &'a mut [i64; 2],
-    reward: &'a mut f64,
-    state: &'a mut u8,
-    started: &'a mut bool,
-    clearance: &'a mut f64,
-    metrics: &'a mut [f64; METRICS],
 }
 
 /// Environments side by side.
@@ -253,58 +238,4 @@ fn each_block(
             blocks.try_for_each(|block| work(block, &mut shared))
         })
     })
-}
-
-impl Row<'_> {
-    fn show(&mut self, settings: &Settings, shared: &mut Shared) {
-        self.environment.observe(settings, shared, self.observation);
-        self.seen[0] = count(self.environment.seen(settings));
-        *self.state = self.environment.state().code();
-    }
-
-    /// Starts the next episode where one has ended in the step before; else tells the robot what to do. Whether
-    /// the world is to be moved.
-    fn begin(
-        &mut self,
-        settings: &Settings,
-        action: [f64; 2],
-        shared: &mut Shared,
-    ) -> Result<bool> {
-        *self.started = false;
-        if self.environment.state() == State::Running {
-            self.environment.begin(settings, action);
-            return Ok(true);
-        }
-        self.environment.reset(settings, None)?;
-        self.show(settings, shared);
-        (*self.reward, *self.clearance) = (0.0, f64::INFINITY);
-        *self.started = true;
-        Ok(false)
-    }
-
-    /// Writes what the step has brought.
-    fn end(&mut self, settings: &Settings, shared: &mut Shared) -> Result<()> {
-        let step = self.environment.end(settings);
-        (*self.reward, *self.clearance) = (step.reward, step.clearance);
-        if step.state != State::Running {
-            if let Some(found) = self.environment.metrics(settings) {
-                *self.metrics = RobotMetrics::into_array(found);
-            }
-            if settings.autoreset == Autoreset::SameStep {
-                self.environment
-                    .observe(settings, shared, self.final_observation);
-                self.seen[1] = count(self.environment.seen(settings));
-                self.environment.reset(settings, None)?;
-                *self.started = true;
-            }
-        }
-        self.show(settings, shared);
-        *self.state = step.state.code();
-        Ok(())
-    }
-}
-
-/// A number of people as arrays have it.
-fn count(people: usize) -> i64 {
-    people.try_into().unwrap_or(i64::MAX)
 }

@@ -1,6 +1,6 @@
 //! What an environment is told, shows and rewards.
 
-use crate::crowd::environments::Layout;
+use crate::crowd::environments::layout::Layout;
 use crate::crowd::world::CrowdWorld;
 use crate::error::{Failure, Given, Result, at_most, finite, positive};
 

@@ -1,7 +1,9 @@
 //! Steps of environments, some at a time: their worlds move in turn, and their people decide side by side.
 
-use crate::crowd::alike::WIDTH;
-use crate::crowd::environments::{Row, Settings, Shared};
+use crate::crowd::environments::one::Shared;
+use crate::crowd::environments::row::Row;
+use crate::crowd::environments::settings::Settings;
+use crate::crowd::figures::WIDTH;
 use crate::crowd::models::Model;
 use crate::crowd::simulation::Simulation;
 use crate::error::Result;

@@ -1,0 +1,197 @@
+//! People and robots of several worlds side by side, each world a lane, and pairs of them.
+
+use crate::crowd::agent::{Agent, SHORTEST};
+use crate::crowd::others::parted;
+use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2, Zero};
+
+/// How many worlds are looked at side by side.
+pub(super) const WIDTH: usize = 8;
+/// Most people and robots who are compared with each other without lists.
+pub(super) const FEW: usize = 12;
+/// A number of each world.
+pub(super) type Each = Lanes<WIDTH>;
+/// A vector of each world.
+pub(super) type Vectors = Vector2<Each>;
+
+/// One person or robot of each world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Figure {
+    /// Position in m.
+    pub position: Vectors,
+    /// Velocity in m/s.
+    pub velocity: Vectors,
+    /// Where a person wants to go, where a robot moves: of length 1, or zero.
+    pub direction: Vectors,
+    /// Radius in m.
+    pub radius: Each,
+}
+
+/// What one person of each world wants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wish {
+    /// Speed `v0` in m/s.
+    pub desired_speed: Each,
+    /// Share by which robots are taken into account.
+    pub awareness: Each,
+    /// Next point of the route in m.
+    pub target: Vectors,
+    /// Distance from it in m.
+    pub to_go: Each,
+    /// Whether the person is on the way, not at the end of it.
+    pub walks: LaneMask<WIDTH>,
+}
+
+/// Two of each world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    /// From the second to the first, in m.
+    pub offset: Vectors,
+    /// Velocity of the first relative to the second, in m/s.
+    pub relative: Vectors,
+    /// Their distance in m.
+    pub distance: Each,
+    /// Direction from the second to the first, of length 1.
+    pub normal: Vectors,
+    /// 1 for two people, the share by which the first is aware of the second if that is a robot.
+    pub weight: Each,
+    /// Where they act on each other.
+    pub near: LaneMask<WIDTH>,
+}
+
+/// Everybody in some worlds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Figures {
+    /// People, then robots.
+    pub all: Vec<Figure>,
+    /// What the people want.
+    pub wishes: Vec<Wish>,
+}
+
+impl Figures {
+    /// Makes room for people and robots.
+    pub fn open(&mut self, people: usize, robots: usize) {
+        self.all.resize(people + robots, Figure::nobody());
+        self.wishes.resize(people, Wish::none());
+    }
+
+    /// Finds where everybody wants to go.
+    #[inline(always)]
+    pub fn look_ahead(&mut self) {
+        for (figure, wish) in self.all.iter_mut().zip(&mut self.wishes) {
+            let way = wish.target - figure.position;
+            let length = Planar::<Each>::length(way);
+            let nowhere = !wish.walks | length.lt(Each::splat(SHORTEST));
+            figure.direction = Planar::<Each>::select(
+                nowhere,
+                Vectors::zeros(),
+                Planar::<Each>::over(way, length),
+            );
+            wish.to_go = Each::select(wish.walks, length, Each::zero());
+        }
+    }
+
+    /// How many people there are.
+    #[inline(always)]
+    pub fn people(&self) -> usize {
+        self.wishes.len()
+    }
+
+    /// Those who may be near a person and come later: people, then robots.
+    #[inline(always)]
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (people, all) = (self.people(), self.all.len());
+        let mutual =
+            (0..people).flat_map(move |one| (one + 1..people).map(move |other| (one, other)));
+        mutual.chain((0..people).flat_map(move |one| (people..all).map(move |robot| (one, robot))))
+    }
+
+    /// Two who are within a distance in m of each other, if they are in any world.
+    #[inline(always)]
+    pub fn pair(&self, (one, other): (usize, usize), cutoff: f64) -> Option<Pair> {
+        let (first, second) = (&self.all[one], &self.all[other]);
+        let offset = first.position - second.position;
+        let mut near = !offset.dot(&offset).gt(Each::splat(cutoff * cutoff));
+        let mut weight = Each::splat(1.0);
+        if other >= self.people() {
+            weight = self.wishes[one].awareness;
+            near = near & weight.gt(Each::zero());
+        }
+        if !near.any() {
+            return None;
+        }
+        let (distance, normal) = parted(offset, |_| true);
+        Some(Pair {
+            offset,
+            relative: first.velocity - second.velocity,
+            distance,
+            normal,
+            weight,
+            near,
+        })
+    }
+
+    /// Drives `(v0 e - v)/tau` of everybody, where the sums of forces start.
+    #[inline(always)]
+    pub fn drives(&self, relaxation_time: f64) -> impl Iterator<Item = Vectors> {
+        self.all.iter().zip(&self.wishes).map(move |(own, wish)| {
+            let wanted = own.direction * wish.desired_speed;
+            Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
+        })
+    }
+}
+
+impl Pair {
+    /// Adds a vector where the two are near each other.
+    #[inline(always)]
+    pub fn add(&self, vector: Vectors, sum: &mut Vectors) {
+        *sum = Planar::<Each>::select(self.near, *sum + vector, *sum);
+    }
+}
+
+impl Figure {
+    fn nobody() -> Self {
+        Self {
+            position: Vectors::zeros(),
+            velocity: Vectors::zeros(),
+            direction: Vectors::zeros(),
+            radius: Each::zero(),
+        }
+    }
+
+    /// Takes the place of somebody in a world.
+    #[inline(always)]
+    pub fn stand(&mut self, lane: usize, body: &Agent) {
+        set(&mut self.position, lane, body.position);
+        set(&mut self.velocity, lane, body.velocity);
+        set(&mut self.direction, lane, body.direction);
+        self.radius.set(lane, body.radius);
+    }
+}
+
+impl Wish {
+    fn none() -> Self {
+        Self {
+            desired_speed: Each::zero(),
+            awareness: Each::zero(),
+            target: Vectors::zeros(),
+            to_go: Each::zero(),
+            walks: LaneMask::none(),
+        }
+    }
+
+    /// Says where somebody in a world walks, if it walks.
+    #[inline(always)]
+    pub fn aim(&mut self, lane: usize, target: Option<Vector2<f64>>) {
+        self.walks = self.walks.without(lane);
+        if let Some(target) = target {
+            set(&mut self.target, lane, target);
+            self.walks.set(lane);
+        }
+    }
+}
+
+#[inline(always)]
+fn set(vectors: &mut Vectors, lane: usize, vector: Vector2<f64>) {
+    vectors.x.set(lane, vector.x);
+    vectors.y.set(lane, vector.y);
+}
