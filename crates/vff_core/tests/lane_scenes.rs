@@ -7,6 +7,8 @@ use bitwise::computed;
 use fields::field;
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::pairwise::Pairwise;
+use vff_core::laws::planning::family::Planned;
+use vff_core::laws::reciprocal::ReciprocalAvoidance;
 use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::Weights;
@@ -15,7 +17,7 @@ use vff_core::run::{
 };
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::world::motion::{Motion, Segment};
-use vff_core::world::obstacle::{Limits, Obstacle};
+use vff_core::world::obstacle::{Limits, Obstacle, Shape};
 use vff_core::world::scenario::{Rules, Scenario};
 
 /// Numbers from 0 to 1 that differ from scene to scene.
@@ -68,7 +70,7 @@ fn motion(draws: &mut Draws) -> Motion {
     }
 }
 
-fn scene(draws: &mut Draws, rules: Rules) -> Option<Scenario> {
+fn scene(draws: &mut Draws, rules: Rules, points: usize) -> Option<Scenario> {
     let count = (draws.next() * 13.0).floor();
     let mut obstacles = Vec::new();
     while (obstacles.len() as f64) < count {
@@ -82,6 +84,16 @@ fn scene(draws: &mut Draws, rules: Rules) -> Option<Scenario> {
     if draws.next() < 0.05 {
         let wall = Obstacle::rectangle([3.0, 2.0], [1.0, 0.2], 0.3, Limits::default());
         obstacles.push(wall.unwrap());
+    }
+    for _ in 0..points {
+        let place = [draws.between(1.0, 6.0), draws.between(-2.0, 2.0)];
+        // Without extent: a robot keeps off it as off a point of a map.
+        let point = Obstacle {
+            shape: Shape::Disc { radius: 0.0 },
+            motion: Motion::at_rest(place),
+            limits: Limits::default(),
+        };
+        obstacles.insert(obstacles.len() / 2, point);
     }
     let robot = HolonomicRobot {
         max_speed: if draws.next() < 0.2 { 1.1 } else { 0.7 },
@@ -98,10 +110,15 @@ fn scene(draws: &mut Draws, rules: Rules) -> Option<Scenario> {
 
 /// Scenes of 0 to 13 obstacles whose number fits no width.
 fn scenes(seed: u64, rules: Rules, count: usize) -> Vec<Scenario> {
+    scenes_with(seed, rules, (count, 0))
+}
+
+/// The same with points that stand.
+fn scenes_with(seed: u64, rules: Rules, (count, points): (usize, usize)) -> Vec<Scenario> {
     let mut draws = Draws(seed);
     let mut found = Vec::new();
     while found.len() < count {
-        found.extend(scene(&mut draws, rules));
+        found.extend(scene(&mut draws, rules, points));
     }
     found
 }
@@ -273,4 +290,39 @@ fn every_law_of_forces() {
             },
         );
     }
+}
+
+#[test]
+fn reciprocal_avoidance() {
+    let scenes = scenes(11, rules(), 61);
+    let pointed = scenes_with(5, rules(), (41, 3));
+    let keen = ReciprocalAvoidance {
+        horizon: 5.0,
+        share: 0.5,
+        reach: 1.5,
+        margin: 0.2,
+        turn: 0.1,
+    };
+    let mut touched = 0;
+    for (law, scenes) in [
+        (ReciprocalAvoidance::default(), &scenes),
+        (ReciprocalAvoidance::default(), &pointed),
+        (keen, &scenes),
+        (keen, &pointed),
+    ] {
+        let law: AnyLaw = Planned(law).into();
+        let points = law.gains();
+        for stop_on_contact in [false, true] {
+            let run = Options {
+                step: 0.03,
+                stop_on_contact,
+                ..Options::default()
+            };
+            let table = assert_same(&law, scenes, &points, run);
+            let collided = |outcome: &&Outcome| **outcome == Outcome::Collided;
+            touched += table.outcome.iter().filter(collided).count();
+        }
+    }
+    // Robots that touch something leave it by another half-plane.
+    assert!(touched > 3, "{touched}");
 }

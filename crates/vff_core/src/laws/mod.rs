@@ -114,9 +114,9 @@ pub struct Command<R> {
 /// Force in N that reaches a desired velocity at the next sample, `m (v* - V)/interval`, as far as
 /// the limits of the robots allow.
 #[inline(always)]
-pub fn force_toward<R: Real>(
+pub fn force_toward<R: Real, B: Wide<R>>(
     desired: Vector2<R>,
-    situation: &Situation<'_, R>,
+    situation: &Situation<'_, R, B>,
     mass: f64,
 ) -> Vector2<R> {
     let change = desired - situation.robot.velocity;
@@ -170,9 +170,9 @@ pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
     /// the same robot and the same rules, and none has more obstacles than the first one had.
     fn enter(&mut self, lane: usize, scenario: &Scenario);
 
-    /// Whether it remembers obstacles by their places in the list. A law that does not is told only
+    /// Whether it is told of all obstacles, by their places in the list. A law that is not is told only
     /// of those in whose active regions the robots are.
-    fn knows_again(&self) -> bool {
+    fn is_told_of_all(&self) -> bool {
         false
     }
 }

@@ -1,5 +1,10 @@
 //! Optimal reciprocal collision avoidance, van den Berg, Guy, Lin and Manocha (2011).
 
+mod discs;
+mod side_by_side;
+
+use discs::{front, nearer_leg, pass_disc};
+
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
@@ -58,9 +63,7 @@ pub fn avoiding(
     let relative = velocity - outline.velocity;
     let (direction, change) = match outline.center() {
         Some(center) if center.dot(&center) > outline.radius * outline.radius => {
-            let legs = Legs::of_disc(center, outline.radius);
-            let share = 1.0 / horizon;
-            pass_disc((center * share, outline.radius * share), &legs, relative)
+            pass_disc((center, outline.radius), relative, horizon)
         }
         _ => edge(outline, relative, [1.0 / horizon, 1.0 / interval]),
     };
@@ -77,40 +80,6 @@ fn edge(outline: &Outline, relative: Vector, [horizon, interval]: [f64; 2]) -> (
         None => leave(&outline.scaled(interval), relative),
         Some(legs) => pass(&outline.scaled(horizon), &legs, relative),
     }
-}
-
-/// [`pass`] for a disc, by its center and radius: an outline without edges, with the same arithmetic.
-#[inline]
-fn pass_disc((center, radius): (Vector, f64), legs: &Legs, relative: Vector) -> (Vector, Vector) {
-    let way = relative - center;
-    let length = way.dot(&way).sqrt();
-    if length > 0.0 {
-        let normal = way * (1.0 / length);
-        let (left_normal, right_normal) = (legs.left.left_normal(), -legs.right.left_normal());
-        if left_normal.perp(&normal) > 0.0 && normal.perp(&right_normal) > 0.0 {
-            return front(normal, radius - length);
-        }
-    }
-    nearer_leg(legs, relative)
-}
-
-/// To the leg that is less deep.
-#[inline]
-fn nearer_leg(legs: &Legs, relative: Vector) -> (Vector, Vector) {
-    let left_depth = -legs.left.perp(&relative);
-    let right_depth = legs.right.perp(&relative);
-    let direction = if left_depth < right_depth {
-        legs.left
-    } else {
-        -legs.right
-    };
-    let change = direction * relative.dot(&direction) - relative;
-    (direction, change)
-}
-
-/// Direction of the line and change of velocity at a rounded front.
-fn front(normal: Vector, change: f64) -> (Vector, Vector) {
-    (-normal.left_normal(), normal * change)
 }
 
 /// Out of an outline by the shortest way.
@@ -220,36 +189,12 @@ impl ReciprocalPlanner {
         }
     }
 
-    /// Velocity straight to the goal, slightly turned, that does not overshoot it.
-    fn wanted(&self, situation: &Situation<'_, f64>) -> Vector {
-        let to_goal = self.goal - situation.robot.position;
-        let distance = to_goal.dot(&to_goal).sqrt();
-        if distance == 0.0 {
-            return Vector::zeros();
-        }
-        let speed = self.max_speed.min(distance / situation.interval);
-        let straight = to_goal * (speed / distance);
-        straight * self.turn.x + straight.left_normal() * self.turn.y
-    }
-
-    /// `v.n <= (d - rho - margin)/tau` for a boundary point in direction `n` at distance `d`.
-    fn off_boundary(&self, point: &Body, position: Vector) -> HalfPlane {
-        let to = Vector::splat(point.state.position) - position;
-        let distance = to.norm();
-        let normal = to * (1.0 / distance.max(f64::MIN_POSITIVE));
-        let room = distance - self.robot_radius - self.settings.margin;
-        HalfPlane {
-            point: normal * (room / self.settings.horizon),
-            direction: normal.left_normal(),
-        }
-    }
-
     /// Distance of the surfaces less the margin, in m; 0 inside a rectangle.
     #[inline]
     fn gap(&self, body: &Body, position: Vector) -> f64 {
         if let Shape::Disc { radius } = body.shape {
             let to = Vector::splat(body.state.position) - position;
-            return to.dot(&to).sqrt() - (self.robot_radius + self.settings.margin + radius);
+            return to.length() - self.touch(radius);
         }
         let outline = self.outline(body, position);
         let (point, inside) = outline.nearest(Vector::zeros());
@@ -258,6 +203,40 @@ impl ReciprocalPlanner {
         } else {
             point.dot(&point).sqrt() - outline.radius
         }
+    }
+
+    /// By what neighbors are put in order: what stands with edges comes first, for it cannot be violated.
+    fn order(gap: f64, soft: bool) -> f64 {
+        if soft { gap.max(0.0) } else { -1.0 }
+    }
+
+    /// The velocities that avoid a body.
+    fn half_plane(&self, body: &Body, situation: &Situation<'_, f64>) -> HalfPlane {
+        let robot = &situation.robot;
+        if is_boundary_point(body) {
+            return self.off_boundary(Vector::splat(body.state.position) - robot.position);
+        }
+        let outline = self.outline(body, robot.position);
+        let share = if is_wall(body) {
+            1.0
+        } else {
+            self.settings.share
+        };
+        let horizon = self.settings.horizon;
+        avoiding(&outline, robot.velocity, horizon, situation.interval, share)
+    }
+
+    /// The permitted velocity nearest to a wanted one, for neighbors with their half-planes.
+    fn solve(&mut self, wanted: Vector, plane: impl Fn(&Self, usize) -> HalfPlane) -> Vector {
+        self.neighbors.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut planes = std::mem::take(&mut self.planes);
+        planes.clear();
+        planes.extend(self.neighbors.iter().map(|(_, index)| plane(self, *index)));
+        let hard = self.neighbors.iter().take_while(|(order, _)| *order < 0.0);
+        let hard = hard.count();
+        let velocity = self.solver.nearest(&planes, hard, self.max_speed, wanted);
+        self.planes = planes;
+        velocity
     }
 
     fn outline(&self, body: &Body, position: Vector) -> Outline {
@@ -269,12 +248,7 @@ impl Planner for ReciprocalPlanner {
     /// The permitted velocity nearest to the one towards the goal. Rectangles that stand are never
     /// traded for people: where nothing is permitted, only the half-planes of people are violated.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
-        let Situation {
-            bodies,
-            robot,
-            interval,
-            ..
-        } = *situation;
+        let Situation { bodies, robot, .. } = *situation;
         self.neighbors.clear();
         for (index, body) in bodies.iter().enumerate() {
             if !body.state.present {
@@ -282,41 +256,14 @@ impl Planner for ReciprocalPlanner {
             }
             let gap = self.gap(body, robot.position);
             if gap < self.settings.reach {
-                // What stands with edges comes first: it cannot be violated.
                 let soft = !is_wall(body) && !is_boundary_point(body);
-                let order = if soft { gap.max(0.0) } else { -1.0 };
-                self.neighbors.push((order, index));
+                self.neighbors.push((Self::order(gap, soft), index));
             }
         }
-        self.neighbors.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.planes.clear();
-        for &(_, index) in &self.neighbors {
-            if is_boundary_point(&bodies[index]) {
-                let plane = self.off_boundary(&bodies[index], robot.position);
-                self.planes.push(plane);
-                continue;
-            }
-            let outline = self.outline(&bodies[index], robot.position);
-            let share = if is_wall(&bodies[index]) {
-                1.0
-            } else {
-                self.settings.share
-            };
-            let plane = avoiding(
-                &outline,
-                robot.velocity,
-                self.settings.horizon,
-                interval,
-                share,
-            );
-            self.planes.push(plane);
-        }
-        let hard = self.neighbors.iter().take_while(|(order, _)| *order < 0.0);
-        let hard = hard.count();
-        let wanted = self.wanted(situation);
-        let velocity = self
-            .solver
-            .nearest(&self.planes, hard, self.max_speed, wanted);
+        let wanted = self.wanted(self.goal - robot.position, situation.interval);
+        let velocity = self.solve(wanted, |own, index| {
+            own.half_plane(&bodies[index], situation)
+        });
         [velocity.x, velocity.y]
     }
 

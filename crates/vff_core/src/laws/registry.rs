@@ -13,7 +13,7 @@ use crate::laws::tree::RapidlyExploringRandomTree;
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle};
 use crate::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, VirtualForceField};
 use crate::run::AnyLaw;
-use crate::run::any_law::{EveryWidth, One, OneAndEight};
+use crate::run::any_law::{EveryWidth, One, OneAndEight, OneAndScenes};
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {
@@ -37,8 +37,9 @@ macro_rules! any_law {
     };
 }
 any_law!(OneAndEight: Pairwise<Masoud>, Pairwise<GeCui>, Pairwise<Khatib>, Pairwise<BorensteinKoren>);
-any_law!(One: Planned<VelocityObstacle>, Planned<ReciprocalAvoidance>);
-any_law!(One: Planned<RapidlyExploringRandomTree>, Planned<FieldDStar>, ImpedanceFamily);
+any_law!(OneAndScenes: Planned<ReciprocalAvoidance>);
+any_law!(One: Planned<VelocityObstacle>, Planned<RapidlyExploringRandomTree>);
+any_law!(One: Planned<FieldDStar>, ImpedanceFamily);
 any_law!(One: SafeNavigation);
 
 /// Makes a law of its arguments.

@@ -127,8 +127,9 @@ pub(crate) trait Driven: Send + Sync {
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
     /// Runs gain sets and hands every run over.
     fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
-    /// Whether it can run scenes side by side.
+    /// Whether it can run scenes side by side, and with how many obstacles each it pays.
     fn takes_scenes(&self) -> bool;
+    fn most_obstacles(&self) -> usize;
     /// Runs scenes that agree in robot and rules, and hands every run over.
     fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()>;
     /// What it asks for at first, with its own gains.
@@ -170,6 +171,8 @@ struct Driver<F, K>(F, PhantomData<fn() -> K>);
 pub(crate) trait Kernels<F: LawFamily>: 'static {
     /// Whether there is one for scenes side by side.
     const SCENES: bool = false;
+    /// Most obstacles of a scene beside others: one by itself leaves those that are far away alone.
+    const MOST_OBSTACLES: usize = usize::MAX;
     /// Runs gain sets in the kernel that suits the plan.
     fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
     /// Runs scenes side by side, if there is such a kernel.
@@ -227,6 +230,25 @@ where
     }
 }
 
+/// Gain sets one after the other, and scenes of a few obstacles side by side.
+pub(crate) struct OneAndScenes;
+
+impl<F: LawFamily> Kernels<F> for OneAndScenes
+where
+    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
+{
+    const SCENES: bool = true;
+    const MOST_OBSTACLES: usize = 32;
+
+    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch(law, keep)
+    }
+
+    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        group.dispatch::<F, f64, (), false>(law, keep)
+    }
+}
+
 /// One after the other, for laws that think longer than a robot moves.
 pub(crate) struct One;
 
@@ -271,6 +293,10 @@ impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
 
     fn takes_scenes(&self) -> bool {
         K::SCENES
+    }
+
+    fn most_obstacles(&self) -> usize {
+        K::MOST_OBSTACLES
     }
 
     fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {

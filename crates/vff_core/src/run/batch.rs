@@ -148,7 +148,14 @@ impl Batch<'_> {
         let held = options.run.hold || options.run.integrator != Integrator::Rk4;
         let asked = options.width.is_none_or(|width| width != Width::One);
         let many = sets < FULL_LANES && self.scenarios.len() >= FEWEST_SCENES;
-        self.law.driven().takes_scenes() && held && asked && many && !options.descent
+        let law = self.law.driven();
+        let most = law.most_obstacles();
+        let small = || {
+            self.scenarios
+                .iter()
+                .all(|own| own.obstacle_count() <= most)
+        };
+        law.takes_scenes() && held && asked && many && !options.descent && small()
     }
 
     fn work(

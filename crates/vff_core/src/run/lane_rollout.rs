@@ -191,7 +191,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
     fn sample<L: SceneLaw<R>>(&mut self, law: &mut L, time: R, stop: Stop<'_>) -> Result<()> {
         let runs = &mut self.runs;
         let (interval, step) = (runs.clock.interval, runs.clock.step);
-        let bodies = if law.knows_again() {
+        let bodies = if law.is_told_of_all() {
             &self.bodies
         } else {
             let felt = &mut self.felt;

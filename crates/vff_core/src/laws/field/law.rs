@@ -353,7 +353,7 @@ impl<R: Real + Wide<R>, const RECORD: bool> SceneLaw<R> for ForceFieldLaw<R, REC
         }
     }
 
-    fn knows_again(&self) -> bool {
+    fn is_told_of_all(&self) -> bool {
         self.rules.hysteresis.is_finite()
     }
 }

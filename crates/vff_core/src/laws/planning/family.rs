@@ -2,13 +2,13 @@
 //! search may choose.
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::lanes::{Real, Vector2};
+use crate::lanes::{Lanes, Real, Vector2};
 use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
-use crate::laws::planning::Planner;
+use crate::laws::planning::{Planner, ScenePlanner};
 use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
-use crate::laws::{Command, Law, LawFamily, Situation, force_toward};
+use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation, force_toward};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A planner up to its numbers.
@@ -67,6 +67,24 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
         for planner in &mut self.planners {
             planner.aim(goal);
         }
+    }
+}
+
+impl<const N: usize, P: ScenePlanner> Law<Lanes<N>, Lanes<N>> for LanePlanners<P> {
+    #[inline(always)]
+    fn command(&mut self, situation: &Situation<'_, Lanes<N>, Lanes<N>>) -> Command<Lanes<N>> {
+        let wanted = P::desired_velocities(&mut self.planners, situation);
+        Command::plain(force_toward(wanted, situation, self.mass))
+    }
+}
+
+impl<const N: usize, P: ScenePlanner> SceneLaw<Lanes<N>> for LanePlanners<P> {
+    fn enter(&mut self, lane: usize, scenario: &Scenario) {
+        self.planners[lane].enter(scenario);
+    }
+
+    fn is_told_of_all(&self) -> bool {
+        true
     }
 }
 

@@ -4,7 +4,7 @@
 //! al. (2011), section 5.3, for programs without a solution: the velocity that violates the
 //! half-planes least.
 
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 
@@ -13,18 +13,18 @@ pub(crate) const PARALLEL: f64 = 1e-9;
 
 /// Velocities on the left of a line.
 #[derive(Clone, Copy, Debug)]
-pub struct HalfPlane {
+pub struct HalfPlane<R = f64> {
     /// A velocity on the line, in m/s.
-    pub point: Vector,
+    pub point: Vector2<R>,
     /// Direction of the line, of length 1.
-    pub direction: Vector,
+    pub direction: Vector2<R>,
 }
 
-impl HalfPlane {
+impl<R: Real> HalfPlane<R> {
     /// How far a velocity is on the wrong side, in m/s; negative on the right one.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn violation(&self, velocity: Vector) -> f64 {
+    pub fn violation(&self, velocity: Vector2<R>) -> R {
         self.direction.perp(&(self.point - velocity))
     }
 }
@@ -114,19 +114,24 @@ fn equal_violation(plane: &HalfPlane, other: &HalfPlane) -> Option<HalfPlane> {
     })
 }
 
+/// A velocity, or the one along it with the largest speed: where no half-plane forbids that, it is the nearest one.
+#[inline(always)]
+#[must_use]
+pub fn not_faster<R: Real>(wanted: Vector2<R>, max_speed: f64) -> Vector2<R> {
+    let (speed, most) = (wanted.length(), R::splat(max_speed));
+    let fast = most.lt(speed);
+    if !fast.any() {
+        return wanted;
+    }
+    Planar::<R>::select(fast, wanted * (most / speed), wanted)
+}
+
 /// Two-dimensional program; on failure the number of the half-plane that left nothing, and the
 /// best velocity before it.
 fn program(planes: &[HalfPlane], max_speed: f64, wish: Wish) -> Result<Vector, (usize, Vector)> {
     let mut velocity = match wish {
         Wish::Along(direction) => direction * max_speed,
-        Wish::Near(wanted) => {
-            let speed = wanted.dot(&wanted).sqrt();
-            if speed > max_speed {
-                wanted * (max_speed / speed)
-            } else {
-                wanted
-            }
-        }
+        Wish::Near(wanted) => not_faster(wanted, max_speed),
     };
     for (index, plane) in planes.iter().enumerate() {
         if plane.violation(velocity) > 0.0 {

@@ -1,6 +1,6 @@
 //! What a robot must keep its center out of: an obstacle grown by the robot's radius.
 
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::world::geometry::Body;
 use crate::world::obstacle::Shape;
 
@@ -22,15 +22,15 @@ pub struct Outline {
 
 /// The two rays from the robot that just touch an outline.
 #[derive(Clone, Copy, Debug)]
-pub struct Legs {
+pub struct Legs<R = f64> {
     /// Direction of the ray on the left, of length 1.
-    pub left: Vector,
+    pub left: Vector2<R>,
     /// Direction of the ray on the right, of length 1.
-    pub right: Vector,
+    pub right: Vector2<R>,
     /// Distance of the touching point along the left ray, in m.
-    pub left_reach: f64,
+    pub left_reach: R,
     /// Distance of the touching point along the right ray, in m.
-    pub right_reach: f64,
+    pub right_reach: R,
 }
 
 impl Outline {
@@ -205,14 +205,14 @@ impl Outline {
     }
 }
 
-impl Legs {
+impl<R: Real> Legs<R> {
     /// Rays that touch a disc, from outside of it.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn of_disc(center: Vector, radius: f64) -> Self {
+    pub fn of_disc(center: Vector2<R>, radius: R) -> Self {
         let square = center.dot(&center);
         let reach = (square - radius * radius).sqrt();
-        let turned = |sine: f64| {
+        let turned = |sine: R| {
             Vector2::new(
                 (center.x * reach - center.y * sine) / square,
                 (center.y * reach + center.x * sine) / square,
@@ -224,6 +224,15 @@ impl Legs {
             left_reach: reach,
             right_reach: reach,
         }
+    }
+}
+
+impl Legs {
+    /// Whether a direction may lie between the rays; where it does not, [`Self::hold`] says so, too.
+    #[inline]
+    #[must_use]
+    pub fn may_hold(&self, direction: Vector) -> bool {
+        self.left.perp(&direction) < 0.0 && self.right.perp(&direction) > 0.0
     }
 
     /// Whether a direction lies between the rays; the rays themselves touch and do not count.
