@@ -3,6 +3,7 @@
 
 mod best;
 mod cover;
+mod free;
 mod lines;
 #[cfg(test)]
 mod tests;
@@ -20,9 +21,6 @@ use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::scenario::Scenario;
 
 type Vector = Vector2<f64>;
-
-/// Instants of a control period at which the way to a new velocity is checked.
-const INSTANTS: u32 = 6;
 
 /// Directions that are tried besides the exact ones where nothing is free for ever.
 const DIRECTIONS: u32 = 32;
@@ -76,19 +74,7 @@ impl Default for VelocityObstacle {
 struct Cone {
     /// As seen where the robot turns into its new velocity.
     outline: Outline,
-    /// As seen now.
-    now: Outline,
     legs: Option<Legs>,
-}
-
-impl Cone {
-    fn time_to_contact(&self, velocity: Vector) -> f64 {
-        let relative = velocity - self.outline.velocity;
-        match self.legs {
-            Some(legs) if !legs.hold(relative) => f64::INFINITY,
-            _ => self.outline.time_to_contact(relative),
-        }
-    }
 }
 
 /// The planner at work in one scenario.
@@ -100,7 +86,8 @@ pub struct VelocityObstaclePlanner {
     max_speed: f64,
     max_acceleration: f64,
     cones: Vec<Cone>,
-    covers: Covers,
+    /// As they are seen now, those that are so near that the way to a new velocity may touch them.
+    close: Vec<Outline>,
     lines: Vec<Line>,
     /// Place of the last velocity that was chosen.
     chosen: Place,
@@ -120,7 +107,7 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
-            covers: Covers::default(),
+            close: Vec::new(),
             lines: Vec::new(),
             chosen: (0, 0),
             blocking: Cell::new(0),
@@ -152,7 +139,9 @@ impl VelocityObstaclePlanner {
 
     fn look(&mut self, situation: &Situation<'_, f64>, margin: f64) {
         let robot = &situation.robot;
+        let farthest = self.farthest(situation);
         self.cones.clear();
+        self.close.clear();
         for body in situation.bodies {
             if !body.state.present {
                 continue;
@@ -161,68 +150,13 @@ impl VelocityObstaclePlanner {
             // The robot changes its velocity over a control period: as if it went on at the old
             // one for a part of it and had the new one from there.
             let before = (1.0 - self.settings.ramp) * situation.interval;
-            let moved = now.seen_after((robot.velocity - now.velocity) * before);
-            let legs = moved.legs();
-            self.cones.push(Cone {
-                outline: moved,
-                now,
-                legs,
-            });
-        }
-        self.covers.take(&self.cones);
-    }
-
-    fn time_to_contact(&self, velocity: Vector) -> f64 {
-        let times = self.cones.iter().map(|cone| cone.time_to_contact(velocity));
-        times.fold(f64::INFINITY, f64::min)
-    }
-
-    fn free(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
-        let late = |cone: &Cone| {
-            let time = cone.time_to_contact(velocity);
-            time == f64::INFINITY || time > self.settings.horizon
-        };
-        // What forbids a velocity mostly forbids its neighbors.
-        let known = self.cones.get(self.blocking.get());
-        if known.is_some_and(|cone| !late(cone)) {
-            return false;
-        }
-        if let Some(blocking) = self.cones.iter().position(|cone| !late(cone)) {
-            self.blocking.set(blocking);
-            return false;
-        }
-        !self.touches_on_the_way(situation, velocity)
-    }
-
-    /// Whether the way to a new velocity itself touches an obstacle, or comes closer to one whose
-    /// margin is broken already.
-    fn touches_on_the_way(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
-        let robot = &situation.robot;
-        let change = velocity - robot.velocity;
-        let period = situation.interval;
-        let farthest = (self.max_speed + change.dot(&change).sqrt()) * period;
-        self.cones.iter().any(|cone| {
-            let (point, inside) = cone.now.nearest(Vector::zeros());
-            let distance = if inside {
-                0.0
-            } else {
-                point.dot(&point).sqrt()
-            };
-            let speed = cone.now.velocity.dot(&cone.now.velocity).sqrt();
-            if distance - cone.now.radius > farthest + speed * period {
-                return false;
+            let outline = now.seen_after((robot.velocity - now.velocity) * before);
+            if !free::is_far(&now, farthest, situation.interval) {
+                self.close.push(now);
             }
-            let kept = cone.now.radius.min(distance);
-            (1..=INSTANTS).any(|instant| {
-                let share = f64::from(instant) / f64::from(INSTANTS);
-                let steady = (robot.velocity - cone.now.velocity) * (share * period);
-                let bent = 0.5 * share * share + (self.settings.ramp - 0.5) * share;
-                let way = steady + change * (bent * period);
-                let (point, inside) = cone.now.nearest(way);
-                let offset = way - point;
-                inside || offset.dot(&offset) < kept * kept
-            })
-        })
+            let legs = outline.legs();
+            self.cones.push(Cone { outline, legs });
+        }
     }
 
     /// Draws every line on which a rule of selection can have its optimum.
@@ -322,12 +256,14 @@ impl VelocityObstaclePlanner {
         if let Some(velocity) = self.candidate(self.chosen, wanted, &reachable) {
             best.offer(self.chosen, velocity);
         }
+        best.narrow();
+        let mut covers = best.covers();
         let mut open: Vec<Promising> = Vec::new();
         for line in &best.promising(&self.lines) {
             if best.is_better_than(line.promise) {
                 break;
             }
-            if self.is_covered(&best, line) {
+            if self.is_covered(&best, &mut covers, line) {
                 continue;
             }
             let own = line.line.own(wanted, &reachable);
@@ -368,10 +304,10 @@ impl VelocityObstaclePlanner {
     }
 
     /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
-    fn is_covered(&self, best: &Best<'_>, line: &Promising) -> bool {
+    fn is_covered(&self, best: &Best<'_>, covers: &mut Covers, line: &Promising) -> bool {
         let horizon = self.settings.horizon;
         let part = best.better_part(line);
-        part.is_some_and(|ends| self.covers.cover(&self.cones, ends, horizon))
+        part.is_some_and(|ends| covers.cover(&self.cones, ends, horizon))
     }
 
     /// The reachable velocity with the latest contact, for want of a free one.

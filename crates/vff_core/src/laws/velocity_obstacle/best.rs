@@ -1,6 +1,7 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
-use super::lines::{Line, ON_THE_LIMIT, Reachable};
+use super::cover::Covers;
+use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
@@ -35,6 +36,10 @@ pub(super) struct Best<'a> {
     /// What it is worth by the first number: whatever promises less is not looked at.
     least: f64,
     found: Option<((f64, f64), Place, Vector)>,
+    /// The cones that may forbid any velocity that may be worth enough, once they have been sorted out.
+    near: Option<Vec<usize>>,
+    /// The lines on which there may be any.
+    lines: Vec<usize>,
 }
 
 impl<'a> Best<'a> {
@@ -50,6 +55,8 @@ impl<'a> Best<'a> {
             aim,
             least: f64::NEG_INFINITY,
             found: None,
+            near: None,
+            lines: Vec::new(),
         }
     }
 
@@ -77,9 +84,71 @@ impl<'a> Best<'a> {
         let better = self
             .found
             .is_none_or(|(known, earlier, _)| worth > known || (worth == known && place < earlier));
-        if better && self.planner.free(self.situation, velocity) {
+        if better && self.is_free(velocity) {
             self.found = Some((worth, place, velocity));
             self.least = worth.0;
+        }
+    }
+
+    fn is_free(&self, velocity: Vector) -> bool {
+        let (planner, situation) = (self.planner, self.situation);
+        match &self.near {
+            None => planner.free(situation, velocity),
+            Some(near) => planner.free_of(near.iter().copied(), situation, velocity),
+        }
+    }
+
+    /// Sorts out the cones that can forbid nothing that may be worth more than what was found, and the
+    /// legs on which there is nothing of that kind.
+    pub fn narrow(&mut self) {
+        let cap = self.cap();
+        let Self { near, lines, .. } = self;
+        let near = near.insert(Vec::new());
+        let mut line = 0;
+        for (index, cone) in self.planner.cones.iter().enumerate() {
+            let Some(legs) = &cone.legs else {
+                near.push(index);
+                continue;
+            };
+            let offset = cap.center - cone.outline.velocity;
+            let reach = cap.reach(offset);
+            let across = [legs.left, legs.right].map(|leg| leg.perp(&offset));
+            // Also where a number is not one.
+            if !(across[0] > reach || across[1] < -reach) {
+                near.push(index);
+            }
+            for side in across {
+                if !(side > reach || side < -reach) {
+                    lines.push(line);
+                }
+                line += 1;
+            }
+        }
+        lines.extend(line..self.planner.lines.len());
+    }
+
+    /// The cones of discs that may forbid whole lines.
+    pub fn covers(&self) -> Covers {
+        let near = self.near.as_deref();
+        let chosen = near.filter(|_| self.planner.settings.selection == Selection::ToGoal);
+        Covers::of(&self.planner.cones, chosen.unwrap_or_default())
+    }
+
+    /// The smallest disc that is known to hold everything reachable that may be worth enough.
+    fn cap(&self) -> Cap {
+        let wide = self.reachable.circles().map(|(center, radius)| {
+            let wide = Cap { center, radius };
+            if self.planner.settings.selection != Selection::ToGoal {
+                return wide;
+            }
+            let least = self.least - SLACK * (1.0 + self.least.abs());
+            wide.beyond(least, self.aim)
+        });
+        let [one, other] = wide;
+        if one.radius < other.radius {
+            one
+        } else {
+            other
         }
     }
 
@@ -93,24 +162,28 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Lines that anything reachable lies on, the most promising first.
+    /// Lines that anything reachable lies on which may be worth enough, the most promising first.
     pub fn promising(&self, lines: &[Line]) -> Vec<Promising> {
-        let promise = |(index, line): (usize, &Line)| {
+        let promise = |&index: &usize| {
+            let line = &lines[index];
             let ends = self.reachable.chord(line)?;
-            Some(Promising {
-                promise: self.promise(ends),
+            let promise = self.promise(ends);
+            (!self.is_better_than(promise)).then_some(Promising {
+                promise,
                 index,
                 line: *line,
                 ends,
             })
         };
-        let mut found: Vec<Promising> = lines.iter().enumerate().filter_map(promise).collect();
-        let by_promise = |one: &Promising, other: &Promising| {
-            let promises = other.promise.total_cmp(&one.promise);
-            promises.then(one.index.cmp(&other.index))
-        };
-        found.sort_unstable_by(by_promise);
-        found
+        let found: Vec<Promising> = self.lines.iter().filter_map(promise).collect();
+        // The lines follow each other by their places, so that equal promises are told apart by the order.
+        let mut order: Vec<(f64, usize)> = found
+            .iter()
+            .enumerate()
+            .map(|(place, line)| (line.promise, place))
+            .collect();
+        order.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        order.into_iter().map(|(_, place)| found[place]).collect()
     }
 
     /// What the velocities between two are worth at most.

@@ -64,6 +64,37 @@ impl Reachable {
     }
 }
 
+/// A disc of velocities.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cap {
+    pub center: Vector,
+    pub radius: f64,
+}
+
+impl Cap {
+    /// A disc around the part of it whose component along a direction is at least a value.
+    pub fn beyond(self, least: f64, along: Vector) -> Self {
+        let away = least - self.center.dot(&along);
+        // Also where a number is not one.
+        if !(away > 0.0 && away < f64::INFINITY) {
+            return self;
+        }
+        let square = self.radius * self.radius * FAR_BEYOND - away * away;
+        Self {
+            center: self.center + along * away,
+            radius: square.max(0.0).sqrt(),
+        }
+    }
+
+    /// How far its center, given from a point of a line, is from that where it is beside it whatever the
+    /// roundings.
+    #[inline]
+    pub fn reach(&self, offset: Vector) -> f64 {
+        let room = BESIDE * (1.0 + offset.x.abs() + offset.y.abs());
+        self.radius * (1.0 + BESIDE) + room
+    }
+}
+
 /// Velocities from a point on along a direction of length 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
