@@ -87,11 +87,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             .filter(|_| samples)
             .map(|sensor| sensor.measure(clock.time(first), &scene.frames[0], &mut seen));
         if led && samples {
-            let known = if sensor.is_some() {
-                &seen
-            } else {
-                &scene.frames[0]
-            };
+            let known = known(sensor.as_ref().map(|_| &*seen), None, &scene);
             if groups[0].feels_any(known) {
                 led = false;
                 follow(&mut groups);
@@ -105,11 +101,8 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 if plan.shortcuts {
                     runs.end_hopeless(&scene.frames[0], time);
                 }
-                let known = if sensor.is_some() {
-                    &seen
-                } else {
-                    &scene.frames[0]
-                };
+                let seen = sensor.as_ref().map(|_| &*seen);
+                let known = known(seen, dormant.as_ref(), &scene);
                 sample(
                     runs,
                     member,
@@ -147,6 +140,17 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     }
     let ended = clock.time(first);
     hand_over(scenario, &mut groups, team, (ended, dormant), &mut keep)
+}
+
+/// The obstacles that a law is told of: as they are measured, or all of them where only some are looked at.
+#[inline(always)]
+fn known<'a>(
+    seen: Option<&'a [Body]>,
+    dormant: Option<&'a Dormant>,
+    scene: &'a Scene<&Scenario>,
+) -> &'a [Body] {
+    let told = seen.or_else(|| dormant.and_then(Dormant::told));
+    told.unwrap_or(&scene.frames[0])
 }
 
 /// Most steps of a block: positions between two samples are wanted only for robots that are measured

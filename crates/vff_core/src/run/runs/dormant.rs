@@ -1,5 +1,6 @@
 //! Obstacles that are too far away to be felt or touched for a while: they are not looked at before
-//! they may be, and their least distances are found afterwards from the path of the robot.
+//! they may be, and their least distances are found afterwards from the path of the robot. A law that
+//! feels obstacles from anywhere is told where all of them are; else they are left alone as well.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -8,7 +9,8 @@ use super::path::{Passage, Path};
 use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Mask, Planar, Real};
 use crate::run::options::Clock;
-use crate::run::scene::{Scene, body_at};
+use crate::run::scene::{Scene, bodies_at, body_at};
+use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Fewest obstacles for which it pays to tell the far ones from the near ones.
@@ -50,29 +52,64 @@ pub(crate) struct Dormant {
     /// the end.
     alarms: BinaryHeap<Reverse<(usize, usize)>>,
     path: Path,
+    /// Where all obstacles are at a sample, for a law that feels some of them from anywhere.
+    everything: Option<Everything>,
+}
+
+/// All obstacles, with the cursors of their motions.
+#[derive(Clone, Debug)]
+struct Everything {
+    bodies: Vec<Body>,
+    cursors: Vec<usize>,
+}
+
+impl Everything {
+    fn new(scenario: &Scenario) -> Self {
+        let bodies = bodies_at(scenario, 0.0);
+        let cursors = vec![0; bodies.len()];
+        Self { bodies, cursors }
+    }
+
+    /// Moves on to an instant, in s.
+    fn advance(&mut self, scenario: &Scenario, time: f64) {
+        let moved = self.bodies.iter_mut().zip(&mut self.cursors);
+        for ((body, cursor), placed) in moved.zip(&scenario.obstacles) {
+            if !placed.stationary {
+                body.state = placed.obstacle.motion.at(time, cursor);
+            }
+        }
+    }
 }
 
 impl Dormant {
-    /// For a law that feels each obstacle within a distance in m; `None` where there are few obstacles,
-    /// or all of them are felt from anywhere.
+    /// For a law that feels each obstacle within a distance in m; `None` where there are few obstacles.
     pub fn new(
         scenario: &Scenario,
         clock: Clock,
         felt_within: impl Fn(&PlacedObstacle) -> f64,
     ) -> Option<Self> {
         let obstacles = &scenario.obstacles;
-        let feels_all = |placed: &PlacedObstacle| felt_within(placed) == f64::INFINITY;
-        if obstacles.len() < FEWEST || obstacles.iter().all(feels_all) {
+        if obstacles.len() < FEWEST {
             return None;
         }
-        let bound = |placed| Bound::of(placed, scenario, &clock, felt_within(placed));
+        let from_anywhere = |placed: &PlacedObstacle| felt_within(placed) == f64::INFINITY;
+        let told_all = obstacles.iter().any(from_anywhere);
+        let felt = |placed| if told_all { 0.0 } else { felt_within(placed) };
+        let bound = |placed| Bound::of(placed, scenario, &clock, felt(placed));
         Some(Self {
             clock,
             bounds: obstacles.iter().map(bound).collect(),
             since: vec![AWAKE; obstacles.len()],
             alarms: BinaryHeap::new(),
             path: Path::from(scenario.start),
+            everything: told_all.then(|| Everything::new(scenario)),
         })
+    }
+
+    /// The obstacles at the last sample as the law is told of them, where these are not those that are
+    /// looked at.
+    pub fn told(&self) -> Option<&[Body]> {
+        self.everything.as_ref().map(|all| all.bodies.as_slice())
     }
 
     /// The scene at the start, without the obstacles that are far away.
@@ -104,6 +141,9 @@ impl Dormant {
         runs: &mut Runs<&Scenario, R>,
         step: usize,
     ) {
+        if let Some(everything) = &mut self.everything {
+            everything.advance(runs.scenario, self.clock.time(step));
+        }
         while let Some(Reverse((alarm, index))) = self.alarms.peek().copied() {
             if alarm > step {
                 break;

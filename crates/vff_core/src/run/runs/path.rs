@@ -3,6 +3,7 @@
 use crate::lanes::Vector2;
 use crate::run::options::Clock;
 use crate::run::scene::body_at;
+use crate::world::motion::Piece;
 use crate::world::obstacle::Shape;
 use crate::world::scenario::PlacedObstacle;
 
@@ -20,6 +21,8 @@ pub(super) struct Path {
     /// Most by which the robot was off the straight way at constant speed, in m: in each piece of
     /// [`SHORTEST`] steps, of twice as many, and so on.
     bends: Vec<Vec<f64>>,
+    /// The same for what is left over behind the last piece, with its first step after the first place.
+    rest: (usize, f64),
 }
 
 impl Path {
@@ -28,6 +31,7 @@ impl Path {
             begin: 0,
             places: vec![start],
             bends: Vec::new(),
+            rest: (0, 0.0),
         }
     }
 
@@ -72,16 +76,24 @@ impl Path {
             }
             (level, size) = (level + 1, 2 * size);
         }
+        let whole = steps / SHORTEST * SHORTEST;
+        self.rest = (whole, self.off_straight(whole, steps - whole));
+    }
+
+    /// Most by which places between two were off the straight way, in m.
+    fn off_straight(&self, first: usize, steps: usize) -> f64 {
+        let place = |step: usize| Vector::from(self.places[first + step]);
+        let way = (place(steps) - place(0)) * (1.0 / steps as f64);
+        let off = |step: usize| (place(step) - (place(0) + way * step as f64)).norm();
+        (1..steps).map(off).fold(0.0, f64::max)
     }
 
     fn bend_of(&self, level: usize, piece: usize, size: usize) -> f64 {
         let place = |step: usize| Vector::from(self.places[piece * size + step]);
-        let (from, to) = (place(0), place(size));
         if level == 0 {
-            let way = (to - from) * (1.0 / SHORTEST as f64);
-            let off = |step: usize| (place(step) - (from + way * step as f64)).norm();
-            return (1..size).map(off).fold(0.0, f64::max);
+            return self.off_straight(piece * size, size);
         }
+        let (from, to) = (place(0), place(size));
         let halves = &self.bends[level - 1][2 * piece..2 * piece + 2];
         (place(size / 2) - (from + to) * 0.5).norm() + halves[0].max(halves[1])
     }
@@ -94,18 +106,19 @@ impl Path {
         if short > 0 || most < SHORTEST {
             return most.min(SHORTEST - short);
         }
-        let mut size = SHORTEST;
-        while 2 * size <= most && first.is_multiple_of(2 * size) {
-            size *= 2;
-        }
-        size
+        // A power of two, by which the first step is divisible.
+        1 << most.ilog2().min(first.trailing_zeros())
     }
 
     /// How far the robot was off the straight way in a piece, in m.
     fn bend(&self, from: usize, steps: usize) -> Option<f64> {
-        let level = (steps / SHORTEST).checked_ilog2()? as usize;
-        let piece = (from - self.begin) / steps;
-        self.bends.get(level)?.get(piece).copied()
+        let first = from - self.begin;
+        let Some(level) = (steps / SHORTEST).checked_ilog2() else {
+            let (rest, bend) = self.rest;
+            return (first == rest && from + steps == self.last()).then_some(bend);
+        };
+        let piece = (first / SHORTEST) >> level;
+        self.bends.get(level as usize)?.get(piece).copied()
     }
 }
 
@@ -122,6 +135,25 @@ pub(super) struct Passage<'a> {
     pub least: f64,
 }
 
+/// Whether all places of a straight way at constant speed between its first step and its last but one
+/// are farther away than a distance.
+#[inline]
+fn is_farther(from: Vector, (way, steps): (Vector, f64), distance: f64) -> bool {
+    let step = way * (1.0 / steps);
+    let (first, inner) = (from + step, way - step * 2.0);
+    let (along, square) = (-first.dot(&inner), inner.dot(&inner));
+    let low = distance * distance;
+    if along <= 0.0 {
+        return first.dot(&first) > low;
+    }
+    if along >= square {
+        let last = first + inner;
+        return last.dot(&last) > low;
+    }
+    let across = first.perp(&inner);
+    across * across > low * square
+}
+
 /// An obstacle as seen from the robot after a motion step.
 #[derive(Clone, Copy)]
 struct Sample {
@@ -135,6 +167,11 @@ struct Sample {
 impl Passage<'_> {
     /// Looks at all steps of which any may be nearer than the nearest one.
     pub fn look(&mut self, first: usize, last: usize) {
+        if matches!(self.placed.obstacle.shape, Shape::Disc { .. })
+            && let Some(motion) = self.placed.obstacle.motion.straight()
+        {
+            return self.look_straight(motion, first, last);
+        }
         // What comes nearer is nearest at last.
         let end = self.at(last, 0);
         let mut from = self.at(first, 0);
@@ -148,6 +185,66 @@ impl Passage<'_> {
             self.between(&from, &to);
             from = to;
         }
+    }
+
+    /// The same for a disc that moves straight on, or stands: without a root for each step.
+    fn look_straight(&mut self, motion: &Piece, first: usize, last: usize) {
+        let end = self.sees(motion, last);
+        let (mut step, mut from) = (first, self.sees(motion, first));
+        while step < last {
+            let next = step + self.path.piece(step, last);
+            let to = if next == last {
+                end
+            } else {
+                self.sees(motion, next)
+            };
+            self.between_straight(motion, (step, from), (next, to));
+            (step, from) = (next, to);
+        }
+    }
+
+    fn between_straight(
+        &mut self,
+        motion: &Piece,
+        (first, from): (usize, Vector),
+        (last, to): (usize, Vector),
+    ) {
+        let steps = last - first;
+        if steps <= 1 {
+            return;
+        }
+        if let Some(bend) = self.path.bend(first, steps) {
+            let low = self.nearest + self.margin + bend;
+            // Where both stand all steps are alike.
+            let stands = || {
+                let still = self.path.at(first) == self.path.at(last);
+                bend == 0.0 && motion.velocity == [0.0; 2] && still
+            };
+            if is_farther(from, (to - from, steps as f64), low) || stands() {
+                return;
+            }
+        }
+        if steps > SHORTEST {
+            let step = first + steps / 2;
+            let middle = self.sees(motion, step);
+            self.between_straight(motion, (first, from), (step, middle));
+            self.between_straight(motion, (step, middle), (last, to));
+            return;
+        }
+        for step in first + 1..last {
+            self.sees(motion, step);
+        }
+    }
+
+    #[inline]
+    fn sees(&mut self, motion: &Piece, step: usize) -> Vector {
+        let (place, _) = motion.at(self.clock.time(step));
+        let offset = self.path.at(step) - Vector::from(place);
+        let squared = offset.dot(&offset);
+        if squared < self.least {
+            (self.least, self.nearest) = (squared, squared.sqrt());
+        }
+        offset
     }
 
     fn at(&mut self, step: usize, mut piece: usize) -> Sample {
