@@ -19,11 +19,7 @@ pub(super) struct Known {
 }
 
 /// A half-plane of each world.
-#[derive(Clone, Copy, Debug)]
-struct Plane {
-    point: Vectors,
-    direction: Vectors,
-}
+type Plane = HalfPlane<Each>;
 
 /// What is asked of the program: speeds in m/s at most, velocities in m/s at best.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +52,7 @@ impl Default for Permits {
         Self {
             known: Vec::new(),
             ranks: Vec::new(),
-            planes: [Plane::everything(); PLACES],
+            planes: [everything(); PLACES],
             counts: [0; WIDTH],
             alone: Vec::new(),
             solver: Solver::default(),
@@ -142,7 +138,7 @@ impl Permits {
         let mut failures = [0; WIDTH];
         let most = self.counts.into_iter().max().unwrap_or(0);
         for (index, plane) in self.planes[..most].iter().enumerate() {
-            let violation = plane.direction.perp(&(plane.point - velocity));
+            let violation = plane.violation(velocity);
             let there = Each::from_fn(|lane| if index < self.counts[lane] { 1.0 } else { 0.0 });
             let broken = violation.gt(Each::zero()) & there.gt(Each::zero()) & !failed;
             if !broken.any() {
@@ -192,12 +188,11 @@ impl Permits {
     }
 }
 
-impl Plane {
-    fn everything() -> Self {
-        Self {
-            point: Vector2::zeros(),
-            direction: Vector2::zeros(),
-        }
+/// A half-plane of all velocities.
+fn everything() -> Plane {
+    Plane {
+        point: Vector2::zeros(),
+        direction: Vector2::zeros(),
     }
 }
 
