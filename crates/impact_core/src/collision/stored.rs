@@ -123,7 +123,7 @@ impl Column<'_> {
         smooth_power(exponent)
     }
 
-    /// Whether the force of a cylinder goes on from a kink of the law like a half power.
+    /// Whether the force of a cylinder beyond a kink of the law grows like a half power.
     fn starts_with_half_power(&self, mark: f64) -> bool {
         self.pad.is_some_and(|pad| {
             let round = matches!(pad.covering.shape, Shape::Cylinder { .. });

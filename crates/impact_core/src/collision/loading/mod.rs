@@ -57,7 +57,7 @@ struct Loading<'a> {
     mass: f64,
     scales: Scales,
     curved: bool,
-    /// Whether the force goes on from a kink of the law like a half power.
+    /// Whether the force beyond a kink of the law grows like a half power.
     half_powers: bool,
     kinks: Vec<f64>,
     /// The next one.
