@@ -127,13 +127,13 @@ fn robot() -> RobotState<f64> {
 fn decisions(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("safe/decision among twelve");
     let guard = Guard::new(Shield::default(), LIMITS).unwrap();
-    let wanted = Vector2::new(0.4, 0.0);
-    for (name, distance, status) in [
-        ("shield, verified", 6.0, Status::Kept),
-        ("shield, verified near", 2.0, Status::Kept),
-        ("shield, searched", 1.0, Status::Changed),
-        ("shield, nothing but rest", 0.9, Status::Changed),
+    for (name, distance, speed, status) in [
+        ("shield, verified", 6.0, 0.4, Status::Kept),
+        ("shield, verified near", 2.0, 0.4, Status::Kept),
+        ("shield, searched", 1.2, 1.4, Status::Changed),
+        ("shield, nothing but rest", 0.9, 0.4, Status::Changed),
     ] {
+        let wanted = Vector2::new(speed, 0.0);
         let people: Vec<Person> = ring(distance)
             .map(|place| Person::disc(place.into(), 0.3))
             .collect();
@@ -142,7 +142,9 @@ fn decisions(criterion: &mut Criterion) {
             people: &people,
             walls: Walls::NONE,
         };
-        assert_eq!(guard.decide(&view, wanted).status, status, "{name}");
+        let decision = guard.decide(&view, wanted);
+        assert_eq!(decision.status, status, "{name}");
+        println!("{name}: {:?}", decision.velocity);
         group.bench_function(name, |bencher| {
             bencher.iter(|| guard.decide(black_box(&view), wanted));
         });
@@ -157,7 +159,7 @@ fn decisions(criterion: &mut Criterion) {
         .collect();
     let outlook = Outlook {
         robot: robot(),
-        wanted,
+        wanted: Vector2::new(0.4, 0.0),
         to_goal: Vector2::x(),
         people: &people,
         left_out: false,
