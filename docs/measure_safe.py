@@ -3,7 +3,7 @@
 ``python docs/measure_safe.py`` prints, ``--write`` replaces what stands between the marks of docs/validation.md;
 ``--only shares`` are the shares of the suites, ``--only adversary`` the search for a fault, ``--only poses`` the
 arrivals of two wheels. The recordings are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv,
-the worlds of BARN those of ``HRSAFETY_BARN``.
+the worlds of BARN and DynaBARN those of ``HRSAFETY_BARN``, a folder that ``challenge_worlds.py`` fills.
 """
 
 from __future__ import annotations
@@ -69,6 +69,9 @@ def shares() -> str:
     if worlds:
         say("BARN")
         lines += rows_of(benchmark("barn", data=worlds), "BARN", 1.6)
+        for name, suite in (("DynaBARN", "dynabarn"), ("DynaBARN, robot of 3 m/s^2", "dynabarn3")):
+            for seed, phases in ((None, ""), (1, ", other phases")):
+                lines += rows_of(benchmark(suite, data=worlds, seed=seed), name + phases, 1.6)
     folder = os.environ.get("HRSAFETY_RECORDINGS")
     for name in ("zara01", "zara03") if folder else ():
         say(name)
