@@ -19,7 +19,7 @@ fn drawn(state: &mut u64, bound: u64) -> u64 {
 /// A floor of 50 m with rooms of cells of 0.05 m: about 10,000 segments.
 fn floor() -> StaticMap {
     let (columns, mut cells, mut state) = (1000, vec![false; 1_000_000], 7);
-    for _ in 0..4000 {
+    for _ in 0..2750 {
         let (column, row) = (drawn(&mut state, 960), drawn(&mut state, 960));
         let (width, height) = (1 + drawn(&mut state, 12), 1 + drawn(&mut state, 12));
         for y in row..row + height {

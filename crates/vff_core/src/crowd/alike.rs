@@ -288,7 +288,7 @@ mod tests {
                             .iter_mut()
                             .map(|one| usize::from(!one.decided().is_empty()))
                             .sum::<usize>();
-                        under_way.retain_mut(|world| world.travel() || world.end().is_err());
+                        under_way.retain_mut(|world| world.advance() || world.end().is_err());
                     }
                     assert_eq!(told(&alone), told(&beside), "{model:?} {size:?} {step}");
                 }

@@ -367,8 +367,8 @@ impl Simulation {
 
     /// The second part, again and again: people decide, unless they have done so, and all move; whether they have
     /// to once more.
-    pub(super) fn travel(&mut self) -> bool {
-        self.0.travel()
+    pub(super) fn advance(&mut self) -> bool {
+        self.0.advance()
     }
 
     /// The last part: who has arrived, come or left.

@@ -113,7 +113,7 @@ impl<P: Parts> Episode<P> {
         if !self.begin(request, interrupted)? {
             return Ok(());
         }
-        while self.travel() {}
+        while self.advance() {}
         self.end()
     }
 
@@ -141,7 +141,7 @@ impl<P: Parts> Episode<P> {
     /// The second part, again and again: moves by a motion step; whether another one belongs to the
     /// control period.
     #[inline]
-    pub(crate) fn travel(&mut self) -> bool {
+    pub(crate) fn advance(&mut self) -> bool {
         self.parts.travel(&self.clock, self.step);
         self.step += 1;
         self.parts.look_around(&self.clock, self.step);

@@ -229,7 +229,7 @@ impl Environment {
     }
 
     /// Looks at what a step of the world has brought.
-    pub(super) fn look_around(&mut self, settings: &Settings) {
+    pub(super) fn account(&mut self, settings: &Settings) {
         let clearance = self.look(settings);
         self.clearance = self.clearance.min(clearance);
         self.note(settings);

@@ -38,7 +38,7 @@ impl Move<'_> {
             let worlds = moving.iter_mut().map(|row| row.environment.world());
             self.step_worlds(worlds, shared)?;
             for row in &mut moving {
-                row.environment.look_around(self.settings);
+                row.environment.account(self.settings);
             }
         }
         for row in moving {
@@ -65,7 +65,7 @@ impl Move<'_> {
                 shared.alike.decide(model, &mut begun[..under_way]);
             }
             for index in (0..under_way).rev() {
-                if !travel(begun[index], shared) {
+                if !advance(begun[index], shared) {
                     under_way -= 1;
                     begun.swap(index, under_way);
                 }
@@ -76,12 +76,12 @@ impl Move<'_> {
 }
 
 /// Moves a world once, whose people may have decided.
-fn travel(world: &mut Simulation, shared: &mut Shared) -> bool {
+fn advance(world: &mut Simulation, shared: &mut Shared) -> bool {
     if !world.decided().is_empty() {
-        return world.travel();
+        return world.advance();
     }
     world.exchange_room(&mut shared.decisions);
-    let more = world.travel();
+    let more = world.advance();
     world.exchange_room(&mut shared.decisions);
     more
 }
