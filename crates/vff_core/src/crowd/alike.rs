@@ -4,7 +4,6 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::agent::Agent;
 use crate::crowd::figures::{Each, FEW, Figures, Vectors, WIDTH};
 use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
@@ -27,7 +26,7 @@ pub(super) struct Alike {
 }
 
 /// The model of everybody in a world whose people can decide side by side with those of others that differ from it
-/// by places and wishes only: few people under one model that looks at pairs, who stay, and nothing else.
+/// by places and wishes only: few people and robots, the people under one model that looks at pairs, and nothing else.
 pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
     let number = world.people.first()?.traits.model;
     let alone = |person: &PersonSetup| {
@@ -111,23 +110,15 @@ fn seat(figures: &mut Figures, worlds: &[&mut Simulation]) {
         let (walkers, machines) = figures.all.split_at_mut(people);
         let walkers = walkers.iter_mut().zip(&mut figures.wishes);
         for ((figure, wish), person) in walkers.zip(world.people()) {
-            figure.stand(
-                lane,
-                &Agent {
-                    position: person.position,
-                    velocity: person.velocity,
-                    direction: Vector2::zeros(),
-                    radius: person.radius,
-                    number: 0,
-                },
-            );
+            figure.stand(lane, person.position, person.velocity, person.radius);
             wish.desired_speed.set(lane, person.desired_speed);
             wish.awareness.set(lane, person.awareness);
             let walks = person.presence == Presence::Walking;
             wish.aim(lane, walks.then_some(person.target));
         }
         for (figure, body) in machines.iter_mut().zip(world.bodies()) {
-            figure.stand(lane, body);
+            figure.stand(lane, body.position, body.velocity, body.radius);
+            figure.face(lane, body.direction);
         }
     }
 }
@@ -135,54 +126,12 @@ fn seat(figures: &mut Figures, worlds: &[&mut Simulation]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crowd::moussaid::Moussaid;
-    use crate::crowd::reciprocal_people::ReciprocalPeople;
-    use crate::crowd::social_force_1995::SocialForce1995;
+    use crate::crowd::models::of_pairs;
     use crate::crowd::world::{RobotSetup, Route, RouteEnd, Traits};
     use crate::robots::HolonomicRobot;
     use crate::run::Request;
     use crate::world::scenario::Mover;
     use numeric::random::Stream;
-
-    fn models(cutoff: f64, max_neighbors: usize) -> [Model; 3] {
-        [
-            Model::SocialForce1995(SocialForce1995 {
-                relaxation_time: 0.5,
-                strength: 2.1,
-                range: 0.3,
-                step_time: 2.0,
-                wall_strength: 10.0,
-                wall_range: 0.2,
-                view_angle: 1.7,
-                behind: 0.5,
-                cutoff,
-            }),
-            Model::Moussaid(Moussaid {
-                relaxation_time: 0.54,
-                strength: 4.5,
-                gamma: 0.35,
-                n: 2.0,
-                n_prime: 3.0,
-                velocity_weight: 2.0,
-                side_bias: 0.005,
-                wall_strength: 3.0,
-                wall_range: 0.1,
-                gaze: 4.0,
-                cohesion: 3.0,
-                separation: 1.0,
-                view_angle: 1.5,
-                contact_distance: 0.55,
-                cutoff,
-            }),
-            Model::ReciprocalAvoidance(ReciprocalPeople {
-                horizon: 5.0,
-                wall_horizon: 0.5,
-                max_neighbors,
-                margin: 0.01,
-                cutoff,
-            }),
-        ]
-    }
 
     fn person(stream: &mut Stream, number: usize) -> PersonSetup {
         let mut draw = |size: f64| [stream.uniform(-size, size), stream.uniform(-size, size)];
@@ -261,7 +210,7 @@ mod tests {
             let size = [round % 8, round % 3];
             let (cutoff, most) = ([f64::INFINITY, 1.5][round % 2], [10, 2][round / 2 % 2]);
             let count = 3 + round % (WIDTH - 2);
-            for model in models(cutoff, most) {
+            for model in of_pairs(cutoff, most) {
                 let made: Vec<CrowdWorld> = (0..count)
                     .map(|_| world(&mut stream, model, size))
                     .collect();

@@ -177,3 +177,45 @@ fn reach(cutoff: f64) -> Result<f64> {
     let rule = "be positive, or None for no cutoff";
     Err(Failure::invalid("cutoff", rule, Given::Number(cutoff)))
 }
+
+/// The models that look at pairs, for tests.
+#[cfg(test)]
+pub(super) fn of_pairs(cutoff: f64, max_neighbors: usize) -> [Model; 3] {
+    [
+        Model::SocialForce1995(SocialForce1995 {
+            relaxation_time: 0.5,
+            strength: 2.1,
+            range: 0.3,
+            step_time: 2.0,
+            wall_strength: 10.0,
+            wall_range: 0.2,
+            view_angle: 1.7,
+            behind: 0.5,
+            cutoff,
+        }),
+        Model::Moussaid(Moussaid {
+            relaxation_time: 0.54,
+            strength: 4.5,
+            gamma: 0.35,
+            n: 2.0,
+            n_prime: 3.0,
+            velocity_weight: 2.0,
+            side_bias: 0.005,
+            wall_strength: 3.0,
+            wall_range: 0.1,
+            gaze: 4.0,
+            cohesion: 3.0,
+            separation: 1.0,
+            view_angle: 1.5,
+            contact_distance: 0.55,
+            cutoff,
+        }),
+        Model::ReciprocalAvoidance(ReciprocalPeople {
+            horizon: 5.0,
+            wall_horizon: 0.5,
+            max_neighbors,
+            margin: 0.01,
+            cutoff,
+        }),
+    ]
+}

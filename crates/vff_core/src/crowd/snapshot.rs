@@ -133,51 +133,11 @@ impl<'m, F: Fn(usize) -> &'m Model> Job<'_, F> {
 mod tests {
     use super::*;
     use crate::crowd::agent::{FIRST_ROBOT, direction_of};
-    use crate::crowd::moussaid::Moussaid;
+    use crate::crowd::models::of_pairs;
     use crate::crowd::pedestrian::Groupings;
-    use crate::crowd::reciprocal_people::ReciprocalPeople;
-    use crate::crowd::social_force_1995::SocialForce1995;
     use numeric::random::Stream;
 
     type Vector = Vector2<f64>;
-
-    const MODELS: [Model; 3] = [
-        Model::SocialForce1995(SocialForce1995 {
-            relaxation_time: 0.5,
-            strength: 2.1,
-            range: 0.3,
-            step_time: 2.0,
-            wall_strength: 10.0,
-            wall_range: 0.2,
-            view_angle: 1.7,
-            behind: 0.5,
-            cutoff: 2.0,
-        }),
-        Model::Moussaid(Moussaid {
-            relaxation_time: 0.54,
-            strength: 4.5,
-            gamma: 0.35,
-            n: 2.0,
-            n_prime: 3.0,
-            velocity_weight: 2.0,
-            side_bias: 0.005,
-            wall_strength: 3.0,
-            wall_range: 0.1,
-            gaze: 4.0,
-            cohesion: 3.0,
-            separation: 1.0,
-            view_angle: 1.5,
-            contact_distance: 0.55,
-            cutoff: 2.0,
-        }),
-        Model::ReciprocalAvoidance(ReciprocalPeople {
-            horizon: 5.0,
-            wall_horizon: 0.5,
-            max_neighbors: 10,
-            margin: 0.01,
-            cutoff: 2.0,
-        }),
-    ];
 
     fn drawn(stream: &mut Stream, number: u32, side: f64) -> Agent {
         let mut draw =
@@ -228,7 +188,7 @@ mod tests {
         for count in (0..30).chain([60, 300]) {
             for (robots, model) in [0, 1, 3, 30]
                 .into_iter()
-                .flat_map(|robots| MODELS.map(|model| (robots, model)))
+                .flat_map(|robots| of_pairs(2.0, 10).map(|model| (robots, model)))
             {
                 let (walkers, robots) = scene(&mut stream, count, robots);
                 let groups: Vec<Option<u32>> =
