@@ -1,15 +1,12 @@
 //! People and robots of several worlds side by side, each world a lane, and pairs of them.
 
-use crate::crowd::agent::{Agent, SHORTEST};
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::others::parted;
-use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2, Zero};
+pub(super) use crate::crowd::pairs::{Each, WIDTH};
+use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
 
-/// How many worlds are looked at side by side.
-pub(super) const WIDTH: usize = 8;
 /// Most people and robots who are compared with each other without lists.
 pub(super) const FEW: usize = 12;
-/// A number of each world.
-pub(super) type Each = Lanes<WIDTH>;
 /// A vector of each world.
 pub(super) type Vectors = Vector2<Each>;
 
@@ -130,20 +127,40 @@ impl Figures {
         })
     }
 
-    /// Drives `(v0 e - v)/tau` of everybody, where the sums of forces start.
+    /// Accelerations of everybody under a model of forces without walls: drives `(v0 e - v)/tau`, and what each pair
+    /// within a distance in m brings the two of it.
     #[inline(always)]
-    pub fn drives(&self, relaxation_time: f64) -> impl Iterator<Item = Vectors> {
-        self.all.iter().zip(&self.wishes).map(move |(own, wish)| {
+    pub fn accelerations(
+        &self,
+        (relaxation_time, cutoff): (f64, f64),
+        forces: impl Fn((usize, usize), &Pair) -> [Vectors; 2],
+        sums: &mut Vec<Vectors>,
+    ) {
+        sums.extend(self.all.iter().zip(&self.wishes).map(|(own, wish)| {
             let wanted = own.direction * wish.desired_speed;
             Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
-        })
+        }));
+        for (one, other) in self.pairs() {
+            let Some(pair) = self.pair((one, other), cutoff) else {
+                continue;
+            };
+            let [mine, theirs] = forces((one, other), &pair);
+            pair.add(mine, &mut sums[one]);
+            if let Some(sum) = sums.get_mut(other) {
+                pair.add(theirs, sum);
+            }
+        }
+        // What walls add where there are none: it makes a negative zero positive.
+        for sum in sums {
+            *sum += Vectors::zeros();
+        }
     }
 }
 
 impl Pair {
     /// Adds a vector where the two are near each other.
     #[inline(always)]
-    pub fn add(&self, vector: Vectors, sum: &mut Vectors) {
+    fn add(&self, vector: Vectors, sum: &mut Vectors) {
         *sum = Planar::<Each>::select(self.near, *sum + vector, *sum);
     }
 }
@@ -160,11 +177,22 @@ impl Figure {
 
     /// Takes the place of somebody in a world.
     #[inline(always)]
-    pub fn stand(&mut self, lane: usize, body: &Agent) {
-        set(&mut self.position, lane, body.position);
-        set(&mut self.velocity, lane, body.velocity);
-        set(&mut self.direction, lane, body.direction);
-        self.radius.set(lane, body.radius);
+    pub fn stand(
+        &mut self,
+        lane: usize,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
+        radius: f64,
+    ) {
+        set(&mut self.position, lane, position);
+        set(&mut self.velocity, lane, velocity);
+        self.radius.set(lane, radius);
+    }
+
+    /// Faces where somebody in a world moves.
+    #[inline(always)]
+    pub fn face(&mut self, lane: usize, direction: Vector2<f64>) {
+        set(&mut self.direction, lane, direction);
     }
 }
 

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::figures::{Figures, Vectors};
+use crate::crowd::figures::{Figures, Pair, Vectors};
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -176,21 +176,11 @@ impl Moussaid {
     /// Decides for the people of worlds side by side.
     #[inline(always)]
     pub(super) fn decide_alike(&self, figures: &Figures, decisions: &mut Vec<Vectors>) {
-        decisions.extend(figures.drives(self.relaxation_time));
-        for (one, other) in figures.pairs() {
-            let Some(pair) = figures.pair((one, other), self.cutoff) else {
-                continue;
-            };
+        let forces = |_, pair: &Pair| {
             let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
-            pair.add(push, &mut decisions[one]);
-            if let Some(sum) = decisions.get_mut(other) {
-                pair.add(-push, sum);
-            }
-        }
-        // As without walls.
-        for decision in decisions {
-            *decision += Vectors::zeros();
-        }
+            [push, -push]
+        };
+        figures.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
     }
 }
 

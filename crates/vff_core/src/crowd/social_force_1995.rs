@@ -4,7 +4,7 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::figures::{Figures, Vectors};
+use crate::crowd::figures::{Figures, Pair, Vectors};
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -165,11 +165,7 @@ impl SocialForce1995 {
             let speed = Planar::<_>::length(figure.velocity);
             figure.direction * (speed * Real::splat(self.step_time))
         }));
-        decisions.extend(figures.drives(self.relaxation_time));
-        for (one, other) in figures.pairs() {
-            let Some(pair) = figures.pair((one, other), self.cutoff) else {
-                continue;
-            };
+        let forces = |(one, other): (usize, usize), pair: &Pair| {
             let seen = Seen {
                 offset: pair.offset,
                 distance: pair.distance,
@@ -177,17 +173,9 @@ impl SocialForce1995 {
                 way: ways[other],
             };
             let [first, second] = [one, other].map(|place| figures.all[place].direction);
-            let limits = (pair.weight, cosine);
-            let [mine, theirs] = self.both(&seen, (ways[one], first), second, limits);
-            pair.add(mine, &mut decisions[one]);
-            if let Some(sum) = decisions.get_mut(other) {
-                pair.add(theirs, sum);
-            }
-        }
-        // As without walls.
-        for decision in decisions {
-            *decision += Vectors::zeros();
-        }
+            self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
+        };
+        figures.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
     }
 
     /// Adds the forces of all pairs to the sums of their people.

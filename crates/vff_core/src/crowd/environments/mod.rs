@@ -29,6 +29,7 @@ pub const MOST_ENVIRONMENTS: usize = 1 << 20;
 const MOST_AGENTS: usize = 10_000_000;
 /// Fewest environments that are worth another thread.
 const LEAST_SHARE: usize = 16;
+
 /// Where results are written, a row for each environment.
 pub struct Outputs<'a> {
     /// What the robots see.

@@ -2,15 +2,10 @@
 
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::moussaid::Moussaid;
-use crate::lanes::{Lanes, Planar, Real, Vector2};
+use crate::crowd::pairs::{Each, WIDTH};
+use crate::lanes::{Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
-
-/// How many pairs are looked at side by side.
-const WIDTH: usize = 8;
-
-/// A number of each of them.
-type Each = Lanes<WIDTH>;
 
 /// The model of Moussaid et al. (2009) without preference for a side; of its parameters only those of the push
 /// between two people matter here.
