@@ -20,7 +20,7 @@ WITHIN_A_STEP = {"robots/drives/driven.rs"}
 # The least distance on a path that is over: nothing moves.
 LOOKS_BACK = {"run/runs/path.rs"}
 # Steps of worlds, each by the loop, between two commands of a learner.
-BETWEEN_COMMANDS = {"crowd/environments/together.rs"}
+BETWEEN_COMMANDS = {"crowd/environments/block.rs"}
 # A loop over steps or instants: counted, or as long as something runs.
 TIME_LOOP = re.compile(
     r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\."

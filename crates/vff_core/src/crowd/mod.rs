@@ -4,12 +4,11 @@
 //! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
 
 pub mod agent;
-mod alike;
+mod agent_lanes;
 mod batch;
 pub mod circle;
 pub mod collision_free_speed;
 pub mod environments;
-mod figures;
 pub mod grid;
 pub mod metrics;
 pub mod models;
@@ -21,7 +20,6 @@ pub mod others;
 pub mod pairs;
 pub mod pedestrian;
 pub mod people;
-mod permits;
 pub mod reciprocal_pairs;
 pub mod reciprocal_people;
 mod record;
@@ -32,8 +30,10 @@ pub mod snapshot;
 pub mod social_force_1995;
 pub mod social_force_2000;
 mod sources;
+mod velocity_programs;
 pub mod walls;
 pub mod world;
+mod world_lanes;
 
 pub use batch::simulate_worlds;
 pub use models::Model;

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::figures::{Figures, Pair, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -175,12 +175,12 @@ impl Moussaid {
 impl Moussaid {
     /// Decides for the people of worlds side by side.
     #[inline(always)]
-    pub(super) fn decide_alike(&self, figures: &Figures, decisions: &mut Vec<Vectors>) {
+    pub(super) fn decide_in_lanes(&self, agents: &AgentLanes, decisions: &mut Vec<Vectors>) {
         let forces = |_, pair: &Pair| {
             let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
             [push, -push]
         };
-        figures.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
+        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
     }
 }
 

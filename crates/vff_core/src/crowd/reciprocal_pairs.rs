@@ -1,11 +1,11 @@
 //! A few people who avoid each other reciprocally, each pair of them looked at once.
 
-use crate::crowd::figures::{self, Figures};
+use crate::crowd::agent_lanes::{self, AgentLanes};
 use crate::crowd::mutual::Known;
 use crate::crowd::pairs::Each;
 use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
-use crate::crowd::permits::{self, Asked, Permits};
 use crate::crowd::reciprocal_people::{Meeting, ReciprocalPeople, away, permitted};
+use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
@@ -66,36 +66,38 @@ impl ReciprocalPeople {
 
     /// Decides for the people of worlds side by side.
     #[inline(always)]
-    pub(super) fn decide_alike(
+    pub(super) fn decide_in_lanes(
         &self,
-        figures: &Figures,
+        agents: &AgentLanes,
         step: f64,
-        permits: &mut Permits,
-        decisions: &mut Vec<figures::Vectors>,
+        programs: &mut VelocityPrograms,
+        decisions: &mut Vec<agent_lanes::Vectors>,
     ) {
-        self.meet_alike(figures, step, permits);
-        for (person, wish) in figures.wishes.iter().enumerate() {
-            let own = &figures.all[person];
-            let speed = wish.desired_speed.min(wish.to_go / Real::splat(step));
-            let asked = Asked {
-                max_speed: wish.desired_speed,
+        self.constrain_in_lanes(agents, step, programs);
+        for (person, intention) in agents.intentions.iter().enumerate() {
+            let own = &agents.all[person];
+            let speed = intention
+                .desired_speed
+                .min(intention.to_go / Real::splat(step));
+            let objective = Objective {
+                max_speed: intention.desired_speed,
                 wanted: own.direction * speed,
             };
             let who = (person, own.velocity);
             let most = self.max_neighbors;
-            decisions.push(permits.nearest(who, most, &asked));
+            decisions.push(programs.nearest(who, most, &objective));
         }
     }
 
     /// Finds how everybody of worlds side by side keeps off the others.
     #[inline(always)]
-    fn meet_alike(&self, figures: &Figures, step: f64, permits: &mut Permits) {
-        permits.open(figures.people());
-        for places in figures.pairs() {
-            let Some(pair) = figures.pair(places, self.cutoff) else {
+    fn constrain_in_lanes(&self, agents: &AgentLanes, step: f64, programs: &mut VelocityPrograms) {
+        programs.open(agents.people());
+        for places in agents.pairs() {
+            let Some(pair) = agents.pair(places, self.cutoff) else {
                 continue;
             };
-            let [first, second] = [places.0, places.1].map(|place| figures.all[place].radius);
+            let [first, second] = [places.0, places.1].map(|place| agents.all[place].radius);
             let meeting = Meeting {
                 way: -away(pair.offset, pair.distance, pair.normal),
                 relative: pair.relative,
@@ -104,13 +106,13 @@ impl ReciprocalPeople {
             let sides = self.sides(&meeting, pair.weight, step);
             let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
             for (person, (change, direction)) in [places.0, places.1].into_iter().zip(sides) {
-                let known = permits::Known {
+                let constraint = Constraint {
                     change,
                     direction,
                     distance,
                     near: pair.near,
                 };
-                permits.know(person, &known);
+                programs.constrain(person, &constraint);
             }
         }
     }

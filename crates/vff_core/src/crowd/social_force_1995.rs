@@ -4,7 +4,7 @@
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::figures::{Figures, Pair, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::others::Each;
 use crate::crowd::pedestrian::{
@@ -153,17 +153,17 @@ impl SocialForce1995 {
 
     /// Decides for the people of worlds side by side.
     #[inline(always)]
-    pub(super) fn decide_alike(
+    pub(super) fn decide_in_lanes(
         &self,
-        figures: &Figures,
+        agents: &AgentLanes,
         ways: &mut Vec<Vectors>,
         decisions: &mut Vec<Vectors>,
     ) {
         let cosine = self.view_angle.cos();
         ways.clear();
-        ways.extend(figures.all.iter().map(|figure| {
-            let speed = Planar::<_>::length(figure.velocity);
-            figure.direction * (speed * Real::splat(self.step_time))
+        ways.extend(agents.all.iter().map(|agent| {
+            let speed = Planar::<_>::length(agent.velocity);
+            agent.direction * (speed * Real::splat(self.step_time))
         }));
         let forces = |(one, other): (usize, usize), pair: &Pair| {
             let seen = Seen {
@@ -172,10 +172,10 @@ impl SocialForce1995 {
                 normal: pair.normal,
                 way: ways[other],
             };
-            let [first, second] = [one, other].map(|place| figures.all[place].direction);
+            let [first, second] = [one, other].map(|place| agents.all[place].direction);
             self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
         };
-        figures.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
+        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
     }
 
     /// Adds the forces of all pairs to the sums of their people.

@@ -2,23 +2,23 @@
 //!
 //! Observations, rewards and the starts of episodes are made here, so that a call steps all of them.
 
+mod block;
 mod history;
 mod layout;
 mod observation;
 mod one;
 mod row;
 mod settings;
-mod together;
 
 pub use layout::{Area, Layout, seed_of};
 pub use observation::{BOUND, RANGE};
 pub use one::{Environment, Shared, State, Step};
 pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
 
-use crate::crowd::alike;
+use crate::crowd::environments::block::{BLOCK, BlockStep};
 use crate::crowd::environments::row::{METRICS, Row};
-use crate::crowd::environments::together::{BLOCK, Move};
 use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
+use crate::crowd::world_lanes;
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 use numeric::threads::{on_threads, team, try_each};
@@ -145,9 +145,9 @@ impl Environments {
             return Err(Failure::invalid(name, "be under way", given)
                 .mended_by("start its next episode by reset first"));
         }
-        let step = Move {
+        let step = BlockStep {
             settings,
-            model: alike::model_of(&settings.world),
+            model: world_lanes::model_of(&settings.world),
             actions,
             interrupted,
         };

@@ -1,12 +1,12 @@
 //! One environment: an episode of a world, one step of the driven robot at a time.
 
-use crate::crowd::alike::Alike;
 use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe, seen};
 use crate::crowd::environments::settings::{Action, Settings};
 use crate::crowd::metrics::RobotMetrics;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
+use crate::crowd::world_lanes::WorldLanes;
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::run::Request;
@@ -98,7 +98,7 @@ pub struct Step {
 pub struct Shared {
     ranking: Ranking,
     pub(super) decisions: Box<DecisionRoom>,
-    pub(super) alike: Alike,
+    pub(super) lanes: WorldLanes,
 }
 
 /// One environment.

@@ -11,7 +11,7 @@ use crate::world::geometry::{Body, at_rest};
 use crate::world::scenario::Scenario;
 
 /// A disc as the robots see it.
-struct Seen<R: Real> {
+struct DiscPlane<R: Real> {
     /// Lanes in which it is looked at, and in which it is a boundary point.
     looked_at: R::Mask,
     points: R::Mask,
@@ -20,7 +20,7 @@ struct Seen<R: Real> {
     plane: HalfPlane<R>,
 }
 
-impl<R: Real + Wide<R>> Seen<R> {
+impl<R: Real + Wide<R>> DiscPlane<R> {
     /// `None` where no robot looks at it.
     #[inline(always)]
     fn new(
@@ -104,7 +104,7 @@ impl ReciprocalPlanner {
     /// The permitted velocity of one lane.
     fn permitted<R: Real + Wide<R>>(
         &mut self,
-        seen: &[Seen<R>],
+        seen: &[DiscPlane<R>],
         lane: usize,
         wanted: Vector2<f64>,
     ) -> Vector2<f64> {
@@ -140,7 +140,7 @@ impl ScenePlanner for ReciprocalPlanner {
         let mut forbidden = R::Mask::none();
         let mut seen = Vec::with_capacity(situation.bodies.len());
         for body in situation.bodies {
-            if let Some(own) = Seen::new(first, body, situation) {
+            if let Some(own) = DiscPlane::new(first, body, situation) {
                 let violated = own.plane.violation(chosen).gt(R::zero());
                 forbidden = forbidden | (violated & own.looked_at);
                 seen.push(own);

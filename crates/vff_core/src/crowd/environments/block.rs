@@ -1,9 +1,9 @@
 //! Steps of environments, some at a time: their worlds move in turn, and their people decide side by side.
 
+use crate::crowd::agent_lanes::WIDTH;
 use crate::crowd::environments::one::Shared;
 use crate::crowd::environments::row::Row;
 use crate::crowd::environments::settings::Settings;
-use crate::crowd::figures::WIDTH;
 use crate::crowd::models::Model;
 use crate::crowd::simulation::Simulation;
 use crate::error::Result;
@@ -13,7 +13,7 @@ use crate::run::Interrupted;
 pub(super) const BLOCK: usize = WIDTH;
 
 /// What a step of all environments consists of.
-pub(super) struct Move<'a> {
+pub(super) struct BlockStep<'a> {
     /// What they have in common.
     pub settings: &'a Settings,
     /// The model of the people, if those of several worlds can decide together.
@@ -24,7 +24,7 @@ pub(super) struct Move<'a> {
     pub interrupted: Interrupted<'a>,
 }
 
-impl Move<'_> {
+impl BlockStep<'_> {
     /// Steps some environments.
     pub fn step(&self, rows: &mut [(usize, Row<'_>)], shared: &mut Shared) -> Result<()> {
         let mut moving = Vec::with_capacity(rows.len());
@@ -62,7 +62,7 @@ impl Move<'_> {
         let mut under_way = begun.len();
         while under_way > 0 {
             if let Some(model) = self.model {
-                shared.alike.decide(model, &mut begun[..under_way]);
+                shared.lanes.decide(model, &mut begun[..under_way]);
             }
             for index in (0..under_way).rev() {
                 if !advance(begun[index], shared) {

@@ -1,13 +1,13 @@
 //! Permitted velocities of one person in several worlds, side by side: half-planes in the order of the neighbors, and
 //! the linear program of [`half_planes`](crate::laws::planning::half_planes), lane by lane with the same bits.
 
-use crate::crowd::figures::{Each, FEW, Vectors, WIDTH};
+use crate::crowd::agent_lanes::{Each, FEW, Vectors, WIDTH};
 use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
 use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
 
-/// How one person of each world keeps off another one.
+/// The constraint on the velocity of one person of each world by another one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
+pub(super) struct Constraint {
     /// Change of the own velocity in m/s.
     pub change: Vectors,
     /// Direction of the line of permitted velocities.
@@ -21,9 +21,9 @@ pub(super) struct Known {
 /// A half-plane of each world.
 type Plane = HalfPlane<Each>;
 
-/// What is asked of the program: speeds in m/s at most, velocities in m/s at best.
+/// Limit and goal of the programs of one person of each world.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
+pub(super) struct Objective {
     /// Greatest speed in m/s.
     pub max_speed: Each,
     /// Wanted velocity in m/s.
@@ -35,9 +35,9 @@ const PLACES: usize = FEW.next_power_of_two();
 
 /// Half-planes of the people of some worlds.
 #[derive(Clone, Debug)]
-pub(super) struct Permits {
-    /// For each person a row of those whom it keeps off.
-    known: Vec<Vec<Known>>,
+pub(super) struct VelocityPrograms {
+    /// For each person a row of the constraints by the others.
+    constraints: Vec<Vec<Constraint>>,
     ranks: Vec<Each>,
     planes: [Plane; PLACES],
     /// How many half-planes there are in each world.
@@ -47,10 +47,10 @@ pub(super) struct Permits {
     solver: Solver,
 }
 
-impl Default for Permits {
+impl Default for VelocityPrograms {
     fn default() -> Self {
         Self {
-            known: Vec::new(),
+            constraints: Vec::new(),
             ranks: Vec::new(),
             planes: [everything(); PLACES],
             counts: [0; WIDTH],
@@ -60,20 +60,20 @@ impl Default for Permits {
     }
 }
 
-impl Permits {
-    /// Nobody of so many people knows anybody.
+impl VelocityPrograms {
+    /// Nothing constrains any of so many people.
     pub fn open(&mut self, people: usize) {
-        self.known.resize_with(people, Vec::new);
-        for row in &mut self.known {
+        self.constraints.resize_with(people, Vec::new);
+        for row in &mut self.constraints {
             row.clear();
         }
     }
 
-    /// Adds somebody with a higher number than those before to whom a person keeps off, robots excepted.
+    /// Adds the constraint by somebody with a higher number than those before; robots have none.
     #[inline(always)]
-    pub fn know(&mut self, person: usize, known: &Known) {
-        if let Some(row) = self.known.get_mut(person) {
-            row.push(*known);
+    pub fn constrain(&mut self, person: usize, constraint: &Constraint) {
+        if let Some(row) = self.constraints.get_mut(person) {
+            row.push(*constraint);
         }
     }
 
@@ -83,17 +83,17 @@ impl Permits {
         &mut self,
         (person, velocity): (usize, Vectors),
         most: usize,
-        asked: &Asked,
+        objective: &Objective,
     ) -> Vectors {
         self.rank(person, most);
         self.line_up(person, velocity);
-        self.program(asked)
+        self.program(objective)
     }
 
     /// Finds how many come before each: who is nearer, then who has a lower number.
     #[inline(always)]
     fn rank(&mut self, person: usize, most: usize) {
-        let row = &self.known[person];
+        let row = &self.constraints[person];
         let one = Each::splat(1.0);
         let mut counts = Each::zero();
         self.ranks.clear();
@@ -113,24 +113,30 @@ impl Permits {
     /// Writes the half-planes in that order.
     #[inline(always)]
     fn line_up(&mut self, person: usize, velocity: Vectors) {
-        let row = &self.known[person];
+        let row = &self.constraints[person];
         let planes = &mut self.planes;
-        for (known, rank) in row.iter().zip(&self.ranks) {
-            let point = velocity + known.change;
+        for (constraint, rank) in row.iter().zip(&self.ranks) {
+            let point = velocity + constraint.change;
             for lane in 0..WIDTH {
                 let plane = &mut planes[place_of(rank.lane(lane))];
                 plane.point.x.set(lane, point.x.lane(lane));
                 plane.point.y.set(lane, point.y.lane(lane));
-                plane.direction.x.set(lane, known.direction.x.lane(lane));
-                plane.direction.y.set(lane, known.direction.y.lane(lane));
+                plane
+                    .direction
+                    .x
+                    .set(lane, constraint.direction.x.lane(lane));
+                plane
+                    .direction
+                    .y
+                    .set(lane, constraint.direction.y.lane(lane));
             }
         }
     }
 
     /// The program of each world; those without a solution are left to the solver.
     #[inline(always)]
-    fn program(&mut self, asked: &Asked) -> Vectors {
-        let Asked { max_speed, wanted } = *asked;
+    fn program(&mut self, objective: &Objective) -> Vectors {
+        let Objective { max_speed, wanted } = *objective;
         let speed = wanted.dot(&wanted).sqrt();
         let shorter = wanted * (max_speed / speed);
         let mut velocity = Planar::<Each>::select(speed.gt(max_speed), shorter, wanted);
@@ -144,7 +150,7 @@ impl Permits {
             if !broken.any() {
                 continue;
             }
-            let (better, nothing) = on_line(&self.planes[..index], plane, asked);
+            let (better, nothing) = on_line(&self.planes[..index], plane, objective);
             let lost = broken & nothing;
             velocity = Planar::<Each>::select(broken & !nothing, better, velocity);
             if lost.any() {
@@ -198,11 +204,11 @@ fn everything() -> Plane {
 
 /// Best velocities on the lines of half-planes, and where there are none.
 #[inline(always)]
-fn on_line(earlier: &[Plane], plane: &Plane, asked: &Asked) -> (Vectors, LaneMask<WIDTH>) {
+fn on_line(earlier: &[Plane], plane: &Plane, objective: &Objective) -> (Vectors, LaneMask<WIDTH>) {
     let Plane { point, direction } = *plane;
     let foot = point.dot(&direction);
     let away = point.perp(&direction);
-    let reach = asked.max_speed * asked.max_speed - away * away;
+    let reach = objective.max_speed * objective.max_speed - away * away;
     let mut nothing = reach.lt(Each::zero());
     let reach = reach.sqrt();
     let (mut low, mut high) = (-foot - reach, -foot + reach);
@@ -217,7 +223,10 @@ fn on_line(earlier: &[Plane], plane: &Plane, asked: &Asked) -> (Vectors, LaneMas
         low = Each::select(!parallel & !ahead, low.max(crossing), low);
         nothing = nothing | low.gt(high);
     }
-    let share = direction.dot(&(asked.wanted - point)).max(low).min(high);
+    let share = direction
+        .dot(&(objective.wanted - point))
+        .max(low)
+        .min(high);
     (point + direction * share, nothing)
 }
 

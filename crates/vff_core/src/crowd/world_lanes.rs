@@ -4,12 +4,12 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::figures::{Each, FEW, Figures, Vectors, WIDTH};
+use crate::crowd::agent_lanes::{AgentLanes, Each, FEW, Vectors, WIDTH};
 use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
 use crate::crowd::people::{PersonState, Presence};
-use crate::crowd::permits::Permits;
 use crate::crowd::simulation::Simulation;
+use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
 use crate::lanes::{Planar, Real, Vector2};
 
@@ -18,15 +18,15 @@ const WORTH: usize = 3;
 
 /// Room for the decisions of worlds side by side.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Alike {
-    figures: Figures,
+pub(super) struct WorldLanes {
+    agents: AgentLanes,
     decisions: Vec<Vectors>,
     ways: Vec<Vectors>,
-    permits: Permits,
+    programs: VelocityPrograms,
 }
 
 /// The model of everybody in a world whose people can decide side by side with those of others that differ from it
-/// by places and wishes only: few people and robots, the people under one model that looks at pairs, and nothing else.
+/// by places and intentions only: few people and robots, the people under one model that looks at pairs, and nothing else.
 pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
     let number = world.people.first()?.traits.model;
     let alone = |person: &PersonSetup| {
@@ -46,7 +46,7 @@ pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
     }
 }
 
-impl Alike {
+impl WorldLanes {
     /// Decides for the people of worlds that have this [`model_of`] them, unless there are too few or somebody is
     /// absent.
     pub fn decide<'a>(&mut self, model: &Model, worlds: &mut [&'a mut Simulation]) {
@@ -55,11 +55,11 @@ impl Alike {
         if !(WORTH..=WIDTH).contains(&worlds.len()) || !worlds.iter().all(everybody_is_there) {
             return;
         }
-        seat(&mut self.figures, worlds);
+        seat(&mut self.agents, worlds);
         pulp::Arch::new().dispatch(Job {
             model,
             step: worlds[0].part(),
-            alike: self,
+            lanes: self,
         });
         for (lane, world) in worlds.iter_mut().enumerate() {
             let decisions = self.decisions.iter();
@@ -74,7 +74,7 @@ impl Alike {
 struct Job<'a> {
     model: &'a Model,
     step: f64,
-    alike: &'a mut Alike,
+    lanes: &'a mut WorldLanes,
 }
 
 impl pulp::NullaryFnOnce for Job<'_> {
@@ -82,19 +82,19 @@ impl pulp::NullaryFnOnce for Job<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Alike {
-            figures,
+        let WorldLanes {
+            agents,
             decisions,
             ways,
-            permits,
-        } = self.alike;
-        figures.look_ahead();
+            programs,
+        } = self.lanes;
+        agents.look_ahead();
         decisions.clear();
         match self.model {
-            Model::SocialForce1995(model) => model.decide_alike(figures, ways, decisions),
-            Model::Moussaid(model) => model.decide_alike(figures, decisions),
+            Model::SocialForce1995(model) => model.decide_in_lanes(agents, ways, decisions),
+            Model::Moussaid(model) => model.decide_in_lanes(agents, decisions),
             Model::ReciprocalAvoidance(model) => {
-                model.decide_alike(figures, self.step, permits, decisions);
+                model.decide_in_lanes(agents, self.step, programs, decisions);
             }
             Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => {}
         }
@@ -102,23 +102,23 @@ impl pulp::NullaryFnOnce for Job<'_> {
 }
 
 /// Puts each world into a lane, the last one also into those that are left over.
-fn seat(figures: &mut Figures, worlds: &[&mut Simulation]) {
+fn seat(agents: &mut AgentLanes, worlds: &[&mut Simulation]) {
     let people = worlds[0].people().len();
-    figures.open(people, worlds[0].bodies().len());
+    agents.open(people, worlds[0].bodies().len());
     for lane in 0..WIDTH {
         let world = &worlds[lane.min(worlds.len() - 1)];
-        let (walkers, machines) = figures.all.split_at_mut(people);
-        let walkers = walkers.iter_mut().zip(&mut figures.wishes);
-        for ((figure, wish), person) in walkers.zip(world.people()) {
-            figure.stand(lane, person.position, person.velocity, person.radius);
-            wish.desired_speed.set(lane, person.desired_speed);
-            wish.awareness.set(lane, person.awareness);
+        let (walkers, machines) = agents.all.split_at_mut(people);
+        let walkers = walkers.iter_mut().zip(&mut agents.intentions);
+        for ((agent, intention), person) in walkers.zip(world.people()) {
+            agent.stand(lane, person.position, person.velocity, person.radius);
+            intention.desired_speed.set(lane, person.desired_speed);
+            intention.awareness.set(lane, person.awareness);
             let walks = person.presence == Presence::Walking;
-            wish.aim(lane, walks.then_some(person.target));
+            intention.aim(lane, walks.then_some(person.target));
         }
-        for (figure, body) in machines.iter_mut().zip(world.bodies()) {
-            figure.stand(lane, body.position, body.velocity, body.radius);
-            figure.face(lane, body.direction);
+        for (agent, body) in machines.iter_mut().zip(world.bodies()) {
+            agent.stand(lane, body.position, body.velocity, body.radius);
+            agent.face(lane, body.direction);
         }
     }
 }
@@ -219,7 +219,7 @@ mod tests {
                 let start = |world: &CrowdWorld| Simulation::new(world.clone(), false).unwrap();
                 let mut alone: Vec<Simulation> = made.iter().map(start).collect();
                 let mut beside: Vec<Simulation> = made.iter().map(start).collect();
-                let mut alike = Alike::default();
+                let mut lanes = WorldLanes::default();
                 for step in 0..20 {
                     for worlds in [&mut alone, &mut beside] {
                         for world in worlds {
@@ -232,7 +232,7 @@ mod tests {
                     let mut under_way: Vec<&mut Simulation> = beside.iter_mut().collect();
                     under_way.retain_mut(|world| world.begin(&|| false).unwrap());
                     while !under_way.is_empty() {
-                        alike.decide(&model, &mut under_way);
+                        lanes.decide(&model, &mut under_way);
                         together += under_way
                             .iter_mut()
                             .map(|one| usize::from(!one.decided().is_empty()))

@@ -12,7 +12,7 @@ pub(super) type Vectors = Vector2<Each>;
 
 /// One person or robot of each world.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Figure {
+pub(super) struct LaneAgent {
     /// Position in m.
     pub position: Vectors,
     /// Velocity in m/s.
@@ -25,7 +25,7 @@ pub(super) struct Figure {
 
 /// What one person of each world wants.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wish {
+pub(super) struct Intention {
     /// Speed `v0` in m/s.
     pub desired_speed: Each,
     /// Share by which robots are taken into account.
@@ -57,40 +57,40 @@ pub(super) struct Pair {
 
 /// Everybody in some worlds.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Figures {
+pub(super) struct AgentLanes {
     /// People, then robots.
-    pub all: Vec<Figure>,
+    pub all: Vec<LaneAgent>,
     /// What the people want.
-    pub wishes: Vec<Wish>,
+    pub intentions: Vec<Intention>,
 }
 
-impl Figures {
+impl AgentLanes {
     /// Makes room for people and robots.
     pub fn open(&mut self, people: usize, robots: usize) {
-        self.all.resize(people + robots, Figure::nobody());
-        self.wishes.resize(people, Wish::none());
+        self.all.resize(people + robots, LaneAgent::nobody());
+        self.intentions.resize(people, Intention::none());
     }
 
     /// Finds where everybody wants to go.
     #[inline(always)]
     pub fn look_ahead(&mut self) {
-        for (figure, wish) in self.all.iter_mut().zip(&mut self.wishes) {
-            let way = wish.target - figure.position;
+        for (agent, intention) in self.all.iter_mut().zip(&mut self.intentions) {
+            let way = intention.target - agent.position;
             let length = Planar::<Each>::length(way);
-            let nowhere = !wish.walks | length.lt(Each::splat(SHORTEST));
-            figure.direction = Planar::<Each>::select(
+            let nowhere = !intention.walks | length.lt(Each::splat(SHORTEST));
+            agent.direction = Planar::<Each>::select(
                 nowhere,
                 Vectors::zeros(),
                 Planar::<Each>::over(way, length),
             );
-            wish.to_go = Each::select(wish.walks, length, Each::zero());
+            intention.to_go = Each::select(intention.walks, length, Each::zero());
         }
     }
 
     /// How many people there are.
     #[inline(always)]
     pub fn people(&self) -> usize {
-        self.wishes.len()
+        self.intentions.len()
     }
 
     /// Those who may be near a person and come later: people, then robots.
@@ -110,7 +110,7 @@ impl Figures {
         let mut near = !offset.dot(&offset).gt(Each::splat(cutoff * cutoff));
         let mut weight = Each::splat(1.0);
         if other >= self.people() {
-            weight = self.wishes[one].awareness;
+            weight = self.intentions[one].awareness;
             near = near & weight.gt(Each::zero());
         }
         if !near.any() {
@@ -136,10 +136,15 @@ impl Figures {
         forces: impl Fn((usize, usize), &Pair) -> [Vectors; 2],
         sums: &mut Vec<Vectors>,
     ) {
-        sums.extend(self.all.iter().zip(&self.wishes).map(|(own, wish)| {
-            let wanted = own.direction * wish.desired_speed;
-            Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
-        }));
+        sums.extend(
+            self.all
+                .iter()
+                .zip(&self.intentions)
+                .map(|(own, intention)| {
+                    let wanted = own.direction * intention.desired_speed;
+                    Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
+                }),
+        );
         for (one, other) in self.pairs() {
             let Some(pair) = self.pair((one, other), cutoff) else {
                 continue;
@@ -165,7 +170,7 @@ impl Pair {
     }
 }
 
-impl Figure {
+impl LaneAgent {
     fn nobody() -> Self {
         Self {
             position: Vectors::zeros(),
@@ -196,7 +201,7 @@ impl Figure {
     }
 }
 
-impl Wish {
+impl Intention {
     fn none() -> Self {
         Self {
             desired_speed: Each::zero(),
