@@ -20,6 +20,7 @@ import pyrvo  # type: ignore[import-untyped]  # it has no type information
 import pytest
 
 from hrsafety import navigation as nav
+from hrsafety.navigation.batch import simulate_batch
 
 ROUNDS = 7
 ROWS = 2000
@@ -131,6 +132,21 @@ def measure(benchmark: Any, work: Work) -> None:
 @pytest.mark.parametrize("law", LAWS)
 def test_episodes_from_arrays(benchmark: Any, law: str, obstacles: int, step: float) -> None:
     measure(benchmark, functools.partial(run, from_arrays, obstacles, LAWS[law], step))
+    made = from_arrays(obstacles)
+    options: dict[str, Any] = {"step": step, "stop_on_contact": True, "threads": 1}
+    ways: dict[str, Work] = {
+        "made_before": functools.partial(nav.simulate_many, made, LAWS[law], **options),
+        "one_by_one": functools.partial(simulate_batch, made, LAWS[law], lanes=1, **options),
+    }
+    for name, work in ways.items():
+        benchmark.extra_info[f"episodes_per_s_{name}"] = round(ROWS / seconds(work))
+
+
+@pytest.mark.benchmark(group="scenes of three discs, one core")
+@pytest.mark.parametrize("make", [from_arrays, from_objects])
+def test_scenes_of_three_discs(benchmark: Any, make: Callable[[int], Any]) -> None:
+    made = benchmark.pedantic(make, (3,), rounds=2)
+    benchmark.extra_info["us_per_scene"] = round(1e6 * seconds(functools.partial(make, 3)) / len(made), 2)
 
 
 @pytest.mark.benchmark(group="episodes from objects, one core")
