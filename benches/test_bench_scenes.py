@@ -20,7 +20,6 @@ import pyrvo  # type: ignore[import-untyped]  # it has no type information
 import pytest
 
 from hrsafety import navigation as nav
-from hrsafety.navigation.batch import simulate_batch
 
 ROUNDS = 7
 ROWS = 2000
@@ -136,7 +135,7 @@ def test_episodes_from_arrays(benchmark: Any, law: str, obstacles: int, step: fl
     options: dict[str, Any] = {"step": step, "stop_on_contact": True, "threads": 1}
     ways: dict[str, Work] = {
         "made_before": functools.partial(nav.simulate_many, made, LAWS[law], **options),
-        "one_by_one": functools.partial(simulate_batch, made, LAWS[law], lanes=1, **options),
+        "one_by_one": functools.partial(nav.simulate_batch, made, LAWS[law], lanes=1, **options),
     }
     for name, work in ways.items():
         benchmark.extra_info[f"episodes_per_s_{name}"] = round(ROWS / seconds(work))
