@@ -149,3 +149,44 @@ def test_collisions(benchmark: Any) -> None:
     spent = time.process_time() - start
     ours = contact.batch(robot_mass=8.0, body_mass=40.0, closing_speed=some, covering=covering).peak_force
     print(f"SciPy: {len(some) / spent:.3g} per s, peak force within {np.abs(np.array(peaks) / ours - 1).max():.1e}")
+
+
+def test_errors_of_random_collisions(benchmark: Any) -> None:
+    """Errors of 2,000 random collisions with rate against a tolerance of 1e-12: three shapes, two laws, free bodies."""
+    draw = np.random.default_rng(3)
+    columns = ("peak_force", "peak_covering_compression", "release_time")
+    shapes: list[dict[str, Any]] = [
+        {"area": 4e-3},
+        {"shape": "sphere", "radius": 0.08},
+        {"shape": "cylinder", "radius": 0.05, "length": 0.1},
+    ]
+    errors: dict[float, list[list[float]]] = {1e-6: [], 1e-8: []}
+    for index in range(2000):
+        plateau, modulus = draw.uniform(8e3, 30e3), draw.uniform(1.5e5, 6e5)
+        kinds: list[Any] = [
+            contact.GibsonAshby(modulus=modulus, plateau=plateau, lock=draw.uniform(0.7, 0.95)),
+            contact.Rusch(a=plateau, p=draw.uniform(0.3, 1.0), b=modulus, q=draw.uniform(3.0, 7.0)),
+        ]
+        rated = (draw.uniform(0.0, 0.1), draw.uniform(0.0, 0.04), 10.0 ** draw.uniform(-2.0, 0.0))
+        thickness = draw.uniform(0.01, 0.04)
+        covering = contact.Covering(material=kinds[index % 2], thickness=thickness, rate=rated, **shapes[index % 3])
+        masses = {"robot_mass": draw.uniform(2.0, 30.0), "body_mass": draw.uniform(0.6, 60.0)}
+        region = None if index % 4 < 2 else draw.uniform(1e4, 1e5)
+        speed = draw.uniform(0.05, 0.8)
+
+        def found(tolerance: float, own: Any = (masses, speed, region, covering)) -> list[float]:
+            bodies, closing, stiffness, pad = own
+            collided = contact.batch(
+                **bodies, closing_speed=[closing], region=stiffness, covering=pad, tolerance=tolerance, threads=1
+            )
+            return [float(getattr(collided, name)[0]) for name in columns]
+
+        exact = np.array(found(1e-12))
+        for tolerance, each in errors.items():
+            each.append(list(np.abs(np.array(found(tolerance)) / exact - 1.0)))
+    benchmark.pedantic(lambda: None, rounds=1)
+    for tolerance, rows in errors.items():
+        for name, values in zip(columns, np.array(rows).T, strict=True):
+            middle, most = float(np.nanmedian(values)), float(np.nanmax(values))
+            benchmark.extra_info[f"{name}, {tolerance:g}"] = (middle, most)
+            print(f"{name} at a tolerance of {tolerance:g}: median {middle:.1e}, largest {most:.1e}")

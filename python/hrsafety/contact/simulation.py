@@ -193,8 +193,8 @@ def simulate(
         Whether to give the head injury criterion; for bodies below 10 kg when ``None``.
     tolerance : float
         Relative tolerance of the solution, from 1e-12 to 1e-3. Compressions, and speeds after the contact, may err by
-        up to a hundred times as much where a covering turns just behind the start or the end of a plateau; forces do
-        not.
+        up to a hundred times as much where a covering turns just behind the start or the end of a plateau; forces
+        mostly do not (of 2,000 random collisions one by 120 times).
 
     Returns
     -------
