@@ -76,11 +76,11 @@ __all__ = [
     "Vision",
     "WheelDrive",
     "Yielding",
+    "as_built_evaluate",
+    "as_built_many",
+    "as_built_simulate",
     "attraction_forces",
     "bare_forces",
-    "built_evaluate",
-    "built_many",
-    "built_simulate",
     "burst_trial_delays",
     "cast_rays",
     "check_takeover",
@@ -1602,7 +1602,7 @@ class Controller:
     def present(self) -> list[bool]:
         """Return who is there, as far as is known."""
 
-def built_simulate(
+def as_built_simulate(
     scenario: Scenario,
     law: Law,
     built: AsBuilt,
@@ -1612,7 +1612,7 @@ def built_simulate(
 ) -> dict[str, Any]:
     """Return the fields of a run of a robot as built."""
 
-def built_evaluate(
+def as_built_evaluate(
     scenario: Scenario,
     law: Law,
     built: AsBuilt,
@@ -1622,7 +1622,7 @@ def built_evaluate(
 ) -> tuple[dict[str, float], dict[str, Any], dict[str, Any]]:
     """Return the score of a run of a robot as built, the run and the nominal run."""
 
-def built_many(
+def as_built_many(
     scenarios: Sequence[Scenario] | Scenarios,
     laws: Sequence[Law],
     gains: _Array,

@@ -17,7 +17,7 @@ use crate::parameters::Scenario;
 use crate::stepped::Stepped;
 
 /// Number, position, velocity and instant of somebody who was measured.
-type Seen = (usize, [f64; 2], [f64; 2], Option<f64>);
+type Detection = (usize, [f64; 2], [f64; 2], Option<f64>);
 
 const BUSY: &str = "an update of this controller is under way; update it from one place";
 
@@ -48,7 +48,7 @@ impl Controller {
         time: f64,
         robot: Option<([f64; 2], [f64; 2])>,
         heading: f64,
-        seen: Vec<Seen>,
+        seen: Vec<Detection>,
         gone: Vec<usize>,
         scan: Option<PyReadonlyArray1<'py, f64>>,
     ) -> PyResult<Bound<'py, PyDict>> {

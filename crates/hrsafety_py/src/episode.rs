@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::{Episode, Navigation, Outcome, Request};
 
-use crate::built::{AsBuilt, built_fields};
+use crate::as_built::{AsBuilt, as_built_fields};
 use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
@@ -99,7 +99,7 @@ impl Run {
         let (summary, columns) = episode.recorded();
         let scenario = episode.scenario();
         let fields = if motors {
-            built_fields(py, scenario, summary, columns)?
+            as_built_fields(py, scenario, summary, columns)?
         } else {
             trajectory_fields(py, scenario, summary, columns.motion)?
         };

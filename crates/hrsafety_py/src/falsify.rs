@@ -2,12 +2,12 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::built::Built;
+use vff_core::run::as_built;
 use vff_core::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer};
 use vff_core::search;
 
 use crate::arrays::Fields;
-use crate::built::AsBuilt;
+use crate::as_built::AsBuilt;
 use crate::errors::InvalidParameterError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
@@ -18,7 +18,7 @@ use crate::watch::{Report, watched_law};
 pub struct Hunt {
     scenario: vff_core::world::scenario::Scenario,
     law: Py<Law>,
-    built: Built,
+    built: as_built::AsBuilt,
     max_speed: f64,
     free: f64,
 }

@@ -6,8 +6,8 @@
 
 mod arm;
 mod arrays;
+mod as_built;
 mod batch;
-mod built;
 mod contact;
 mod controller;
 mod crowd;
@@ -56,9 +56,9 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::arm::{Arm, bare_forces, urdf_joint_names};
     #[pymodule_export]
-    use crate::batch::simulate_batch;
+    use crate::as_built::{AsBuilt, as_built_evaluate, as_built_many, as_built_simulate};
     #[pymodule_export]
-    use crate::built::{AsBuilt, built_evaluate, built_many, built_simulate};
+    use crate::batch::simulate_batch;
     #[pymodule_export]
     use crate::contact::{
         contact_column, contact_differential_mass, contact_exceedance, contact_holonomic_mass,

@@ -8,7 +8,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::robots::wheels::{differential_wheels, holonomic_wheels};
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
 use vff_core::run::AnyLaw;
-use vff_core::run::built::{Built, simulate_built};
+use vff_core::run::as_built::{AsBuilt, simulate_as_built};
 use vff_core::world::obstacle::{Limits, Obstacle};
 use vff_core::world::scenario::{Rules, Scenario};
 
@@ -41,11 +41,11 @@ fn runs(criterion: &mut Criterion) {
         ("two ideal wheels", &two, None),
         ("two wheels", &two, Some(differential_wheels().to_vec())),
     ] {
-        let built = Built {
+        let built = AsBuilt {
             wheels,
-            ..Built::default()
+            ..AsBuilt::default()
         };
-        let run = || simulate_built(scenario, &law, &built, &|| false);
+        let run = || simulate_as_built(scenario, &law, &built, &|| false);
         let milliseconds = (1000.0 * run().unwrap().0.end_time).round();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
         group.throughput(Throughput::Elements(milliseconds as u64));

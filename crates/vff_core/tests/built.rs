@@ -10,8 +10,8 @@ use vff_core::laws::pairwise::Pairwise;
 use vff_core::robots::DifferentialDriveRobot;
 use vff_core::robots::differential::{Nonlinear, Tracking, VirtualTorque};
 use vff_core::robots::wheels::{Slip, differential_wheels, holonomic_wheels};
-use vff_core::run::built::{
-    Built, ManyOptions, Steered, evaluate_built, run_many_built, simulate_built,
+use vff_core::run::as_built::{
+    AsBuilt, ManyOptions, SteeringLaw, evaluate_as_built, run_many_as_built, simulate_as_built,
 };
 use vff_core::run::metrics::Weights;
 use vff_core::run::{AnyLaw, Options, Outcome, simulate};
@@ -104,7 +104,8 @@ fn ideal_robot_is_the_point_mass_bit_for_bit() {
             let scenario = exact.clone().measured(measurement, seed).unwrap();
             for law in laws() {
                 let plain = simulate(&scenario, &law, &Options::default(), &never).unwrap();
-                let built = simulate_built(&scenario, &law, &Built::default(), &never).unwrap();
+                let built =
+                    simulate_as_built(&scenario, &law, &AsBuilt::default(), &never).unwrap();
                 // Bits by what is printed: NaN, where nothing is, equals nothing.
                 assert_eq!(format!("{:?}", plain.0), format!("{:?}", built.0));
                 assert_eq!(format!("{:?}", plain.1), format!("{:?}", built.1.motion));
@@ -121,11 +122,11 @@ fn two_wheel_robot_passes_every_configuration() {
     for number in 1..=4 {
         let scenario = chapter_7(number, 0.0);
         for wheels in [None, wheels.clone()] {
-            let built = Built {
+            let built = AsBuilt {
                 wheels,
-                ..Built::default()
+                ..AsBuilt::default()
             };
-            let (run, path) = simulate_built(&scenario, &field(), &built, &never).unwrap();
+            let (run, path) = simulate_as_built(&scenario, &field(), &built, &never).unwrap();
             println!(
                 "n{number} wheels {}: {:?} T {:?} L {:.2} d {:?}",
                 built.wheels.is_some(),
@@ -143,17 +144,17 @@ fn two_wheel_robot_passes_every_configuration() {
 #[test]
 fn every_steering_reaches_the_goal() {
     let scenario = chapter_7(1, 0.0);
-    let torque = Steered::Torque(VirtualTorque::default());
-    let nonlinear = Steered::Following(Tracking::Nonlinear(Nonlinear::default()));
-    for steered in [torque, nonlinear] {
-        let built = Built {
-            steered,
-            ..Built::default()
+    let torque = SteeringLaw::Torque(VirtualTorque::default());
+    let nonlinear = SteeringLaw::Following(Tracking::Nonlinear(Nonlinear::default()));
+    for steering_law in [torque, nonlinear] {
+        let built = AsBuilt {
+            steering_law,
+            ..AsBuilt::default()
         };
-        let run = simulate_built(&scenario, &field(), &built, &never)
+        let run = simulate_as_built(&scenario, &field(), &built, &never)
             .unwrap()
             .0;
-        println!("{:?}: {run:?}", built.steered);
+        println!("{:?}: {run:?}", built.steering_law);
         assert!(run.arrival_time.is_some());
     }
 }
@@ -162,14 +163,14 @@ fn every_steering_reaches_the_goal() {
 fn omni_wheels_follow_the_point_mass() {
     for number in 1..=4 {
         let scenario = crossing(obstacles(number), Rules::default());
-        let built = Built {
+        let built = AsBuilt {
             wheels: Some(holonomic_wheels().to_vec()),
-            ..Built::default()
+            ..AsBuilt::default()
         };
-        let ideal = simulate_built(&scenario, &field(), &Built::default(), &never)
+        let ideal = simulate_as_built(&scenario, &field(), &AsBuilt::default(), &never)
             .unwrap()
             .0;
-        let run = simulate_built(&scenario, &field(), &built, &never)
+        let run = simulate_as_built(&scenario, &field(), &built, &never)
             .unwrap()
             .0;
         println!("c{number}: {ideal:?}\n    {run:?}");
@@ -186,7 +187,7 @@ fn omni_wheels_follow_the_point_mass() {
 #[test]
 fn cameras_and_slip_run() {
     let mut scenario = chapter_7(1, 0.0);
-    let built = Built {
+    let built = AsBuilt {
         wheels: Some(differential_wheels().to_vec()),
         slip: Slip {
             creep: 0.02,
@@ -196,23 +197,23 @@ fn cameras_and_slip_run() {
             SensorOptions::RobotCamera(vision()),
             SensorOptions::ObstacleCamera(vision()),
         ],
-        ..Built::default()
+        ..AsBuilt::default()
     };
-    let run = simulate_built(&scenario, &field(), &built, &never).unwrap();
+    let run = simulate_as_built(&scenario, &field(), &built, &never).unwrap();
     println!("camera: {:?}", run.0);
     assert_ne!(run.0.outcome, Outcome::TimedOut);
     scenario = scenario.measured(Some(noise(Noisy::Both)), 1).unwrap();
-    assert!(simulate_built(&scenario, &field(), &built, &never).is_err());
+    assert!(simulate_as_built(&scenario, &field(), &built, &never).is_err());
 }
 
 #[test]
 fn wheels_of_another_robot_are_refused() {
     let scenario = chapter_7(1, 0.0);
-    let three = Built {
+    let three = AsBuilt {
         wheels: Some(holonomic_wheels().to_vec()),
-        ..Built::default()
+        ..AsBuilt::default()
     };
-    assert!(simulate_built(&scenario, &field(), &three, &never).is_err());
+    assert!(simulate_as_built(&scenario, &field(), &three, &never).is_err());
     assert!(simulate(&scenario, field(), &Options::default(), &never).is_err());
 }
 
@@ -221,9 +222,9 @@ fn threads_change_no_bit() {
     let scenario = chapter_7(4, 0.0)
         .measured(Some(noise(Noisy::Both)), 0)
         .unwrap();
-    let built = Built {
+    let built = AsBuilt {
         wheels: Some(differential_wheels().to_vec()),
-        ..Built::default()
+        ..AsBuilt::default()
     };
     let seeds = 0..7;
     let episodes: Vec<Scenario> = seeds
@@ -242,7 +243,7 @@ fn threads_change_no_bit() {
             histories: true,
             threads: Some(threads),
         };
-        run_many_built(&episodes, &laws, &built, &options, &never, &|_| {}).unwrap()
+        run_many_as_built(&episodes, &laws, &built, &options, &never, &|_| {}).unwrap()
     };
     let one = runs(1);
     // Bits by what is printed: NaN, where nothing is, equals nothing.
@@ -252,7 +253,7 @@ fn threads_change_no_bit() {
     for (law, episode) in [(0, 3), (1, 7)] {
         let row = law * episodes.len() + episode;
         let (score, alone, _) =
-            evaluate_built(&episodes[episode], &laws[law], &built, weights, &never).unwrap();
+            evaluate_as_built(&episodes[episode], &laws[law], &built, weights, &never).unwrap();
         assert_eq!(one.table.energy[row], alone.0.energy);
         assert_eq!(one.table.outcome[row], alone.0.outcome);
         assert_eq!(one.table.performance_total[row], score.total);
@@ -268,8 +269,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
     fn rotation_changes_nothing(angle in -3.0..3.0f64, number in 1..=3usize) {
-        let plain = simulate_built(&chapter_7(number, 0.0), &field(), &Built::default(), &never);
-        let other = simulate_built(&chapter_7(number, angle), &field(), &Built::default(), &never);
+        let plain = simulate_as_built(&chapter_7(number, 0.0), &field(), &AsBuilt::default(), &never);
+        let other = simulate_as_built(&chapter_7(number, angle), &field(), &AsBuilt::default(), &never);
         let (plain, other) = (plain.unwrap().0, other.unwrap().0);
         // A few hundred samples of a stable loop, each with roundings of 1e-16.
         let times = plain.arrival_time.unwrap() - other.arrival_time.unwrap();

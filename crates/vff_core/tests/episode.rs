@@ -8,7 +8,7 @@ use configurations::{crossing, law, obstacles};
 use vff_core::lanes::Planar;
 use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::wheels::holonomic_wheels;
-use vff_core::run::built::{Built, simulate_built};
+use vff_core::run::as_built::{AsBuilt, simulate_as_built};
 use vff_core::run::{AnyLaw, Episode, Options, Outcome, Request, simulate};
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::world::scenario::{Rules, Scenario};
@@ -29,18 +29,18 @@ fn scene(number: usize) -> Arc<Scenario> {
 
 #[test]
 fn stepped_by_its_law_it_is_the_run_bit_for_bit() {
-    let wheels = Built {
+    let wheels = AsBuilt {
         wheels: Some(holonomic_wheels().to_vec()),
-        ..Built::default()
+        ..AsBuilt::default()
     };
-    for built in [Built::default(), wheels] {
+    for built in [AsBuilt::default(), wheels] {
         for number in 1..=4 {
             let scenario = scene(number);
             let mut episode = Episode::new(Arc::clone(&scenario), Some(&field()), &built).unwrap();
             while !episode.finished() {
                 episode.period(Request::Law, &never).unwrap();
             }
-            let whole = simulate_built(&scenario, &field(), &built, &never).unwrap();
+            let whole = simulate_as_built(&scenario, &field(), &built, &never).unwrap();
             // Bits by what is printed: NaN equals NaN.
             assert_eq!(format!("{:?}", episode.recorded()), format!("{whole:?}"));
             assert_eq!(episode.outcome(), Some(whole.0.outcome));
@@ -52,7 +52,7 @@ fn stepped_by_its_law_it_is_the_run_bit_for_bit() {
 fn forces_of_another_run_give_that_run() {
     let scenario = scene(3);
     let plain = simulate(&scenario, field(), &Options::default(), &never).unwrap();
-    let mut episode = Episode::new(Arc::clone(&scenario), None, &Built::default()).unwrap();
+    let mut episode = Episode::new(Arc::clone(&scenario), None, &AsBuilt::default()).unwrap();
     let mut row = 0;
     while !episode.finished() {
         let force = [plain.1.force[2 * row], plain.1.force[2 * row + 1]];
@@ -66,7 +66,7 @@ fn forces_of_another_run_give_that_run() {
 #[test]
 fn a_velocity_is_there_at_the_next_sample() {
     let exact = Arc::new(crossing(obstacles(1), Rules::default()));
-    let mut episode = Episode::new(exact, None, &Built::default()).unwrap();
+    let mut episode = Episode::new(exact, None, &AsBuilt::default()).unwrap();
     episode
         .period(Request::Velocity([-0.2, 0.1]), &never)
         .unwrap();
@@ -77,7 +77,7 @@ fn a_velocity_is_there_at_the_next_sample() {
 #[test]
 fn what_cannot_be_done_changes_nothing() {
     let exact = Arc::new(crossing(obstacles(1), Rules::default()));
-    let mut episode = Episode::new(exact, None, &Built::default()).unwrap();
+    let mut episode = Episode::new(exact, None, &AsBuilt::default()).unwrap();
     episode.period(Request::Law, &never).unwrap();
     assert!(episode.period(Request::Force([0.0; 2]), &|| true).is_err());
     let overflow = Request::Force([1e300, 1e300]);
@@ -90,7 +90,7 @@ fn what_cannot_be_done_changes_nothing() {
 #[test]
 fn an_episode_that_has_ended_stays_as_it_is() {
     let exact = Arc::new(crossing(obstacles(1), Rules::default()));
-    let mut episode = Episode::new(exact, Some(&field()), &Built::default()).unwrap();
+    let mut episode = Episode::new(exact, Some(&field()), &AsBuilt::default()).unwrap();
     while !episode.finished() {
         episode.period(Request::Law, &never).unwrap();
     }

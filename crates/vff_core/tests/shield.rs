@@ -13,7 +13,7 @@ use vff_core::laws::velocity_obstacle::VelocityObstacle;
 use vff_core::laws::yielding::Yielding;
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
 use vff_core::run::AnyLaw;
-use vff_core::run::built::Built;
+use vff_core::run::as_built::AsBuilt;
 use vff_core::run::pursuit::{Encounter, Pursuer};
 use vff_core::search::{Hunt, Property};
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
@@ -110,9 +110,9 @@ impl Draw {
     }
 
     fn meet(&self, law: &AnyLaw, index: u64) -> (Encounter, Pursuer) {
-        let built = Built {
+        let built = AsBuilt {
             step: self.step,
-            ..Built::default()
+            ..AsBuilt::default()
         };
         let hunt = Hunt {
             scenario: &self.scenario,
@@ -204,7 +204,7 @@ fn a_friendly_shield_keeps_people_their_way_to_stop() {
 #[test]
 fn the_search_for_the_worst_person_finds_a_fault_without_a_shield_only() {
     let draw = Draw::of(5, false);
-    let built = Built::default();
+    let built = AsBuilt::default();
     let worst = |law: &AnyLaw| {
         let hunt = Hunt {
             scenario: &draw.scenario,

@@ -7,7 +7,7 @@ use vff_core::laws::field::gains::Gains;
 use vff_core::laws::field::side::SideRules;
 use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
-use vff_core::run::built::{Built, BuiltTrajectory, simulate_built};
+use vff_core::run::as_built::{AsBuilt, AsBuiltTrajectory, simulate_as_built};
 use vff_core::run::{AnyLaw, Outcome, RunSummary};
 use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
@@ -51,13 +51,13 @@ fn sonar(sensors: u32, firing: Firing) -> Ultrasonic {
     }
 }
 
-fn with(ultrasonic: Vec<Ultrasonic>) -> Built {
-    Built {
+fn with(ultrasonic: Vec<Ultrasonic>) -> AsBuilt {
+    AsBuilt {
         sensors: ultrasonic
             .into_iter()
             .map(SensorOptions::Ultrasonic)
             .collect(),
-        ..Built::default()
+        ..AsBuilt::default()
     }
 }
 
@@ -70,8 +70,8 @@ fn post() -> Obstacle {
     Obstacle::disc_at_rest([2.0, 0.05], 0.15, Limits::default()).unwrap()
 }
 
-fn run(scenario: &Scenario, built: &Built) -> (RunSummary, BuiltTrajectory) {
-    simulate_built(scenario, &field(), built, &|| false).unwrap()
+fn run(scenario: &Scenario, built: &AsBuilt) -> (RunSummary, AsBuiltTrajectory) {
+    simulate_as_built(scenario, &field(), built, &|| false).unwrap()
 }
 
 #[test]

@@ -361,7 +361,7 @@ def _columns(
     built = options.pop("built")
     own = [_with_gains(law, row) for row in sets] if law.GAIN_NAMES else [law]
     natively = [each._native for each in own]
-    return _hrsafety.built_many(natives, natively, sets, built, weights, **options)  # type: ignore[arg-type]  # by name
+    return _hrsafety.as_built_many(natives, natively, sets, built, weights, **options)  # type: ignore[arg-type]  # by name
 
 
 def _with_gains(law: Law, gains: Array) -> Law:

@@ -108,7 +108,7 @@ def simulate(
             name, given = ("every", every) if record is None else ("record", record)
             rule = "be None for robots as built" if name == "record" else "be 1 for robots as built"
             raise InvalidParameterError(name, rule, given, "only the loop of point masses leaves out rows and columns")
-        columns = _hrsafety.built_simulate(
+        columns = _hrsafety.as_built_simulate(
             scenario._native,
             law._native,
             robot._native,
@@ -187,7 +187,7 @@ def evaluate(
     law = as_law(law)
     robot = as_built([scenario], built, integrator, hold=hold)
     if robot is not None:
-        parts, real, ideal = _hrsafety.built_evaluate(
+        parts, real, ideal = _hrsafety.as_built_evaluate(
             scenario._native, law._native, robot._native, check_weights(weights), step=number("step", step)
         )
         free = replace(without_obstacles(scenario), measurement=None, seed=0)

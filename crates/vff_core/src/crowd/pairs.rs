@@ -86,7 +86,7 @@ type Motion = [f64; 4];
 
 /// Pairs of a snapshot, some at a time.
 #[derive(Clone, Debug, Default)]
-pub struct Meetings {
+pub struct PairQueue {
     /// Places of the two of each pair that is still to be looked at.
     first: Vec<u32>,
     second: Vec<u32>,
@@ -101,7 +101,7 @@ pub struct Meetings {
     radii: Vec<f64>,
 }
 
-impl Meetings {
+impl PairQueue {
     /// Starts with a snapshot of a world that does not repeat itself: only there are differences of positions the
     /// opposite of each other.
     #[inline(always)]

@@ -6,7 +6,7 @@ use crate::crowd::mutual::Mutual;
 use crate::crowd::nearest::Nearest;
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::others::Each;
-use crate::crowd::pairs::Meetings;
+use crate::crowd::pairs::PairQueue;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
@@ -141,7 +141,7 @@ pub struct Room {
     /// Linear programs.
     pub solver: Solver,
     /// Pairs of those who act on each other.
-    pub pairs: Meetings,
+    pub pairs: PairQueue,
     /// Half-planes that they keep off each other by.
     pub mutual: Mutual,
     /// Ways that everybody takes, and where everybody wants to go, by the same places.

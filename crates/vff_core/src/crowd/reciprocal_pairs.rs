@@ -4,7 +4,7 @@ use crate::crowd::agent_lanes::{self, AgentLanes};
 use crate::crowd::mutual::Known;
 use crate::crowd::pairs::Each;
 use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
-use crate::crowd::reciprocal_people::{Meeting, ReciprocalPeople, away, permitted};
+use crate::crowd::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
 use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
@@ -53,12 +53,12 @@ impl ReciprocalPeople {
 
     /// Changes of the velocities of the two of each pair, and directions of their lines.
     #[inline(always)]
-    fn sides<R: Real>(&self, meeting: &Meeting<R>, weight: R, step: f64) -> [Side<R>; 2] {
+    fn sides<R: Real>(&self, discs: &DiscPair<R>, weight: R, step: f64) -> [Side<R>; 2] {
         let share = R::splat(0.5) * weight;
-        let (direction, change) = meeting.avoided(self.horizon, step);
+        let (direction, change) = discs.avoided(self.horizon, step);
         let mut sides = [(change * share, direction), (-change * share, -direction)];
-        if meeting.touching().any() {
-            let (direction, change) = meeting.reversed().avoided(self.horizon, step);
+        if discs.touching().any() {
+            let (direction, change) = discs.reversed().avoided(self.horizon, step);
             sides[1] = (change * share, direction);
         }
         sides
@@ -98,12 +98,12 @@ impl ReciprocalPeople {
                 continue;
             };
             let [first, second] = [places.0, places.1].map(|place| agents.all[place].radius);
-            let meeting = Meeting {
+            let discs = DiscPair {
                 way: -away(pair.offset, pair.distance, pair.normal),
                 relative: pair.relative,
                 touch: first + second + Real::splat(2.0 * self.margin),
             };
-            let sides = self.sides(&meeting, pair.weight, step);
+            let sides = self.sides(&discs, pair.weight, step);
             let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
             for (person, (change, direction)) in [places.0, places.1].into_iter().zip(sides) {
                 let constraint = Constraint {
@@ -128,12 +128,12 @@ impl ReciprocalPeople {
         pairs.open(neighbors);
         while pairs.find(neighbors, self.cutoff, awareness) {
             for pair in pairs.side_by_side() {
-                let meeting = Meeting {
+                let discs = DiscPair {
                     way: -away(pair.offset, pair.distance, pair.normal),
                     relative: pair.relative,
                     touch: pairs.touch(&pair) + Each::splat(2.0 * self.margin),
                 };
-                let sides = self.sides(&meeting, pair.weight, around.step);
+                let sides = self.sides(&discs, pair.weight, around.step);
                 for lane in 0..pair.count {
                     let places = pair.places.map(|places| places[lane] as usize);
                     let distance = pair.distance.lane(lane);

@@ -29,7 +29,7 @@ pub struct ReciprocalPeople {
 
 /// Pairs of discs that are to avoid each other, side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<R> {
+pub struct DiscPair<R> {
     /// From the own center to the other one, in m.
     pub way: Vector2<R>,
     /// Velocity relative to the other, in m/s.
@@ -38,7 +38,7 @@ pub struct Meeting<R> {
     pub touch: R,
 }
 
-impl<R: Real> Meeting<R> {
+impl<R: Real> DiscPair<R> {
     /// Direction of the line and change `u` of the relative velocity that avoids a contact within the horizon, or,
     /// of touching discs, ends it within a step, both in s.
     #[inline(always)]
@@ -128,12 +128,12 @@ impl ReciprocalPeople {
             let others = near.among(block);
             let away = away(others.offset, others.distance, others.normal);
             let touch = Each::splat(me.radius) + others.radius() + Each::splat(2.0 * self.margin);
-            let meeting = Meeting {
+            let discs = DiscPair {
                 way: Vector2::new(-away.x, -away.y),
                 relative: velocity - others.velocity(),
                 touch,
             };
-            let (direction, change) = meeting.avoided(self.horizon, around.step);
+            let (direction, change) = discs.avoided(self.horizon, around.step);
             let point = velocity + change * (Each::splat(0.5) * others.weight);
             planes.extend((0..others.count).map(|lane| HalfPlane {
                 point: point.lane(lane).into(),
@@ -216,17 +216,17 @@ mod tests {
             |size: f64| Vector::new(stream.uniform(-size, size), stream.uniform(-size, size));
         for _ in 0..2000 {
             let (way, own, other) = (draw(3.0), draw(1.5), draw(1.5));
-            let meeting = Meeting {
+            let discs = DiscPair {
                 way,
                 relative: own - other,
                 touch: 0.6,
             };
-            let (direction, change) = meeting.avoided(5.0, 0.25);
+            let (direction, change) = discs.avoided(5.0, 0.25);
             let plane = avoiding(&Outline::disc(way, 0.6, other), own, 5.0, 0.25, 0.5);
-            assert!((plane.direction - direction).norm() < 1e-9, "{meeting:?}");
+            assert!((plane.direction - direction).norm() < 1e-9, "{discs:?}");
             assert!(
                 (plane.point - own - change * 0.5).norm() < 1e-9,
-                "{meeting:?}"
+                "{discs:?}"
             );
         }
     }

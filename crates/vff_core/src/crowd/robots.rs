@@ -10,7 +10,7 @@ use crate::lanes::Vector2;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, Order, Reading};
-use crate::run::built::{Built, robot_under};
+use crate::run::as_built::{AsBuilt, robot_under};
 use crate::run::{Interrupted, Request, Steering};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{Rules, Scenario};
@@ -52,22 +52,22 @@ impl CrowdRobot {
         let (sight, known) =
             sighted.map_or((None, Vec::new()), |(sight, known)| (Some(sight), known));
         let scenario = scenario_of(world, index, known)?;
-        let built = Built {
+        let built = AsBuilt {
             step: part,
-            ..Built::default()
+            ..AsBuilt::default()
         };
         let start = built.start_in(&scenario);
         let law = match (&setup.law, sight) {
             (Some(law), Some(mut sight)) => {
                 sight.size(&scenario);
-                Some((law.driven().steering(&scenario)?, sight))
+                Some((law.erased().steering(&scenario)?, sight))
             }
             _ => None,
         };
         let built = match (&law, scenario.differential()) {
             // From outside a robot with two wheels is told velocities and twists.
-            (None, Some(_)) => Built {
-                steered: crate::run::built::Steered::Velocity,
+            (None, Some(_)) => AsBuilt {
+                steering_law: crate::run::as_built::SteeringLaw::Velocity,
                 ..built
             },
             _ => built,
@@ -219,7 +219,7 @@ impl CrowdRobot {
             let scenario = scenario_of(world, index, known)?;
             *sight = more;
             sight.size(&scenario);
-            *law = kind.driven().steering(&scenario)?;
+            *law = kind.erased().steering(&scenario)?;
         }
         Ok(())
     }

@@ -44,7 +44,7 @@ pub struct SocialForce1995 {
 
 /// Neighbors as a person sees them, side by side.
 #[derive(Clone, Copy, Debug)]
-struct Seen<R> {
+struct NeighborView<R> {
     /// From the neighbor to the person, in m.
     offset: Vector2<R>,
     distance: R,
@@ -56,8 +56,8 @@ struct Seen<R> {
 impl SocialForce1995 {
     /// Forces of neighbors, before weights.
     #[inline(always)]
-    fn push<R: Real>(&self, seen: &Seen<R>) -> Vector2<R> {
-        let Seen {
+    fn push<R: Real>(&self, seen: &NeighborView<R>) -> Vector2<R> {
+        let NeighborView {
             offset,
             distance,
             normal,
@@ -134,12 +134,12 @@ impl SocialForce1995 {
     #[inline(always)]
     fn both<R: Real>(
         &self,
-        seen: &Seen<R>,
+        seen: &NeighborView<R>,
         (way, ahead): (Vector2<R>, Vector2<R>),
         back: Vector2<R>,
         limits: (R, f64),
     ) -> [Vector2<R>; 2] {
-        let reversed = Seen {
+        let reversed = NeighborView {
             offset: -seen.offset,
             normal: -seen.normal,
             way,
@@ -166,7 +166,7 @@ impl SocialForce1995 {
             agent.direction * (speed * Real::splat(self.step_time))
         }));
         let forces = |(one, other): (usize, usize), pair: &Pair| {
-            let seen = Seen {
+            let seen = NeighborView {
                 offset: pair.offset,
                 distance: pair.distance,
                 normal: pair.normal,
@@ -197,7 +197,7 @@ impl SocialForce1995 {
         pairs.open(neighbors);
         while pairs.find(neighbors, self.cutoff, awareness) {
             for pair in pairs.side_by_side() {
-                let seen = Seen {
+                let seen = NeighborView {
                     offset: pair.offset,
                     distance: pair.distance,
                     normal: pair.normal,
@@ -231,7 +231,7 @@ impl Pedestrian for SocialForce1995 {
         let neighbors = around.neighbors;
         for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
             let speed = Planar::<Each>::length(others.velocity());
-            let push = self.push(&Seen {
+            let push = self.push(&NeighborView {
                 offset: others.offset,
                 distance: others.distance,
                 normal: others.normal,

@@ -17,7 +17,7 @@ use crate::run::any_law::{EveryWidth, One, OneAndEight, OneAndScenes};
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {
-        Self::driven_by::<_, EveryWidth>(law)
+        Self::with_kernels::<_, EveryWidth>(law)
     }
 }
 
@@ -31,7 +31,7 @@ macro_rules! any_law {
     ($kernels:ty: $($law:ty),+) => {
         $(impl From<$law> for AnyLaw {
             fn from(law: $law) -> Self {
-                Self::driven_by::<_, $kernels>(law)
+                Self::with_kernels::<_, $kernels>(law)
             }
         })+
     };

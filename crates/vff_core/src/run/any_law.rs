@@ -24,7 +24,7 @@ use crate::world::scenario::Scenario;
 /// The kernels of a law are compiled where it is turned into this, that is in this crate, or for
 /// laws of other crates there.
 #[derive(Clone)]
-pub struct AnyLaw(Arc<dyn Driven>);
+pub struct AnyLaw(Arc<dyn ErasedLaw>);
 
 impl From<&AnyLaw> for AnyLaw {
     fn from(law: &AnyLaw) -> Self {
@@ -36,14 +36,14 @@ impl AnyLaw {
     /// A law of another crate, whose gain sets run one after the other.
     #[must_use]
     pub fn one_by_one<F: LawFamily + Send + 'static>(law: F) -> Self {
-        Self::driven_by::<_, One>(law)
+        Self::with_kernels::<_, One>(law)
     }
 
-    pub(crate) fn driven_by<F: LawFamily + Send + 'static, K: Kernels<F>>(law: F) -> Self {
+    pub(crate) fn with_kernels<F: LawFamily + Send + 'static, K: Kernels<F>>(law: F) -> Self {
         Self(Arc::new(Driver::<F, K>(law, PhantomData)))
     }
 
-    pub(crate) fn driven(&self) -> &dyn Driven {
+    pub(crate) fn erased(&self) -> &dyn ErasedLaw {
         &*self.0
     }
 
@@ -116,7 +116,7 @@ impl<L: Law<f64> + Send> Steering for L {
 }
 
 /// A law whose gain sets can be run.
-pub(crate) trait Driven: Send + Sync {
+pub(crate) trait ErasedLaw: Send + Sync {
     /// Words for the gains, in their order.
     fn gain_names(&self) -> &'static [&'static str];
     /// Its own gains, in that order.
@@ -258,7 +258,7 @@ impl<F: LawFamily> Kernels<F> for One {
     }
 }
 
-impl<F: LawFamily + Send, K: Kernels<F>> Driven for Driver<F, K> {
+impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
     fn gain_names(&self) -> &'static [&'static str] {
         self.0.gain_names()
     }

@@ -84,7 +84,7 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
         return Err(Failure::invalid("gains", rule, given));
     }
     for (index, set) in points.chunks_exact(dimension).enumerate() {
-        law.driven()
+        law.erased()
             .check_gains(set)
             .map_err(|error| error.within(&format!("gains[{index}]")))?;
     }
@@ -110,7 +110,7 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn run(&self) -> Result<BatchTable> {
-        let law = self.law.driven();
+        let law = self.law.erased();
         let sets = self.points.len() / law.gain_names().len();
         let width = self.options.width.unwrap_or_else(|| Width::for_sets(sets));
         let plan = Plan {
@@ -148,7 +148,7 @@ impl Batch<'_> {
         let held = options.run.hold || options.run.integrator != Integrator::Rk4;
         let asked = options.width.is_none_or(|width| width != Width::One);
         let many = sets < FULL_LANES && self.scenarios.len() >= FEWEST_SCENES;
-        let law = self.law.driven();
+        let law = self.law.erased();
         let most = law.most_obstacles();
         let small = || {
             self.scenarios
@@ -173,7 +173,7 @@ impl Batch<'_> {
         let scenario = &self.scenarios[index];
         let obstacles = scenario.obstacle_count();
         let way = ways.of(index);
-        let law = self.law.driven();
+        let law = self.law.erased();
         let dimension = law.gain_names().len();
         let group = Group {
             scenario,

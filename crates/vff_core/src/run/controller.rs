@@ -11,7 +11,7 @@ use crate::laws::{Situation, Stop};
 use crate::robots::differential::Twist;
 use crate::robots::drives::twist_of;
 use crate::run::any_law::{AnyLaw, Steering};
-use crate::run::built::sight::hidden;
+use crate::run::as_built::sight::hidden;
 use crate::sensing::lidar::{Lidar, Scans};
 use crate::world::frame::Frame;
 use crate::world::geometry::{Body, RobotState};
@@ -136,7 +136,7 @@ impl Controller {
         latency: f64,
     ) -> Result<Self> {
         not_negative("latency", latency)?;
-        if scenario.differential.is_some() && !law.driven().steers_by_velocity() {
+        if scenario.differential.is_some() && !law.erased().steers_by_velocity() {
             let rule = "have a shield, which steers a robot with two wheels by velocities";
             let given = Given::Found("a law without".into());
             return Err(Failure::invalid("law", rule, given));
@@ -154,7 +154,7 @@ impl Controller {
             body
         });
         Ok(Self {
-            law: law.driven().steering(&known)?,
+            law: law.erased().steering(&known)?,
             measured: vec![f64::NEG_INFINITY; scenario.obstacles.len()],
             dated: vec![true; scenario.obstacles.len()],
             scanned: f64::NEG_INFINITY,

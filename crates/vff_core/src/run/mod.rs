@@ -1,8 +1,8 @@
 //! Runs: control period, integrators, outcomes; one run, or many at once.
 
 pub(crate) mod any_law;
+pub mod as_built;
 mod batch;
-pub mod built;
 pub mod controller;
 mod episode;
 pub mod follower;
@@ -64,7 +64,7 @@ pub fn simulate(
     let law: AnyLaw = law.into();
     scenario.of_point_mass()?;
     law.suits(scenario)?;
-    law.driven().record(scenario, options, interrupted)
+    law.erased().record(scenario, options, interrupted)
 }
 
 /// Everything at one instant, for a law that is asked for the first time.
@@ -106,7 +106,7 @@ pub fn command_at(
 ) -> Result<[f64; 2]> {
     let law: AnyLaw = law.into();
     let command = at_state(scenario, [position, velocity], time, |situation| {
-        law.driven().command(scenario, situation)
+        law.erased().command(scenario, situation)
     })??;
     Ok(command.force.lane(0))
 }
@@ -124,7 +124,7 @@ pub fn terms_at(
 ) -> Result<FieldTerms> {
     let law: AnyLaw = law.into();
     let terms = at_state(scenario, [position, velocity], time, |situation| {
-        law.driven().terms(scenario, situation)
+        law.erased().terms(scenario, situation)
     })?;
     terms.ok_or_else(|| {
         let rule = "be a sum of attraction and repulsion, such as VirtualForceField or Masoud";

@@ -12,10 +12,10 @@ use crate::laws::{Command, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::any_law::{AnyLaw, Steering};
-use crate::run::built::Built;
-use crate::run::built::history::{BuiltTrajectory, Everything, Listener};
-use crate::run::built::sight::{Seen, Sight};
-use crate::run::built::{clock_of, robot_under};
+use crate::run::as_built::AsBuilt;
+use crate::run::as_built::history::{AsBuiltTrajectory, Everything, Listener};
+use crate::run::as_built::sight::{SensedState, Sight};
+use crate::run::as_built::{clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::options::Clock;
 use crate::run::outcome::{Outcome, RunSummary};
@@ -58,7 +58,7 @@ impl Known {
     }
 
     /// What was seen at a sample.
-    pub fn of(seen: &Seen<'_>) -> Self {
+    pub fn of(seen: &SensedState<'_>) -> Self {
         Self {
             robot: seen.robot,
             fix: seen.fix,
@@ -106,8 +106,8 @@ impl Episode<Navigation> {
     ///
     /// # Errors
     /// An option is out of range, or the law cannot work in the scenario.
-    pub fn new(scenario: Arc<Scenario>, law: Option<&AnyLaw>, built: &Built) -> Result<Self> {
-        Self::heard(scenario, law, built, |scenario, wheels| {
+    pub fn new(scenario: Arc<Scenario>, law: Option<&AnyLaw>, built: &AsBuilt) -> Result<Self> {
+        Self::with_listener(scenario, law, built, |scenario, wheels| {
             Everything::new(scenario, wheels)
         })
     }
@@ -115,7 +115,7 @@ impl Episode<Navigation> {
     /// What is left of the run so far, with its present state as the last row. The outcome counts
     /// once the run is finished.
     #[must_use]
-    pub fn recorded(&self) -> (RunSummary, BuiltTrajectory) {
+    pub fn recorded(&self) -> (RunSummary, AsBuiltTrajectory) {
         let mut listener = self.parts.listener.clone();
         let (row, summary) = self.parts.closing(self.time());
         row.tell(&mut listener);
@@ -125,10 +125,10 @@ impl Episode<Navigation> {
 
 impl<L: Listener> Episode<Navigation<L>> {
     /// The same with a listener of its own, made for a scenario and a number of wheels.
-    pub(crate) fn heard(
+    pub(crate) fn with_listener(
         scenario: Arc<Scenario>,
         law: Option<&AnyLaw>,
-        built: &Built,
+        built: &AsBuilt,
         listener: impl FnOnce(&Scenario, usize) -> L,
     ) -> Result<Self> {
         law.map_or(Ok(()), |law| law.suits(&scenario))?;
@@ -138,7 +138,7 @@ impl<L: Listener> Episode<Navigation<L>> {
         let bodies = &scene.frames[0];
         let reading = Reading::at(&built.start_in(&scenario));
         let sight = Sight::new(&scenario, built, bodies)?;
-        let steering = law.map(|law| law.driven().steering(sight.known(&scenario)));
+        let steering = law.map(|law| law.erased().steering(sight.known(&scenario)));
         let parts = Navigation {
             law: steering.transpose()?,
             listener: listener(&scenario, robot.wheels()),

@@ -6,7 +6,7 @@ use numeric::threads::try_map;
 
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::any_law::Driven;
+use crate::run::any_law::ErasedLaw;
 use crate::run::group::Group;
 use crate::run::metrics::Nominal;
 use crate::run::outcome::RunTotals;
@@ -63,7 +63,7 @@ impl Ways {
 /// Runs of some gain sets, all different, along one way.
 pub(crate) fn nominal_runs(
     way: &Scenario,
-    law: &dyn Driven,
+    law: &dyn ErasedLaw,
     points: &[f64],
     plan: &Plan,
     interrupted: Interrupted<'_>,
@@ -97,7 +97,7 @@ impl NominalRuns {
     /// Errors carry the index of the run, the scenarios fastest.
     pub fn new(
         ways: &Ways,
-        law: &dyn Driven,
+        law: &dyn ErasedLaw,
         points: &[f64],
         plan: &Plan,
         interrupted: Interrupted<'_>,

@@ -4,7 +4,7 @@ use numeric::threads::{map, team, try_map};
 
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::any_law::Driven;
+use crate::run::any_law::ErasedLaw;
 use crate::run::group::{Group, Keep, SceneGroup};
 use crate::run::lane_scenes::{agree, fits};
 use crate::run::metrics::{Nominal, Weights, score};
@@ -25,7 +25,7 @@ const FEWEST_OF_TASK: usize = 32;
 /// Scenes of a batch.
 pub(crate) struct SceneBatch<'a> {
     pub scenarios: &'a [Scenario],
-    pub law: &'a dyn Driven,
+    pub law: &'a dyn ErasedLaw,
     pub plan: &'a Plan,
     pub weights: Weights,
     pub interrupted: Interrupted<'a>,

@@ -1,15 +1,15 @@
-//! Evaluating many points: blocks over all threads, found in the ledger or computed.
+//! Evaluating many points: blocks over all threads, found in the search state or computed.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Failure, Result};
 use crate::laws::Stop;
+use crate::search::ask_tell::{Asker, answer_together};
 use crate::search::evaluated::Evaluated;
-use crate::search::ledger::SearchState;
-use crate::search::meeting::{Asker, meet};
 use crate::search::observe::{Control, Observer, Report};
 use crate::search::problem::{Candidate, Problem, Score};
+use crate::search::search_state::SearchState;
 use crate::search::stage::Stage;
 use numeric::threads::{on_threads, team, try_map};
 
@@ -63,13 +63,13 @@ impl<'a> Session<'a> {
         self.with(|progress| progress.done = 0);
     }
 
-    /// A piece that is already in the ledger.
+    /// A piece that is already in the search state.
     pub fn known(&self, stage: Stage, index: usize) -> Option<Evaluated> {
         self.with(|progress| progress.state.piece(stage, index).cloned())
             .flatten()
     }
 
-    /// Does something with the ledger.
+    /// Does something with the search state.
     pub fn record(&self, change: impl FnOnce(&mut SearchState)) {
         self.with(|progress| change(&mut progress.state));
     }
@@ -162,9 +162,9 @@ impl<'a> Session<'a> {
 
     /// Runs a number of solvers that ask for one point at a time, and evaluates their points side
     /// by side; in all there are `total` evaluations, or searches in the local stage. What they
-    /// were answered before an interruption comes from the ledger.
+    /// were answered before an interruption comes from the search state.
     ///
-    /// The observer is called at every meeting. Local searches count when they are done, by
+    /// The observer is called whenever all solvers have asked. Local searches count when they are done, by
     /// themselves; of the others every evaluation counts, `total` in all.
     pub fn solve<T: Send>(
         &self,
@@ -187,7 +187,7 @@ impl<'a> Session<'a> {
             total,
         );
         let mut failure = None;
-        let results = meet(known, solver, |asked| {
+        let results = answer_together(known, solver, |asked| {
             if self.stopped() {
                 return None;
             }

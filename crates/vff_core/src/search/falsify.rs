@@ -2,12 +2,12 @@
 //! one that CMA-ES finds.
 
 use crate::error::{Failure, Result, positive};
-use crate::run::built::Built;
+use crate::run::as_built::AsBuilt;
 use crate::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer, pursue};
 use crate::run::{AnyLaw, Interrupted};
-use crate::search::ledger::SearchState;
 use crate::search::observe::{Control, Observer, Report};
 use crate::search::problem::{Bounds, Evaluation, Problem};
+use crate::search::search_state::SearchState;
 use crate::search::{GlobalMethod, GlobalOptions, global_search};
 use crate::world::scenario::Scenario;
 use numeric::threads::{on_threads, try_map};
@@ -51,7 +51,7 @@ pub struct Hunt<'a> {
     /// What drives the robot.
     pub law: &'a AnyLaw,
     /// How it is built.
-    pub built: &'a Built,
+    pub built: &'a AsBuilt,
     /// Largest speed of the pursuer in m/s.
     pub max_speed: f64,
     /// Least distance of his center from the robot at the start, in m.

@@ -9,9 +9,9 @@ use crate::search::archive::Archive;
 use crate::search::blocks::Session;
 use crate::search::evaluated::Evaluated;
 use crate::search::grid::{Grid, GridOptions};
-use crate::search::ledger::{Fingerprint, SearchState};
 use crate::search::observe::Observer;
 use crate::search::problem::{Bounds, Problem};
+use crate::search::search_state::{Fingerprint, SearchState};
 use crate::search::stage::Stage;
 use numeric::threads::on_threads;
 
@@ -96,7 +96,7 @@ fn rounds(
     let dimension = problem.dimension();
     let mut grid = Grid::new(bounds, &options.shape, problem.slowest_first());
     let mut increments = grid.increments();
-    let mut seen = Seen::of(&mut grid);
+    let mut visited = VisitedPoints::of(&mut grid);
     let mut front = Front::default();
     let mut archive = Archive::new(dimension, problem.objectives());
     for round in 0..=options.refinements {
@@ -108,7 +108,7 @@ fn rounds(
                 *increment *= 0.5;
             }
             let near = neighbours(bounds, &front.points, &increments);
-            let Some(fresh) = seen.unseen(&near, dimension, session) else {
+            let Some(fresh) = visited.unvisited(&near, dimension, session) else {
                 front.interrupted = true;
                 break;
             };
@@ -154,12 +154,12 @@ const POINTS_PER_LOOK: usize = 4096;
 ///
 /// Millions of grid points are not stored one by one: to fill such a set, to let it grow and to
 /// free it takes longer than an answer to a signal may.
-struct Seen {
+struct VisitedPoints {
     axes: Vec<HashSet<u64>>,
     points: HashSet<Vec<u64>>,
 }
 
-impl Seen {
+impl VisitedPoints {
     /// All points of a grid, of which equal ones are taken out first.
     fn of(grid: &mut Grid) -> Self {
         for axis in &mut grid.axes {
@@ -174,7 +174,7 @@ impl Seen {
     }
 
     /// Points that were not met before, each once; none when stopped meanwhile.
-    fn unseen(
+    fn unvisited(
         &mut self,
         points: &[f64],
         dimension: usize,

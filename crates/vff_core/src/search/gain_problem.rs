@@ -120,7 +120,7 @@ impl GainProblem {
     /// Runs without obstacles of some points along a way: remembered, or made side by side.
     fn nominal(&self, way: usize, points: &[f64], stop: Stop<'_>) -> Result<Vec<Nominal>> {
         let dimension = self.dimension();
-        let key = |set: &[f64]| (way, key_of(self.law.driven().free_gains(), set));
+        let key = |set: &[f64]| (way, key_of(self.law.erased().free_gains(), set));
         let known = self.remembered(points, &key)?;
         let mut missing: Vec<(usize, Key)> = Vec::new();
         let mut sets = Vec::new();
@@ -138,8 +138,8 @@ impl GainProblem {
         let mut fresh = Vec::with_capacity(missing.len());
         for sets in sets.chunks(plan.team(0) * dimension) {
             let way = &self.ways.scenarios[way];
-            let driven = self.law.driven();
-            fresh.extend(nominal_runs(way, driven, sets, &plan, stop.0)?);
+            let law = self.law.erased();
+            fresh.extend(nominal_runs(way, law, sets, &plan, stop.0)?);
         }
         let mut made = missing.iter().zip(&fresh);
         let mut last: Option<(&(usize, Key), &Nominal)> = None;
@@ -197,14 +197,14 @@ impl GainProblem {
         let obstacles = scenario.obstacle_count();
         let mut distances = vec![0.0; obstacles];
         let mut first = 0;
-        for sets in teams(sets, dimension, team, self.law.driven().free_gains()) {
+        for sets in teams(sets, dimension, team, self.law.erased().free_gains()) {
             let group = Group {
                 scenario,
                 points: sets,
                 plan: &plan,
                 interrupted: stop.0,
             };
-            self.law.driven().run(&group, &mut |set, run, distance| {
+            self.law.erased().run(&group, &mut |set, run, distance| {
                 let set = live[first + set];
                 for (obstacle, slot) in distances.iter_mut().enumerate() {
                     *slot = distance(obstacle);
@@ -263,7 +263,7 @@ impl GainProblem {
 
 impl Problem for GainProblem {
     fn dimension(&self) -> usize {
-        self.law.driven().gain_names().len()
+        self.law.erased().gain_names().len()
     }
 
     fn objectives(&self) -> usize {
@@ -276,7 +276,7 @@ impl Problem for GainProblem {
 
     fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
         for set in points.chunks_exact(self.dimension()) {
-            self.law.driven().check_gains(set)?;
+            self.law.erased().check_gains(set)?;
         }
         let count = self.scenarios.len();
         let mut judged = vec![Judged::hopeless(); into.failed.len() * count];
@@ -311,7 +311,7 @@ impl Problem for GainProblem {
     /// The gains that act without obstacles slowest: neighbours then share those runs, and the
     /// lanes of a group behave alike.
     fn slowest_first(&self) -> Vec<usize> {
-        let free = self.law.driven().free_gains();
+        let free = self.law.erased().free_gains();
         let others = (0..self.dimension()).filter(|axis| !free.contains(axis));
         free.iter().copied().chain(others).collect()
     }

@@ -4,11 +4,11 @@
 use numeric::random::Stream;
 
 use crate::error::{Failure, Given, Result};
+use crate::search::ask_tell::Asker;
 use crate::search::blocks::Session;
-use crate::search::ledger::{Fingerprint, SearchState};
-use crate::search::meeting::Asker;
 use crate::search::observe::Observer;
 use crate::search::problem::{Bounds, Candidate, Problem, single_objective};
+use crate::search::search_state::{Fingerprint, SearchState};
 use crate::search::solvers::{Found, Halt, Oracle, cma_es, differential_evolution};
 use crate::search::stage::Stage;
 use numeric::threads::on_threads;

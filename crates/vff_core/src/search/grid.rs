@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use crate::error::{Failure, Given, Result};
 use crate::search::blocks::Session;
 use crate::search::evaluated::Evaluated;
-use crate::search::ledger::Fingerprint;
 use crate::search::problem::{Bounds, Candidate, Problem, Score};
+use crate::search::search_state::Fingerprint;
 use crate::search::stage::Stage;
 
 /// Options of a coarse-to-fine grid.

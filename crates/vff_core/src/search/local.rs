@@ -2,12 +2,12 @@
 
 use crate::error::{Failure, Given, Result};
 use crate::laws::Stop;
+use crate::search::ask_tell::Asker;
 use crate::search::blocks::Session;
 use crate::search::evaluated::Evaluated;
-use crate::search::ledger::{Fingerprint, SearchState};
-use crate::search::meeting::Asker;
 use crate::search::observe::Observer;
 use crate::search::problem::{Bounds, Candidate, Problem, Score, single_objective};
+use crate::search::search_state::{Fingerprint, SearchState};
 use crate::search::solvers::{Found, Halt, Oracle, cobyla, mads};
 use crate::search::stage::Stage;
 use numeric::threads::on_threads;

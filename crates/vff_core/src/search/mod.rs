@@ -6,6 +6,7 @@
 //! and after an interruption that was resumed.
 
 mod archive;
+mod ask_tell;
 mod blocks;
 mod evaluated;
 mod falsify;
@@ -15,13 +16,12 @@ mod gain_options;
 mod gain_problem;
 mod global;
 mod grid;
-mod ledger;
 mod local;
-mod meeting;
 mod observe;
 mod pareto;
 mod problem;
 mod procedure;
+mod search_state;
 mod solvers;
 mod stage;
 
@@ -36,10 +36,10 @@ pub use gain_options::GainOptions;
 pub use gain_problem::GainProblem;
 pub use global::{GlobalMethod, GlobalOptions, GlobalSearch, global_search};
 pub use grid::{GridOptions, Round};
-pub use ledger::SearchState;
 pub use local::{LocalMethod, LocalOptions, LocalSearch, LocalStatus, local_search};
 pub use observe::{Control, Observer, Report};
 pub use pareto::{hypervolume, non_dominated};
 pub use problem::{Bounds, Candidate, Evaluation, FEASIBILITY, Problem, Score};
 pub use procedure::{Search, SearchOptions, search};
+pub use search_state::SearchState;
 pub use stage::Stage;

@@ -1,7 +1,7 @@
 //! Watching a search, stopping it.
 
-use crate::search::ledger::SearchState;
 use crate::search::problem::Candidate;
+use crate::search::search_state::SearchState;
 use crate::search::stage::Stage;
 
 /// How far a search is.

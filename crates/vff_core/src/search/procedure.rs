@@ -3,10 +3,10 @@
 use crate::error::Result;
 use crate::search::blocks::Session;
 use crate::search::grid::{GridOptions, Round, grids};
-use crate::search::ledger::{Fingerprint, SearchState};
 use crate::search::local::{LocalOptions, LocalSearch, local_searches};
 use crate::search::observe::Observer;
 use crate::search::problem::{Bounds, Candidate, Problem, single_objective};
+use crate::search::search_state::{Fingerprint, SearchState};
 use numeric::threads::on_threads;
 
 /// Options of the search.

@@ -11,8 +11,8 @@ use basin::{
     PopulationProgress, SelectedState,
 };
 
+use crate::search::ask_tell::Asker;
 use crate::search::evaluated::Evaluated;
-use crate::search::meeting::Asker;
 use crate::search::problem::{Bounds, Candidate, Score};
 
 /// Why a solver gets no more values.

@@ -92,7 +92,7 @@ impl SafeLaw {
             mass: robot.mass,
             goal: scenario.goal.into(),
             around: Surroundings::new(family, &inner),
-            law: family.law.driven().steering_with(gains, &inner, record)?,
+            law: family.law.erased().steering_with(gains, &inner, record)?,
             trace: Trace {
                 wanted: zero,
                 command: zero,

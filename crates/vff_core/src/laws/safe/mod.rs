@@ -78,24 +78,24 @@ impl LawFamily for SafeNavigation {
     }
 
     fn free_gains(&self) -> &'static [usize] {
-        self.law.driven().free_gains()
+        self.law.erased().free_gains()
     }
 
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
-        self.law.driven().terms(scenario, situation)
+        self.law.erased().terms(scenario, situation)
     }
 
     fn chooses_velocities(&self) -> bool {
-        self.law.driven().chooses_velocities()
+        self.law.erased().chooses_velocities()
     }
 
     fn map(&self) -> Option<&StaticMap> {
-        self.map.as_ref().or_else(|| self.law.driven().map())
+        self.map.as_ref().or_else(|| self.law.erased().map())
     }
 
     fn takes_any_goal(&self) -> bool {
         // Whoever is pushed away makes no progress, and heads for the goal by himself.
-        self.takeover || self.law.driven().takes_any_goal()
+        self.takeover || self.law.erased().takes_any_goal()
     }
 
     fn steers_by_velocity(&self) -> bool {
@@ -103,7 +103,7 @@ impl LawFamily for SafeNavigation {
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {
-        self.law.driven().check_gains(gains)
+        self.law.erased().check_gains(gains)
     }
 
     fn with_gains<R: Real, const RECORD: bool>(

@@ -4,15 +4,15 @@
 //! priced by how far they are from the wanted one, how little they lead to the goal, how soon they
 //! meet somebody, and how near they come to anybody.
 
-mod meeting;
+mod conflict;
 
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 use crate::laws::shield::{Limits, Walls};
 use crate::world::geometry::RobotState;
-use meeting::{Crowd, Meeting, Nearest, Stretch};
+use conflict::{Conflict, Crowd, Nearest, Stretch};
 
-pub use meeting::Passerby;
+pub use conflict::Passerby;
 
 /// Directions of the candidates.
 const DIRECTIONS: usize = 36;
@@ -164,7 +164,7 @@ impl Yielder {
         } = self.settings;
         let mut room = [Passerby::NOBODY; SORTED];
         let crowd = self.near(outlook, &mut room);
-        let alone = self.meeting::<f64>(outlook, &crowd, outlook.wanted);
+        let alone = self.conflict::<f64>(outlook, &crowd, outlook.wanted);
         let free = alone.clearance >= comfort && alone.time >= horizon;
         if free && self.wall_time(outlook, outlook.wanted) >= horizon && verified(wanted) {
             return Some(wanted);
@@ -220,26 +220,26 @@ impl Yielder {
 
     /// First meeting and least clearance of a robot that takes up velocities and keeps them.
     #[inline(always)]
-    fn meeting<R: Real>(
+    fn conflict<R: Real>(
         &self,
         outlook: &Outlook<'_>,
         crowd: &Crowd<'_>,
         velocity: Vector2<R>,
-    ) -> Meeting<R> {
+    ) -> Conflict<R> {
         let never = |_: R| false;
-        self.meeting_unless(outlook, crowd, velocity, never)
-            .unwrap_or_else(|| Meeting::never(self.settings.horizon))
+        self.conflict_unless(outlook, crowd, velocity, never)
+            .unwrap_or_else(|| Conflict::never(self.settings.horizon))
     }
 
     /// The same, or nothing as soon as the first meeting so far makes the answer useless.
     #[inline(always)]
-    fn meeting_unless<R: Real>(
+    fn conflict_unless<R: Real>(
         &self,
         outlook: &Outlook<'_>,
         crowd: &Crowd<'_>,
         velocity: Vector2<R>,
         useless: impl Fn(R) -> bool,
-    ) -> Option<Meeting<R>> {
+    ) -> Option<Conflict<R>> {
         let Yielding {
             clearance, horizon, ..
         } = self.settings;
@@ -282,7 +282,7 @@ impl Yielder {
                 return None;
             }
         }
-        Some(Meeting {
+        Some(Conflict {
             time: first_time,
             clearance: nearest.clearance(),
         })
@@ -359,15 +359,15 @@ impl Yielder {
 
     /// Price of meeting and passing others.
     #[inline(always)]
-    fn price<R: Real>(&self, meeting: &Meeting<R>) -> R {
+    fn price<R: Real>(&self, conflict: &Conflict<R>) -> R {
         let Yielding {
             distance_weight,
             comfort,
             ..
         } = self.settings;
         let one = R::splat(1.0);
-        let soon = self.haste(meeting.time);
-        let share = meeting.clearance.max(R::zero()) * R::splat(1.0 / comfort);
+        let soon = self.haste(conflict.time);
+        let share = conflict.clearance.max(R::zero()) * R::splat(1.0 / comfort);
         let short = (one - share).max(R::zero());
         soon + short * short * R::splat(distance_weight)
     }
@@ -398,10 +398,11 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
             }
             // Whom they have still to meet only adds to the price, too.
             let useless = |time| !(aims + yielder.haste(time)).lt(Lanes::splat(best)).any();
-            let Some(meeting) = yielder.meeting_unless(outlook, &crowd, candidates, useless) else {
+            let Some(conflict) = yielder.conflict_unless(outlook, &crowd, candidates, useless)
+            else {
                 continue;
             };
-            let prices = aims + yielder.price(&meeting);
+            let prices = aims + yielder.price(&conflict);
             let mut tried = prices.lt(Lanes::splat(best));
             while let Some(lane) = cheapest(prices, tried) {
                 tried = tried.without(lane);
@@ -412,11 +413,11 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
                 }
                 if !outlook.walls.is_empty() {
                     let wall = yielder.wall_time(outlook, velocity);
-                    let meeting = Meeting {
-                        time: meeting.time.lane(lane).min(wall),
-                        clearance: meeting.clearance.lane(lane),
+                    let conflict = Conflict {
+                        time: conflict.time.lane(lane).min(wall),
+                        clearance: conflict.clearance.lane(lane),
                     };
-                    price = aims.lane(lane) + yielder.price(&meeting);
+                    price = aims.lane(lane) + yielder.price(&conflict);
                 }
                 let command = yielder.limits.clipped(before, velocity);
                 if price < best && (self.verified)(command) {

@@ -60,7 +60,7 @@ fn it_gives_way_to_somebody_head_on() {
 }
 
 #[test]
-fn meetings_are_those_of_small_steps() {
+fn conflicts_are_those_of_small_steps() {
     let yielder = Yielder::new(Yielding::default(), limits()).unwrap();
     let mut seen = outlook(&[]);
     seen.robot.velocity = Vector2::new(-0.4, 0.9);
@@ -75,7 +75,7 @@ fn meetings_are_those_of_small_steps() {
             people: &people,
             ..seen
         };
-        let meeting = yielder.meeting::<f64>(&outlook, &everybody(&people), target);
+        let conflict = yielder.conflict::<f64>(&outlook, &everybody(&people), target);
         let ramp = (target - seen.robot.velocity).norm() / 10.0;
         let (mut first, mut least) = (5.0_f64, f64::INFINITY);
         for step in 0..=50_000 {
@@ -89,10 +89,10 @@ fn meetings_are_those_of_small_steps() {
                 first = first.min(time);
             }
         }
-        assert!((meeting.time - first).abs() < 2e-4, "{meeting:?} {first}");
+        assert!((conflict.time - first).abs() < 2e-4, "{conflict:?} {first}");
         assert!(
-            (meeting.clearance - least).abs() < 2e-4,
-            "{meeting:?} {least}"
+            (conflict.clearance - least).abs() < 2e-4,
+            "{conflict:?} {least}"
         );
     }
 }
@@ -107,10 +107,10 @@ fn lanes_price_as_single_velocities_do() {
     let (outlook, crowd) = (outlook(&people), everybody(&people));
     for chunk in 0..CHUNKS {
         let candidates = yielder.candidates(&outlook, chunk);
-        let together = yielder.price(&yielder.meeting(&outlook, &crowd, candidates));
+        let together = yielder.price(&yielder.conflict(&outlook, &crowd, candidates));
         for lane in 0..WIDTH {
             let one = Vector2::from(candidates.lane(lane));
-            let alone = yielder.price(&yielder.meeting::<f64>(&outlook, &crowd, one));
+            let alone = yielder.price(&yielder.conflict::<f64>(&outlook, &crowd, one));
             assert_eq!(alone.to_bits(), together.lane(lane).to_bits());
         }
     }
@@ -135,8 +135,8 @@ fn who_cannot_be_met_has_no_part_in_any_price() {
         all += people.len();
         for chunk in 0..CHUNKS {
             let candidates = yielder.candidates(&whole, chunk);
-            let one = yielder.price(&yielder.meeting(&whole, &everybody(&people), candidates));
-            let other = yielder.price(&yielder.meeting(&whole, &near, candidates));
+            let one = yielder.price(&yielder.conflict(&whole, &everybody(&people), candidates));
+            let other = yielder.price(&yielder.conflict(&whole, &near, candidates));
             for lane in 0..WIDTH {
                 assert_eq!(one.lane(lane).to_bits(), other.lane(lane).to_bits());
             }
@@ -155,7 +155,7 @@ fn cheapest_of_all(
     let crowd = everybody(outlook.people);
     let before = outlook.robot.velocity;
     let wanted = yielder.limits.clipped(before, outlook.wanted);
-    let alone = yielder.meeting::<f64>(outlook, &crowd, outlook.wanted);
+    let alone = yielder.conflict::<f64>(outlook, &crowd, outlook.wanted);
     let Yielding {
         horizon, comfort, ..
     } = yielder.settings;
@@ -166,8 +166,8 @@ fn cheapest_of_all(
     for index in 0..2 + DIRECTIONS * SPEEDS {
         let candidates = yielder.candidates(outlook, index / WIDTH);
         let velocity = Vector2::from(candidates.lane(index % WIDTH));
-        let meeting = yielder.meeting::<f64>(outlook, &crowd, velocity);
-        let price = yielder.aims(outlook, velocity) + yielder.price(&meeting);
+        let conflict = yielder.conflict::<f64>(outlook, &crowd, velocity);
+        let price = yielder.aims(outlook, velocity) + yielder.price(&conflict);
         let command = yielder.limits.clipped(before, velocity);
         if found.is_none_or(|(least, _)| price < least) && verified(command) {
             found = Some((price, command));

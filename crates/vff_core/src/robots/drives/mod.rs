@@ -12,7 +12,7 @@ pub(crate) use limited_omni::{Course, LimitedOmni, OmniLimits};
 pub(crate) use omni::OmniRobot;
 pub(crate) use point_mass::{IdealHolonomic, PointMass};
 pub(crate) use two_wheels::TwoWheels;
-pub use two_wheels::{PoseFusion, Steered};
+pub use two_wheels::{PoseFusion, SteeringLaw};
 pub(crate) use velocity::{twist_of, velocity_of};
 pub(crate) use virtual_velocity::VirtualVelocity;
 

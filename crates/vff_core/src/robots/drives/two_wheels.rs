@@ -15,7 +15,7 @@ use crate::world::geometry::RobotState;
 
 /// How a two-wheel robot is steered.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Steered {
+pub enum SteeringLaw {
     /// It follows the point mass that the law drives.
     Following(Tracking),
     /// It turns toward the force of the law.
@@ -24,7 +24,7 @@ pub enum Steered {
     Velocity,
 }
 
-impl Default for Steered {
+impl Default for SteeringLaw {
     fn default() -> Self {
         Self::Following(Tracking::default())
     }
@@ -99,7 +99,7 @@ impl TwoWheels {
         start: &Start,
         robot: &DifferentialDriveRobot,
         (wheels, slip): (Option<&[WheelDrive]>, Slip),
-        (steered, fusion): (&Steered, PoseFusion),
+        (steering_law, fusion): (&SteeringLaw, PoseFusion),
     ) -> Result<Self> {
         let limits = DifferentialLimits::from(robot);
         let pose = Pose {
@@ -111,16 +111,16 @@ impl TwoWheels {
             resistance: robot.wheels.resistance,
         };
         let driven = |drives| DrivenWheels::new(drives, slip, size, start.step);
-        let steering = match steered {
-            Steered::Following(tracking) => {
+        let steering = match steering_law {
+            SteeringLaw::Following(tracking) => {
                 let tracking = tracking.checked()?;
                 Steering::Follow(Box::new(Tracker::new(&tracking, &limits, start.step)))
             }
-            Steered::Torque(law) => {
+            SteeringLaw::Torque(law) => {
                 let law = law.checked()?;
                 Steering::Torque(TorqueSteering::new(&law, robot, &limits, start.step))
             }
-            Steered::Velocity => Steering::Velocity(VelocitySteering::new(start)),
+            SteeringLaw::Velocity => Steering::Velocity(VelocitySteering::new(start)),
         };
         Ok(Self {
             ideal: robot.wheels,

@@ -17,8 +17,8 @@ use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
 use crate::run::any_law::{AnyLaw, Steering};
-use crate::run::built::sight::{Seen, Sight};
-use crate::run::built::{Built, clock_of, robot_under};
+use crate::run::as_built::sight::{SensedState, Sight};
+use crate::run::as_built::{AsBuilt, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::navigation::Known;
 use crate::run::options::Clock;
@@ -171,7 +171,7 @@ struct PursuitParts<'a> {
 pub fn pursue(
     scenario: &Scenario,
     law: &AnyLaw,
-    built: &Built,
+    built: &AsBuilt,
     pursuer: &Pursuer,
     rows: Option<&mut Pursued>,
     interrupted: Interrupted<'_>,
@@ -191,7 +191,7 @@ pub fn pursue(
         pursuer,
         interval: clock.interval,
         robot,
-        law: law.driven().steering(sight.known(scenario))?,
+        law: law.erased().steering(sight.known(scenario))?,
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
         maps: Maps::of(scenario, law.map(), &built.sensors),
         sight,
@@ -357,7 +357,7 @@ impl Parts for PursuitParts<'_> {
         if let (Some(state), Some(body)) = (measured, self.seen.get_mut(last)) {
             body.state = state;
         }
-        self.known = Known::of(&Seen {
+        self.known = Known::of(&SensedState {
             bodies: &self.seen,
             ..seen
         });

@@ -82,7 +82,7 @@ fn check_simple(edges: &[Capsule]) -> Result<()> {
             |bounds| (around.distance_squared_of(bounds) == 0.0).then_some(0.0),
             |_, other, limit| {
                 if meets(edge, other) {
-                    crossed = Some(meeting(edge, other));
+                    crossed = Some(crossing_of(edge, other));
                 }
                 limit
             },
@@ -113,7 +113,7 @@ fn meets(edge: &Capsule, other: &Capsule) -> bool {
     shared.0.perp(&shared.1) == 0.0 && shared.0.dot(&shared.1) > 0.0
 }
 
-fn meeting(edge: &Capsule, other: &Capsule) -> Vector2<f64> {
+fn crossing_of(edge: &Capsule, other: &Capsule) -> Vector2<f64> {
     let (along, across) = (edge.to - edge.from, other.to - other.from);
     let turn = along.perp(&across);
     if turn == 0.0 {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::robots::drives::{Fix, Reading};
-use crate::run::built::Built;
+use crate::run::as_built::AsBuilt;
 use crate::sensing::noisy::NoisyPositions;
 use crate::sensing::sensor::{Sensor, Truth};
 use crate::world::frame::Frame;
@@ -13,7 +13,7 @@ use crate::world::motion::BodyState;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// What the controller knows at a sample.
-pub(crate) struct Seen<'a> {
+pub(crate) struct SensedState<'a> {
     /// State of the robot.
     pub robot: RobotState<f64>,
     /// The obstacles.
@@ -22,7 +22,7 @@ pub(crate) struct Seen<'a> {
     pub fix: Option<Fix>,
 }
 
-impl Seen<'_> {
+impl SensedState<'_> {
     /// Whether the robot is outside every active region.
     pub fn clear(&self) -> bool {
         self.bodies.iter().all(|body| {
@@ -46,7 +46,7 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
-    pub fn new(scenario: &Scenario, built: &Built, bodies: &[Body]) -> Result<Self> {
+    pub fn new(scenario: &Scenario, built: &AsBuilt, bodies: &[Body]) -> Result<Self> {
         let sensors = sensors_of(scenario, built, bodies)?;
         let mut obstacles: Vec<PlacedObstacle> = Vec::new();
         let mut told = Vec::with_capacity(sensors.len());
@@ -104,7 +104,7 @@ impl Sight {
         reading: &Reading,
         heading: f64,
         actual: &'a [Body],
-    ) -> Seen<'a> {
+    ) -> SensedState<'a> {
         let truth = truth_of(time, reading, actual);
         let mut located = None;
         for sensor in &mut self.sensors {
@@ -118,7 +118,7 @@ impl Sight {
             sensor.observe(&truth, &known, &mut self.seen[range.clone()]);
             sensor.date(time, &mut self.ages[range.clone()]);
         }
-        Seen {
+        SensedState {
             robot,
             bodies: self.bodies(actual),
             fix: located.map(|found| Fix {
@@ -130,7 +130,11 @@ impl Sight {
 }
 
 /// The sensors that a robot has in a scenario.
-fn sensors_of(scenario: &Scenario, built: &Built, bodies: &[Body]) -> Result<Vec<Box<dyn Sensor>>> {
+fn sensors_of(
+    scenario: &Scenario,
+    built: &AsBuilt,
+    bodies: &[Body],
+) -> Result<Vec<Box<dyn Sensor>>> {
     let mark = built.fusion.mark;
     let mut sensors: Vec<Box<dyn Sensor>> = Vec::new();
     if let Some(noisy) = NoisyPositions::new(scenario, built.step, mark, bodies) {

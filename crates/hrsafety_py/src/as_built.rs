@@ -3,9 +3,9 @@
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::built::{
-    Built, BuiltTrajectory, Histories, ManyOptions, PoseFusion, Steered, evaluate_built,
-    run_many_built, simulate_built,
+use vff_core::run::as_built::{
+    self, AsBuiltTrajectory, Histories, ManyOptions, PoseFusion, SteeringLaw, evaluate_as_built,
+    run_many_as_built, simulate_as_built,
 };
 use vff_core::run::{AnyLaw, Contact, RunSummary};
 use vff_core::world::scenario;
@@ -25,7 +25,7 @@ use crate::wheels::{OmniKinematics, Slip, WheelDrive};
 
 /// How a robot is built.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct AsBuilt(Built);
+pub struct AsBuilt(as_built::AsBuilt);
 
 #[pymethods]
 impl AsBuilt {
@@ -38,9 +38,9 @@ impl AsBuilt {
         let slip: PyRef<'_, Slip> = given.take("slip")?;
         let tracking: Bound<'_, PyAny> = given.take("tracking")?;
         let sensors: Vec<PyRef<'_, Sensor>> = given.take("sensors")?;
-        let steered = match tracking.cast::<Tracking>() {
-            Ok(law) => Steered::Following(law.get().0),
-            Err(_) => Steered::Torque(tracking.cast::<VirtualTorque>()?.get().0),
+        let steering_law = match tracking.cast::<Tracking>() {
+            Ok(law) => SteeringLaw::Following(law.get().0),
+            Err(_) => SteeringLaw::Torque(tracking.cast::<VirtualTorque>()?.get().0),
         };
         let fusion = PoseFusion {
             position: given.take("position_share")?,
@@ -48,22 +48,22 @@ impl AsBuilt {
             mark: given.take("mark_distance")?,
         };
         given.done()?;
-        Ok(Self(Built {
+        Ok(Self(as_built::AsBuilt {
             wheels: wheels.map(|wheels| wheels.iter().map(|wheel| *wheel.core()).collect()),
             omni: kinematics.0,
             slip: slip.0,
-            steered,
+            steering_law,
             sensors: sensors.iter().map(|sensor| sensor.0.clone()).collect(),
             fusion,
-            ..Built::default()
+            ..as_built::AsBuilt::default()
         }))
     }
 }
 
 impl AsBuilt {
     /// It with the options of a run.
-    pub fn run(&self, step: f64, stop_on_contact: bool) -> Built {
-        Built {
+    pub fn run(&self, step: f64, stop_on_contact: bool) -> as_built::AsBuilt {
+        as_built::AsBuilt {
             step,
             stop_on_contact,
             ..self.0.clone()
@@ -72,11 +72,11 @@ impl AsBuilt {
 }
 
 /// Fields of a run of a robot as built.
-pub fn built_fields<'py>(
+pub fn as_built_fields<'py>(
     py: Python<'py>,
     scenario: &scenario::Scenario,
     summary: RunSummary,
-    columns: BuiltTrajectory,
+    columns: AsBuiltTrajectory,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (rows, wheels) = (columns.heading.len(), columns.wheels);
     let all = trajectory_fields(py, scenario, summary, columns.motion)?;
@@ -94,7 +94,7 @@ pub fn built_fields<'py>(
 /// One run: fields of a trajectory.
 #[pyfunction]
 #[pyo3(signature = (scenario, law, built, *, step, stop_on_contact))]
-pub fn built_simulate<'py>(
+pub fn as_built_simulate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     law: &Law,
@@ -104,15 +104,15 @@ pub fn built_simulate<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let built = built.run(step, stop_on_contact);
     let (summary, columns) = watched_law(py, (law, Some(1)), Report::none(), |control| {
-        simulate_built(&scenario.0, &law.any, &built, &|| control.interrupted())
+        simulate_as_built(&scenario.0, &law.any, &built, &|| control.interrupted())
     })?;
-    built_fields(py, &scenario.0, summary, columns)
+    as_built_fields(py, &scenario.0, summary, columns)
 }
 
 /// Score of a run: its parts, the run and the nominal run.
 #[pyfunction]
 #[pyo3(signature = (scenario, law, built, weights, *, step))]
-pub fn built_evaluate<'py>(
+pub fn as_built_evaluate<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     law: &Law,
@@ -124,7 +124,7 @@ pub fn built_evaluate<'py>(
     let weights = weights_of(weights);
     let (score, run, nominal) = watched_law(py, (law, Some(1)), Report::none(), |control| {
         let interrupted = || control.interrupted();
-        evaluate_built(&scenario.0, &law.any, &built, weights, &interrupted)
+        evaluate_as_built(&scenario.0, &law.any, &built, weights, &interrupted)
     })?;
     let scores = Fields::new(py);
     scores.value("total", score.total)?;
@@ -133,15 +133,15 @@ pub fn built_evaluate<'py>(
     scores.value("energy_saving", score.energy_saving)?;
     Ok((
         scores.finish(),
-        built_fields(py, &scenario.0, run.0, run.1)?,
-        built_fields(py, &scenario.0.nominal(), nominal.0, nominal.1)?,
+        as_built_fields(py, &scenario.0, run.0, run.1)?,
+        as_built_fields(py, &scenario.0.nominal(), nominal.0, nominal.1)?,
     ))
 }
 
 /// Runs of every law in every scenario: columns of a batch, and histories padded with NaN if asked for.
 #[pyfunction]
 #[pyo3(signature = (scenarios, laws, gains, built, weights, **given))]
-pub fn built_many<'py>(
+pub fn as_built_many<'py>(
     py: Python<'py>,
     scenarios: Scenes,
     laws: Vec<PyRef<'py, Law>>,
@@ -171,7 +171,7 @@ pub fn built_many<'py>(
     let runs = watched_law(py, (lead, options.threads), report, |control| {
         let interrupted = || control.interrupted();
         let count = |runs| control.count(runs);
-        run_many_built(&scenarios, &driven, &built, &options, &interrupted, &count)
+        run_many_as_built(&scenarios, &driven, &built, &options, &interrupted, &count)
     })?;
     let obstacles = runs.table.obstacles;
     let all = columns(py, (&points, gains.shape()[1]), runs.table)?;

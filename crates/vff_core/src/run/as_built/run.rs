@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::robots::drives::{IdealHolonomic, MotorDrive, OmniRobot, TwoWheels};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::built::history::BuiltTrajectory;
-use crate::run::built::{Built, Steered};
+use crate::run::as_built::history::AsBuiltTrajectory;
+use crate::run::as_built::{AsBuilt, SteeringLaw};
 use crate::run::episode::Episode;
 use crate::run::metrics::{Performance, Weights, performance};
 use crate::run::options::{Clock, Options};
@@ -19,12 +19,12 @@ use crate::world::scenario::Scenario;
 /// # Errors
 /// An option is out of range, the law cannot work in the scenario, the state became non-finite,
 /// or the caller asked to stop.
-pub fn simulate_built(
+pub fn simulate_as_built(
     scenario: &Scenario,
     law: &AnyLaw,
-    built: &Built,
+    built: &AsBuilt,
     interrupted: Interrupted<'_>,
-) -> Result<(RunSummary, BuiltTrajectory)> {
+) -> Result<(RunSummary, AsBuiltTrajectory)> {
     let episode = Episode::new(Arc::new(scenario.clone()), Some(law), built)?;
     let (summary, listener) = episode.completed(interrupted)?;
     Ok((summary, listener.finish()))
@@ -33,23 +33,23 @@ pub fn simulate_built(
 /// A run of a law, its run without obstacles and without noise, and the score.
 pub type Scored = (
     Performance,
-    (RunSummary, BuiltTrajectory),
-    (RunSummary, BuiltTrajectory),
+    (RunSummary, AsBuiltTrajectory),
+    (RunSummary, AsBuiltTrajectory),
 );
 
 /// One run and its score against the run without obstacles.
 ///
 /// # Errors
-/// As [`simulate_built`].
-pub fn evaluate_built(
+/// As [`simulate_as_built`].
+pub fn evaluate_as_built(
     scenario: &Scenario,
     law: &AnyLaw,
-    built: &Built,
+    built: &AsBuilt,
     weights: Weights,
     interrupted: Interrupted<'_>,
 ) -> Result<Scored> {
-    let run = simulate_built(scenario, law, built, interrupted)?;
-    let nominal = simulate_built(&scenario.nominal(), law, &built.seeing_all(), interrupted)?;
+    let run = simulate_as_built(scenario, law, built, interrupted)?;
+    let nominal = simulate_as_built(&scenario.nominal(), law, &built.seeing_all(), interrupted)?;
     let score = performance(scenario, &run.0, &nominal.0, weights);
     Ok((score, run, nominal))
 }
@@ -58,15 +58,15 @@ pub fn evaluate_built(
 /// it by.
 pub(crate) fn robot_under(
     scenario: &Scenario,
-    built: &Built,
+    built: &AsBuilt,
     law: Option<&AnyLaw>,
 ) -> Result<Box<dyn MotorDrive>> {
-    if scenario.differential.is_some() && law.is_some_and(|law| law.driven().steers_by_velocity()) {
-        let steered = Steered::Velocity;
+    if scenario.differential.is_some() && law.is_some_and(|law| law.erased().steers_by_velocity()) {
+        let steering_law = SteeringLaw::Velocity;
         return robot_of(
             scenario,
-            &Built {
-                steered,
+            &AsBuilt {
+                steering_law,
                 ..built.clone()
             },
         );
@@ -75,7 +75,7 @@ pub(crate) fn robot_under(
 }
 
 /// The robot of a scenario, at its start.
-fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn MotorDrive>> {
+fn robot_of(scenario: &Scenario, built: &AsBuilt) -> Result<Box<dyn MotorDrive>> {
     built.suiting(scenario)?;
     let start = built.start_in(scenario);
     let wheels = built.wheels.as_deref();
@@ -84,7 +84,7 @@ fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn MotorDrive>> {
             &start,
             robot,
             (wheels, built.slip),
-            (&built.steered, built.fusion),
+            (&built.steering_law, built.fusion),
         )?),
         (None, Some(drives)) => Box::new(OmniRobot::new(&start, drives, (built.omni, built.slip))?),
         (None, None) => Box::new(IdealHolonomic::new(&start)),
@@ -92,7 +92,7 @@ fn robot_of(scenario: &Scenario, built: &Built) -> Result<Box<dyn MotorDrive>> {
 }
 
 /// Steps of a run.
-pub(crate) fn clock_of(scenario: &Scenario, built: &Built) -> Result<Clock> {
+pub(crate) fn clock_of(scenario: &Scenario, built: &AsBuilt) -> Result<Clock> {
     Options {
         step: built.step,
         ..Options::default()

@@ -10,12 +10,12 @@ mod many;
 mod run;
 pub(super) mod sight;
 
-pub use crate::robots::drives::{PoseFusion, Steered};
-pub use history::BuiltTrajectory;
-pub use many::{Histories, ManyOptions, ManyRuns, run_many_built};
+pub use crate::robots::drives::{PoseFusion, SteeringLaw};
+pub use history::AsBuiltTrajectory;
+pub use many::{Histories, ManyOptions, ManyRuns, run_many_as_built};
 pub(super) use run::clock_of;
 pub(crate) use run::robot_under;
-pub use run::{evaluate_built, simulate_built};
+pub use run::{evaluate_as_built, simulate_as_built};
 
 use crate::error::{Failure, Given, Result, positive};
 use crate::robots::drives::Start;
@@ -25,7 +25,7 @@ use crate::world::scenario::Scenario;
 
 /// How a robot is built, beside what its scenario says.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Built {
+pub struct AsBuilt {
     /// Motion step in s, at which a two-wheel robot is also steered.
     pub step: f64,
     /// End the run at the first contact.
@@ -37,7 +37,7 @@ pub struct Built {
     /// Slip of wheels with controllers.
     pub slip: Slip,
     /// How a two-wheel robot is steered.
-    pub steered: Steered,
+    pub steering_law: SteeringLaw,
     /// Sensors. What one of them tells of, the robot or the obstacles, is known by sensors alone;
     /// what none tells of is known exactly.
     pub sensors: Vec<SensorOptions>,
@@ -45,7 +45,7 @@ pub struct Built {
     pub fusion: PoseFusion,
 }
 
-impl Default for Built {
+impl Default for AsBuilt {
     /// Ideal wheels, and what the scenario measures.
     fn default() -> Self {
         Self {
@@ -54,14 +54,14 @@ impl Default for Built {
             wheels: None,
             omni: OmniKinematics::default(),
             slip: Slip::default(),
-            steered: Steered::default(),
+            steering_law: SteeringLaw::default(),
             sensors: Vec::new(),
             fusion: PoseFusion::default(),
         }
     }
 }
 
-impl Built {
+impl AsBuilt {
     /// Returns the options if they suit a scenario.
     ///
     /// # Errors

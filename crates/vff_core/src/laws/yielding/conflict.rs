@@ -102,14 +102,14 @@ impl<R: Real> Nearest<R> {
 
 /// First meeting and least clearance of velocities side by side.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting<R> {
+pub(super) struct Conflict<R> {
     /// When surfaces come nearer than `y`, in s; the horizon if never.
     pub time: R,
     /// Least clearance within the horizon in m.
     pub clearance: R,
 }
 
-impl<R: Real> Meeting<R> {
+impl<R: Real> Conflict<R> {
     /// Nobody is met within a horizon in s.
     pub(super) fn never(horizon: f64) -> Self {
         Self {

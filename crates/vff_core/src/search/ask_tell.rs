@@ -11,7 +11,7 @@ enum Message {
     Done,
 }
 
-/// A solver's line to the meeting.
+/// What a solver asks with.
 pub(crate) struct Asker {
     who: usize,
     /// Answers from an earlier session, used up first.
@@ -35,7 +35,7 @@ impl Asker {
 
 impl Drop for Asker {
     fn drop(&mut self) {
-        // The meeting may be over already.
+        // Whoever answers may have ended already.
         self.question.send(Message::Done).ok();
     }
 }
@@ -45,7 +45,7 @@ impl Drop for Asker {
 /// for each, or `None` to stop them.
 ///
 /// A solver that panics has no result.
-pub(crate) fn meet<T: Send>(
+pub(crate) fn answer_together<T: Send>(
     known: Vec<Evaluated>,
     solver: &(impl Fn(usize, &mut Asker) -> T + Sync),
     mut answer: impl FnMut(&[(usize, Vec<f64>)]) -> Option<Vec<Evaluated>>,
@@ -115,7 +115,7 @@ mod tests {
                 .sum()
         };
         let mut sizes = Vec::new();
-        let results = meet(vec![Evaluated::default(); 3], &solver, |asked| {
+        let results = answer_together(vec![Evaluated::default(); 3], &solver, |asked| {
             sizes.push(asked.len());
             assert!(asked.is_sorted_by_key(|(who, _)| *who));
             Some(values(asked))
@@ -132,7 +132,7 @@ mod tests {
             asker.ask(vec![2.0]).map(|answer| answer.values[0])
         };
         let known = vec![Evaluated::default(); 3];
-        let results = meet(known, &solver, |asked| Some(values(asked)));
+        let results = answer_together(known, &solver, |asked| Some(values(asked)));
         assert_eq!(results, [Some(Some(20.0)), None, Some(Some(20.0))]);
     }
 
@@ -140,11 +140,11 @@ mod tests {
     fn nobody_is_answered_after_a_stop() {
         let solver =
             |_: usize, asker: &mut Asker| (0..5).filter(|_| asker.ask(vec![1.0]).is_some()).count();
-        let mut meetings = 0;
-        let results = meet(vec![Evaluated::default(); 2], &solver, |asked| {
-            meetings += 1;
-            (meetings < 3).then(|| values(asked))
+        let mut answers = 0;
+        let results = answer_together(vec![Evaluated::default(); 2], &solver, |asked| {
+            answers += 1;
+            (answers < 3).then(|| values(asked))
         });
-        assert_eq!((results, meetings), (vec![Some(2); 2], 3));
+        assert_eq!((results, answers), (vec![Some(2); 2], 3));
     }
 }

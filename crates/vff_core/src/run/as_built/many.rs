@@ -7,9 +7,9 @@ use crate::lanes::Planar;
 use crate::robots::drives::Reading;
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::built::Built;
-use crate::run::built::history::Listener;
-use crate::run::built::run::clock_of;
+use crate::run::as_built::AsBuilt;
+use crate::run::as_built::history::Listener;
+use crate::run::as_built::run::clock_of;
 use crate::run::episode::Episode;
 use crate::run::metrics::{Nominal, Weights, score};
 use crate::run::nominal::Ways;
@@ -54,9 +54,9 @@ impl Sampled {
 }
 
 /// Keeps nothing.
-struct Deaf;
+struct NoListener;
 
-impl Listener for Deaf {}
+impl Listener for NoListener {}
 
 impl Listener for Sampled {
     fn row(&mut self, time: f64, reading: &Reading, _energy: f64, bodies: &[Body]) {
@@ -72,7 +72,7 @@ impl Listener for Sampled {
     }
 }
 
-/// Options of many runs, beside those of [`Built`].
+/// Options of many runs, beside those of [`AsBuilt`].
 #[derive(Clone, Copy, Debug)]
 pub struct ManyOptions {
     /// Weights of the criterion.
@@ -100,10 +100,10 @@ pub struct ManyRuns {
 /// # Errors
 /// There is no scenario or no law, an option is out of range, a law cannot work in a scenario, a state
 /// became non-finite, or the caller asked to stop.
-pub fn run_many_built(
+pub fn run_many_as_built(
     scenarios: &[Scenario],
     laws: &[AnyLaw],
-    built: &Built,
+    built: &AsBuilt,
     options: &ManyOptions,
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
@@ -119,7 +119,7 @@ pub fn run_many_built(
     on_threads(options.threads, || many.run(progress))
 }
 
-fn check(scenarios: &[Scenario], laws: &[AnyLaw], built: &Built) -> Result<()> {
+fn check(scenarios: &[Scenario], laws: &[AnyLaw], built: &AsBuilt) -> Result<()> {
     let empty = || Given::Found("an empty list".into());
     if scenarios.is_empty() {
         let rule = "hold at least one scenario";
@@ -141,7 +141,7 @@ fn check(scenarios: &[Scenario], laws: &[AnyLaw], built: &Built) -> Result<()> {
 struct Many<'a> {
     scenarios: &'a [Scenario],
     laws: &'a [AnyLaw],
-    built: &'a Built,
+    built: &'a AsBuilt,
     options: &'a ManyOptions,
     interrupted: Interrupted<'a>,
 }
@@ -153,7 +153,7 @@ impl Many<'_> {
         let along = ways.scenarios.len();
         let nominal = try_map(self.laws.len() * along, |index| {
             let way = &ways.scenarios[index % along];
-            self.one(way, index / along, &ideal, Deaf)
+            self.one(way, index / along, &ideal, NoListener)
                 .map(|(run, _)| Nominal {
                     arrival_time: run.arrival_time.unwrap_or(f64::NAN),
                     energy: run.energy,
@@ -173,7 +173,7 @@ impl Many<'_> {
 
     fn kept(&self, scenario: &Scenario, law: usize) -> Result<(RunSummary, Histories)> {
         if !self.options.histories {
-            let (summary, _) = self.one(scenario, law, self.built, Deaf)?;
+            let (summary, _) = self.one(scenario, law, self.built, NoListener)?;
             return Ok((summary, Histories::default()));
         }
         let sampled = Sampled {
@@ -189,11 +189,11 @@ impl Many<'_> {
         &self,
         scenario: &Scenario,
         law: usize,
-        built: &Built,
+        built: &AsBuilt,
         listener: L,
     ) -> Result<(RunSummary, L)> {
         let scenario = Arc::new(scenario.clone());
-        Episode::heard(scenario, Some(&self.laws[law]), built, |_, _| listener)?
+        Episode::with_listener(scenario, Some(&self.laws[law]), built, |_, _| listener)?
             .completed(self.interrupted)
     }
 

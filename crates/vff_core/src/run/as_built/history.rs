@@ -8,7 +8,7 @@ use crate::world::scenario::Scenario;
 
 /// Columns of a recorded run; vectors of the plane and wheels are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct BuiltTrajectory {
+pub struct AsBuiltTrajectory {
     /// Columns of any run; its motor currents are those of ideal wheels and not used.
     pub motion: Trajectory,
     /// Number of wheels.
@@ -45,7 +45,7 @@ pub struct Everything {
     motion: TrajectoryRecorder,
     command: Command<f64>,
     seen: [f64; 2],
-    columns: BuiltTrajectory,
+    columns: AsBuiltTrajectory,
 }
 
 impl Everything {
@@ -58,16 +58,16 @@ impl Everything {
                 lyapunov: f64::NAN,
             },
             seen: scenario.start,
-            columns: BuiltTrajectory {
+            columns: AsBuiltTrajectory {
                 wheels,
-                ..BuiltTrajectory::default()
+                ..AsBuiltTrajectory::default()
             },
         }
     }
 
     /// The columns.
-    pub fn finish(self) -> BuiltTrajectory {
-        BuiltTrajectory {
+    pub fn finish(self) -> AsBuiltTrajectory {
+        AsBuiltTrajectory {
             motion: self.motion.finish(),
             ..self.columns
         }
