@@ -10,8 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hrsafety.reproduce import gain_claims, gain_deviations, gain_tables
-from hrsafety.reproduce.gain_runs import gain_runs
+from hrsafety.reproduce.gain import claims as gain_claims
+from hrsafety.reproduce.gain import deviations as gain_deviations
+from hrsafety.reproduce.gain import tables as gain_tables
+from hrsafety.reproduce.gain.runs import gain_runs
 from page_tables import DOCS, line, print_or_write
 
 PAGE = DOCS / "validation.md"

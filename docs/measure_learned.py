@@ -15,7 +15,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.crowd.world import World
-from hrsafety.navigation.shield_warnings import Motion
+from hrsafety.navigation.warnings.shields import Motion
 from page_tables import DOCS, head, line, percent, print_or_write
 
 sys.path.insert(0, str(DOCS.parent / "examples" / "ppo"))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hrsafety import impact
-from hrsafety.reproduce.impact_cases import FOAM_OF_FIGURES, printed_metrics, simulations
+from hrsafety.reproduce.impact.cases import FOAM_OF_FIGURES, printed_metrics, simulations
 from reference.impact_modes import modal_peaks
 
 EXACT = 1e-12  # a few operations apart

@@ -11,9 +11,11 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.reproduce import gain_claims, gain_deviations, gain_tables
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.gain_runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns, gain_runs
+from hrsafety.reproduce.gain import claims as gain_claims
+from hrsafety.reproduce.gain import deviations as gain_deviations
+from hrsafety.reproduce.gain import tables as gain_tables
+from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns, gain_runs
 
 TENTH = 0.05  # figures are given to 0.1 %
 WHOLE = 0.5  # figures are given to 1 %

@@ -4,20 +4,11 @@
 // Whatever comes from Python is converted, or borrowed by a guard that is itself owned.
 #![allow(clippy::needless_pass_by_value)]
 
-mod arm;
 mod arrays;
-mod as_built;
-mod batch;
 mod contact;
-mod controller;
 mod crowd;
-mod crowd_metrics;
-mod differential;
-mod episode;
 mod errors;
-mod falsify;
 mod gains;
-mod gym;
 mod impact;
 mod keywords;
 mod laws;
@@ -25,16 +16,12 @@ mod maps;
 mod parameters;
 mod python_law;
 mod reactive;
+mod robots;
 mod run;
 mod safe;
 mod scenes;
-mod sensing;
-mod separation;
 mod signals;
-mod situation;
-mod stepped;
 mod watch;
-mod wheels;
 
 use pyo3::prelude::*;
 
@@ -54,11 +41,11 @@ mod _hrsafety {
     }
 
     #[pymodule_export]
-    use crate::arm::{Arm, bare_forces, urdf_joint_names};
+    use crate::contact::arm::{Arm, bare_forces, urdf_joint_names};
     #[pymodule_export]
-    use crate::as_built::{AsBuilt, as_built_evaluate, as_built_many, as_built_simulate};
-    #[pymodule_export]
-    use crate::batch::simulate_batch;
+    use crate::contact::separation::{
+        StoppingCurve, guard_distance, separation_distances, separation_speeds,
+    };
     #[pymodule_export]
     use crate::contact::{
         contact_column, contact_differential_mass, contact_exceedance, contact_holonomic_mass,
@@ -66,30 +53,22 @@ mod _hrsafety {
         contact_words,
     };
     #[pymodule_export]
-    use crate::controller::Controller;
+    use crate::crowd::gym::{CrowdEnvironments, environment_words};
+    #[pymodule_export]
+    use crate::crowd::metrics::{
+        CrowdEpisode, crowd_metric_names, crowd_metrics, crowd_world_metrics,
+    };
     #[pymodule_export]
     use crate::crowd::{
         CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld, crowd_circle,
         crowd_decisions, crowd_simulate,
     };
     #[pymodule_export]
-    use crate::crowd_metrics::{
-        CrowdEpisode, crowd_metric_names, crowd_metrics, crowd_world_metrics,
-    };
-    #[pymodule_export]
-    use crate::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
-    #[pymodule_export]
-    use crate::episode::Run;
-    #[pymodule_export]
-    use crate::falsify::Hunt;
-    #[pymodule_export]
     use crate::gains::problem::GainProblem;
     #[pymodule_export]
     use crate::gains::searches::{
         front_hypervolume, gain_front, search_gains, search_gains_globally,
     };
-    #[pymodule_export]
-    use crate::gym::{CrowdEnvironments, environment_words};
     #[pymodule_export]
     use crate::impact::cylinder::CylinderController;
     #[pymodule_export]
@@ -162,6 +141,25 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::reactive::skirt_steps::SkirtSteps;
     #[pymodule_export]
+    use crate::robots::as_built::{AsBuilt, as_built_evaluate, as_built_many, as_built_simulate};
+    #[pymodule_export]
+    use crate::robots::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
+    #[pymodule_export]
+    use crate::robots::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
+    #[pymodule_export]
+    use crate::robots::wheels::{
+        DifferentialKinematics, OmniKinematics, Slip, WheelDrive, differential_wheels,
+        holonomic_wheels, wheel_reference, wheel_response,
+    };
+    #[pymodule_export]
+    use crate::run::batch::simulate_batch;
+    #[pymodule_export]
+    use crate::run::controller::Controller;
+    #[pymodule_export]
+    use crate::run::episode::Run;
+    #[pymodule_export]
+    use crate::run::falsify::Hunt;
+    #[pymodule_export]
     use crate::run::{
         evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,
     };
@@ -169,15 +167,4 @@ mod _hrsafety {
     use crate::safe::{Shield, Yielding, guarded_law, shield_speed_bound};
     #[pymodule_export]
     use crate::scenes::Scenarios;
-    #[pymodule_export]
-    use crate::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
-    #[pymodule_export]
-    use crate::separation::{
-        StoppingCurve, guard_distance, separation_distances, separation_speeds,
-    };
-    #[pymodule_export]
-    use crate::wheels::{
-        DifferentialKinematics, OmniKinematics, Slip, WheelDrive, differential_wheels,
-        holonomic_wheels, wheel_reference, wheel_response,
-    };
 }

@@ -9,7 +9,7 @@ use vff_core::lanes::{Planar, Real, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
 use vff_core::world::scenario::Scenario;
 
-use crate::situation::situation_fields;
+use crate::run::situation::situation_fields;
 
 thread_local! {
     /// What a law raised; the core knows of it only that the force is not a number.

@@ -4,7 +4,7 @@
 //! the foam then relaxes by `K_c s + C_c s' = 0` from its compression `s` at release and is
 //! touched again when the distance of the bodies equals what is left.
 
-use crate::motion::MAX_CELLS;
+use crate::joint::motion::MAX_CELLS;
 use crate::roots::root;
 use crate::series::{CELL_ANGLE, Cell, Drive, Plant, State, derivatives, integrated};
 use crate::windows::first_fall;

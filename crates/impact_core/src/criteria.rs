@@ -2,11 +2,11 @@
 
 use crate::error::{Result, finite};
 use crate::fast;
+use crate::joint::motion::{Motion, cell_length};
 use crate::metrics::{
     CONSTRAINED_HORIZON, FREE_HORIZON, HELD_WINDOW, INJURY_WINDOWS, Loads, MetricOptions, Metrics,
     Searches, Status,
 };
-use crate::motion::{Motion, cell_length};
 use crate::parameters::{System, Target};
 use crate::roots::{Peak, maximum};
 use crate::series::Plant;

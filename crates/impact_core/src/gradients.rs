@@ -7,8 +7,8 @@
 use crate::criteria::{Findings, Impact};
 use crate::dual::Dual;
 use crate::error::{Result, finite, positive};
+use crate::joint::motion::Motion;
 use crate::metrics::{HELD_WINDOW, Loads, MetricOptions, Metrics, Status};
-use crate::motion::Motion;
 use crate::parameters::{System, Target};
 use crate::roots::Peak;
 use crate::series::Plant;

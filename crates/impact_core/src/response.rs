@@ -5,9 +5,9 @@ mod printed;
 mod runge_kutta;
 
 use crate::contact::{Bodies, Event, Phase, Stretch};
-use crate::drive::SetPoint;
 use crate::error::{Failure, Given, Result, finite, positive};
-use crate::motion::cell_length;
+use crate::joint::drive::SetPoint;
+use crate::joint::motion::cell_length;
 use crate::parameters::{System, Target};
 use crate::series::{Drive, Plant, State};
 use numeric::threads::Interrupted;

@@ -1,8 +1,8 @@
 //! Nominal figures, to every digit that the specification prints.
 
 use impact_core::criteria::metrics;
-use impact_core::drive::SetPoint;
 use impact_core::error::Failure;
+use impact_core::joint::drive::SetPoint;
 use impact_core::metrics::{MetricOptions, Status};
 use impact_core::parameters::{
     FOAM_1, FOAM_3, Foam, HEAD_APPARATUS, HEAD_MINIMUM, MANIPULATOR_1, MANIPULATOR_2, System,

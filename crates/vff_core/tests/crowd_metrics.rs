@@ -4,11 +4,11 @@
 use nalgebra::{Rotation2, Vector2};
 use numeric::error::Failure;
 use serde_json::Value;
-use vff_core::crowd::grid::Period;
 use vff_core::crowd::metrics::{
     Episode, Kind, KnownArrival, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without,
     evaluate, evaluate_world,
 };
+use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
 use vff_core::world::shape::PlacedShape;
 

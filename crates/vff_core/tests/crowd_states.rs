@@ -7,7 +7,7 @@ use serde_json::Value;
 use vff_core::arguments::Arguments;
 use vff_core::crowd::Model;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
-use vff_core::crowd::grid::Period;
+use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::pedestrian::{Groupings, Walker};
 use vff_core::crowd::snapshot::{Setting, Snapshot};
 use vff_core::crowd::walls::Wall;

@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Rotation2, Vector2};
 use numeric::random::Stream;
-use vff_core::crowd::collision_free_speed::CollisionFreeSpeed;
-use vff_core::crowd::grid::Period;
-use vff_core::crowd::moussaid::Moussaid;
-use vff_core::crowd::reciprocal_people::ReciprocalPeople;
-use vff_core::crowd::social_force_1995::SocialForce1995;
-use vff_core::crowd::social_force_2000::SocialForce2000;
+use vff_core::crowd::models::collision_free_speed::CollisionFreeSpeed;
+use vff_core::crowd::models::moussaid::Moussaid;
+use vff_core::crowd::models::reciprocal_people::ReciprocalPeople;
+use vff_core::crowd::models::social_force_1995::SocialForce1995;
+use vff_core::crowd::models::social_force_2000::SocialForce2000;
+use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
 use vff_core::crowd::{CrowdWorld, Diverged, Model, Simulation, simulate_worlds};

@@ -10,7 +10,7 @@ from hrsafety import navigation as nav
 from hrsafety._records import dataclass
 from hrsafety.benchmarks.entries import Entry
 from hrsafety.benchmarks.results import Row
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 
 __all__ = ["Case", "Suite", "rows_of"]
 

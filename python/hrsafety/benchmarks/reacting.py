@@ -16,7 +16,7 @@ from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
 from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.metrics.between import touched_between
-from hrsafety.navigation.shield_warnings import Motion
+from hrsafety.navigation.warnings.shields import Motion
 
 __all__ = ["REACTING", "SCENES"]
 

@@ -15,7 +15,7 @@ from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
 from hrsafety.benchmarks.suites import CHUNK, SUITES
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.metrics.between import CONTACT_BETWEEN
-from hrsafety.navigation.shield_warnings import ASSUMES_LESS
+from hrsafety.navigation.warnings.shields import ASSUMES_LESS
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["benchmark", "case_of"]

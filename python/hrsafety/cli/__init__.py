@@ -126,19 +126,19 @@ def _simulate(options: argparse.Namespace) -> None:
 
 
 def _foam(options: argparse.Namespace) -> None:
-    from hrsafety.cli.foam import design_file
+    from hrsafety.cli.foam.command import design_file
 
     design_file(options)
 
 
 def _optimize(options: argparse.Namespace) -> None:
-    from hrsafety.cli.optimize import optimize_file
+    from hrsafety.cli.optimize.command import optimize_file
 
     optimize_file(options)
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    from hrsafety.cli.sweep import sweep_file
+    from hrsafety.cli.sweep.command import sweep_file
 
     sweep_file(options)
 
@@ -151,7 +151,7 @@ def _arm(options: argparse.Namespace) -> None:
 
 
 def _contact(options: argparse.Namespace) -> None:
-    from hrsafety.cli.cell import report_cell
+    from hrsafety.cli.cell.command import report_cell
 
     report_cell(options)
 

@@ -9,8 +9,12 @@ from pathlib import Path
 from hrsafety import arms, scenarios
 from hrsafety._arguments import meant
 from hrsafety._records import dataclass
-from hrsafety.cli import cell_file, foam_file, optimize_file, output, sweep_file
+from hrsafety.cli import output
+from hrsafety.cli.cell import file as cell_file
+from hrsafety.cli.foam import file as foam_file
+from hrsafety.cli.optimize import file as optimize_file
 from hrsafety.cli.parsers import STARTERS
+from hrsafety.cli.sweep import file as sweep_file
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios import files

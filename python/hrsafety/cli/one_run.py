@@ -13,7 +13,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.simulate_page import RunTable
+from hrsafety.cli.simulate_page import PageTable
 from hrsafety.navigation.outcomes import OUTCOMES
 
 __all__ = ["simulate_file"]
@@ -100,7 +100,7 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
     yield "performance H", f"{score.total:.3f}  ({parts})"
 
 
-def _obstacle_table(run: nav.Trajectory) -> RunTable:
+def _obstacle_table(run: nav.Trajectory) -> PageTable:
     names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", "first contact", "robot speed then")
     units = ("", "", "m", "m", "m", "m", "s", "m/s")
     rows = [
@@ -116,7 +116,7 @@ def _obstacle_table(run: nav.Trajectory) -> RunTable:
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]
-    return RunTable(heading="Obstacles", headers=(names, units), rows=rows, left=(1,))
+    return PageTable(heading="Obstacles", headers=(names, units), rows=rows, left=(1,))
 
 
 def _draw(run: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:

@@ -17,9 +17,10 @@ from hrsafety import navigation as nav
 from hrsafety._records import dataclass
 from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.simulate_page import RunTable
+from hrsafety.cli.simulate_page import PageTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -109,7 +110,7 @@ def simulate_people(options: argparse.Namespace) -> None:
     verdict.end(_how_they_ended(summary, counts), counts, found, options, len(summary))
 
 
-def _how_they_ended(summary: nav.run_table.RunTable, counts: verdict.Counts) -> str:
+def _how_they_ended(summary: RunTable, counts: verdict.Counts) -> str:
     """Return in one sentence what came of all runs."""
     arrived = len(summary) - counts["any"]
     return (
@@ -119,7 +120,7 @@ def _how_they_ended(summary: nav.run_table.RunTable, counts: verdict.Counts) -> 
     )
 
 
-def _encounters(crossings: Sequence[scenarios.Crossing], summary: nav.run_table.RunTable) -> _Encounters:
+def _encounters(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> _Encounters:
     """Return the least distances of everybody who was in view during the run."""
     rows, people, distances = [], [], []
     for row, crossing in enumerate(crossings):
@@ -163,7 +164,7 @@ RUN_HEADER = (
 )
 
 
-def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.run_table.RunTable) -> RunTable:
+def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> PageTable:
     rows = [
         (
             row,
@@ -178,10 +179,10 @@ def _run_table(crossings: Sequence[scenarios.Crossing], summary: nav.run_table.R
         )
         for row, crossing in enumerate(crossings)
     ]
-    return RunTable(heading="Runs", headers=RUN_HEADER, rows=rows, left=(4,))
+    return PageTable(heading="Runs", headers=RUN_HEADER, rows=rows, left=(4,))
 
 
-def _totals(summary: nav.run_table.RunTable, met: _Encounters) -> Iterator[str]:
+def _totals(summary: RunTable, met: _Encounters) -> Iterator[str]:
     arrived = np.isfinite(summary.arrival_time)
     touched = summary.outcome == "collided"
     while_moving = touched & (summary.contacts_moving > 0)
@@ -227,7 +228,7 @@ RUN_COLUMNS = {
 }
 
 
-def _run_records(crossings: Sequence[scenarios.Crossing], summary: nav.run_table.RunTable) -> list[dict[str, Any]]:
+def _run_records(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> list[dict[str, Any]]:
     """Return one record for each run, with units in the keys."""
     records = []
     for row, crossing in enumerate(crossings):
@@ -262,7 +263,7 @@ def _report(
     recording: datasets.Recording,
     crossings: Sequence[scenarios.Crossing],
     law: nav.Law,
-    summary: nav.run_table.RunTable,
+    summary: RunTable,
     met: _Encounters,
 ) -> dict[str, Any]:
     flow, scenario = recording.main_flow(), crossings[0].scenario
@@ -290,7 +291,7 @@ def _finite_or_none(value: object) -> object:
 
 
 def _tables(
-    crossings: Sequence[scenarios.Crossing], summary: nav.run_table.RunTable, met: _Encounters, place: Path
+    crossings: Sequence[scenarios.Crossing], summary: RunTable, met: _Encounters, place: Path
 ) -> Iterator[Path]:
     """Write what came of each run and of each person."""
     runs, people = _run_records(crossings, summary), _person_records(crossings, met)
@@ -298,7 +299,7 @@ def _tables(
     yield output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people))
 
 
-def _draw(summary: nav.run_table.RunTable, trajectory: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
+def _draw(summary: RunTable, trajectory: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
     """Write the pictures of one run and of all; yield each with its caption."""
     from hrsafety import plotting
 

@@ -9,11 +9,11 @@ from hrsafety._records import dataclass
 from hrsafety.pages import Picture, written
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["RunTable", "html"]
+__all__ = ["PageTable", "html"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RunTable:
+class PageTable:
     """A table of the terminal and of the page.
 
     Attributes
@@ -47,7 +47,7 @@ def html(
     said: str,
     good: bool,
     facts: Sequence[tuple[str, str]],
-    table: RunTable,
+    table: PageTable,
     pictures: Mapping[Path, str],
     files: Sequence[Path],
     found: Sequence[ResultWarning],
@@ -65,7 +65,7 @@ def html(
         Whether all arrived without a contact.
     facts : sequence of (str, str)
         What was simulated, and results of all runs.
-    table : RunTable
+    table : PageTable
         Obstacles or runs.
     pictures : mapping of Path to str
         Files of pictures and their captions.

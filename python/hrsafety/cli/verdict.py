@@ -14,7 +14,7 @@ from hrsafety.cli import output, terminal
 from hrsafety.cli.exit_codes import FAILED_RUN
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]

@@ -124,7 +124,7 @@ if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for
             "hrsafety.navigation.tracking",
             "hrsafety.navigation.knowledge",
             "hrsafety.navigation.controller",
-            "hrsafety.navigation.run_table",
+            "hrsafety.navigation.tables.runs",
             "hrsafety.errors",
         ],
     )

@@ -15,9 +15,9 @@ from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.robots.bodies import HolonomicRobot
-from hrsafety.navigation.run_table import RunTable, table_of_batch
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Scenarios
+from hrsafety.navigation.tables.runs import RunTable, table_of_batch
 from hrsafety.navigation.trajectory import Integrator
 
 __all__ = ["check_scenarios", "check_threads", "gain_sets", "natives_of", "simulate_batch"]

@@ -20,11 +20,11 @@ from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.navigation.many import simulate_many
-from hrsafety.navigation.paired_runs import PairedRuns
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.run_arguments import Progress, Seeds
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.pairs import PairedRuns
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns
 

@@ -23,7 +23,7 @@ from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.shield_warnings import of_controller
+from hrsafety.navigation.warnings.shields import of_controller
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Command", "Controller", "Sighting"]

@@ -30,9 +30,9 @@ from hrsafety.navigation.run_arguments import (
     named_scenarios,
     sets_of,
 )
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import as_built
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.tables import Columns
 

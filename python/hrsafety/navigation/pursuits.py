@@ -15,11 +15,11 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, SimulationError
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 

@@ -22,8 +22,8 @@ from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.scenario_warnings import own_speed
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.navigation.warnings.scenarios import own_speed
 
 __all__ = ["SafetyDecision", "SafetyRecord", "record_safety"]
 

@@ -12,10 +12,10 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, assign, instance, pair, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation import scenario_warnings
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
+from hrsafety.navigation.warnings import scenarios as scenario_warnings
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Scenario"]

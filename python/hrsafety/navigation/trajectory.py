@@ -12,13 +12,13 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.tracking_laws import Tracking
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane, with_units
 

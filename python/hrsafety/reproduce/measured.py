@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._records import dataclass
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 
 __all__ = ["GAIN_SETS", "LAWS", "Measured", "kind_of", "measure", "measure_laws", "score_of_parts"]
 

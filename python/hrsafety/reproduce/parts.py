@@ -9,26 +9,26 @@ from typing import Any
 from hrsafety._records import dataclass
 from hrsafety.pages import Picture
 from hrsafety.reproduce import (
-    built_figures,
     camera_figures,
     camera_tables,
     data,
     figures,
-    gain_figures,
-    gain_tables,
-    impact_part,
-    laws_claims,
-    laws_demonstrations,
-    laws_figures,
-    laws_study,
-    reactive_part,
     records,
     study,
     tables,
     wheels_figures,
     wheels_tables,
 )
+from hrsafety.reproduce.built import figures as built_figures
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.gain import figures as gain_figures
+from hrsafety.reproduce.gain import tables as gain_tables
+from hrsafety.reproduce.impact import part as impact_part
+from hrsafety.reproduce.laws import claims as laws_claims
+from hrsafety.reproduce.laws import demonstrations as laws_demonstrations
+from hrsafety.reproduce.laws import figures as laws_figures
+from hrsafety.reproduce.laws import study as laws_study
+from hrsafety.reproduce.reactive import part as reactive_part
 
 __all__ = ["PARTS", "Made", "Part"]
 

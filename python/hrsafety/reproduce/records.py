@@ -11,7 +11,7 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.laws_study import LawsStudy, rows
+from hrsafety.reproduce.laws.study import LawsStudy, rows
 from hrsafety.reproduce.study import Aggregate, Study
 
 __all__ = ["cells_csv", "cells_json", "laws_csv", "laws_json", "study_csv", "study_json"]

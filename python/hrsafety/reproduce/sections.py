@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.gain_deviations import deviations
-from hrsafety.reproduce.impact_cases import parameter_sets
-from hrsafety.reproduce.impact_tables import COLUMNS, Experiment, experiments
-from hrsafety.reproduce.laws_compared import COMPARED, FORCES, LIKE_SOURCE
-from hrsafety.reproduce.laws_study import LawsStudy, compared_contacts
+from hrsafety.reproduce.gain.deviations import deviations
+from hrsafety.reproduce.impact.cases import parameter_sets
+from hrsafety.reproduce.impact.tables import COLUMNS, Experiment, experiments
+from hrsafety.reproduce.laws.compared import COMPARED, FORCES, LIKE_SOURCE
+from hrsafety.reproduce.laws.study import LawsStudy, compared_contacts
 from hrsafety.reproduce.names import GAIN_LABELS, beside_none, column_label
 from hrsafety.reproduce.parts import PARTS, Made, Part
 from hrsafety.reproduce.ranking import BASELINE

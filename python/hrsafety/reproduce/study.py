@@ -13,7 +13,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import Paired, Share, compare_paired, wilson
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank

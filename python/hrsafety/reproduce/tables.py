@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from hrsafety.reproduce import built_runs, built_tables
+from hrsafety.reproduce.built import runs as built_runs
+from hrsafety.reproduce.built import tables as built_tables
 from hrsafety.reproduce.cells import Cell, tolerance_of
 from hrsafety.reproduce.measured import LAWS, Measured, measure_laws, score_of_parts
 from hrsafety.reproduce.published import Row, printed_rows

@@ -16,11 +16,11 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Cases, Found, Study, chosen

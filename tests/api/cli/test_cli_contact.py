@@ -16,8 +16,9 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from hrsafety import arms, contact, standards
-from hrsafety.cli import cell_report, main
-from hrsafety.cli.cell_file import load
+from hrsafety.cli import main
+from hrsafety.cli.cell import report as cell_report
+from hrsafety.cli.cell.file import load
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 ARM, BASE = EXAMPLES / "contact_arm.toml", EXAMPLES / "contact_base.toml"

@@ -16,8 +16,8 @@ from api.cli_answers import error_line, written
 from api.read_pages import page_of
 from hrsafety import impact
 from hrsafety.cli import examples, main
-from hrsafety.cli.foam_curves import Remembered
-from hrsafety.cli.foam_file import load
+from hrsafety.cli.foam.curves import Remembered
+from hrsafety.cli.foam.file import load
 from hrsafety.cli.parsers import parser
 
 ROOT = Path(__file__).resolve().parents[3]

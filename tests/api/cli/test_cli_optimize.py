@@ -25,7 +25,7 @@ from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import examples, main, progress
-from hrsafety.cli.optimize_file import load
+from hrsafety.cli.optimize.file import load
 from hrsafety.cli.parsers import parser
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -9,7 +9,10 @@ import pytest
 
 from api.spoiled_files import spoiled
 from hrsafety import datasets, scenarios
-from hrsafety.cli import foam_file, main, optimize_file, sweep_file
+from hrsafety.cli import main
+from hrsafety.cli.foam import file as foam_file
+from hrsafety.cli.optimize import file as optimize_file
+from hrsafety.cli.sweep import file as sweep_file
 from hrsafety.errors import HrsafetyError
 
 ROOT = Path(__file__).resolve().parents[3]

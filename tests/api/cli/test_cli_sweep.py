@@ -17,7 +17,7 @@ from api.interrupting import LISTEN
 from api.read_pages import page_of
 from hrsafety import impact, sweep
 from hrsafety.cli import main
-from hrsafety.cli.sweep_file import load
+from hrsafety.cli.sweep.file import load
 
 ROOT = Path(__file__).resolve().parents[3]
 IMPACTS, GAINS = ROOT / "examples" / "impact_sweep.toml", ROOT / "examples" / "gain_sweep.toml"

@@ -12,7 +12,7 @@ import pytest
 from api.arms.arm_models import EXAMPLE
 from api.spoiled_files import spoiled
 from hrsafety import arms, contact, standards
-from hrsafety.cli import cell_file
+from hrsafety.cli.cell import file as cell_file
 from hrsafety.errors import HrsafetyError
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"

@@ -6,8 +6,10 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from hrsafety.reproduce import reactive_follower_figures, reactive_follower_study, reactive_follower_tables
-from hrsafety.reproduce.reactive_follower_study import KINDS, LAWS, FollowerStudy
+from hrsafety.reproduce.reactive import follower_figures as reactive_follower_figures
+from hrsafety.reproduce.reactive import follower_study as reactive_follower_study
+from hrsafety.reproduce.reactive import follower_tables as reactive_follower_tables
+from hrsafety.reproduce.reactive.follower_study import KINDS, LAWS, FollowerStudy
 
 LAYOUTS, BASE_LAYOUTS = 25, 60
 

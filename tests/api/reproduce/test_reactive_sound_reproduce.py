@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from hrsafety import reproduce
-from hrsafety.reproduce import reactive_sound_figures, reactive_sound_study, reactive_sound_tables
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.reactive import sound_figures as reactive_sound_figures
+from hrsafety.reproduce.reactive import sound_study as reactive_sound_study
+from hrsafety.reproduce.reactive import sound_tables as reactive_sound_tables
 
 PNG = b"\x89PNG\r\n\x1a\n"
 

@@ -18,8 +18,9 @@ from hrsafety import _atomic as atomic
 from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.navigation import metrics
-from hrsafety.reproduce import cells, figures, gain_tables, page, ranking, reasons, study, tables
+from hrsafety.reproduce import cells, figures, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.gain import tables as gain_tables
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 NUMBERS = ["5.1", *(f"6.{i}" for i in range(1, 6)), *(f"7.{i}" for i in range(1, 5)), *(f"C.{i}" for i in range(1, 10))]

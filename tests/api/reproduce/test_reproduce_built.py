@@ -7,7 +7,10 @@ import math
 import pytest
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce import built_figures, built_runs, built_tables, tables
+from hrsafety.reproduce import tables
+from hrsafety.reproduce.built import figures as built_figures
+from hrsafety.reproduce.built import runs as built_runs
+from hrsafety.reproduce.built import tables as built_tables
 from hrsafety.reproduce.cells import Cell
 
 STATIONARY = 0.06  # relative: distances to single stationary obstacles

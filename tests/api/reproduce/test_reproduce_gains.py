@@ -11,9 +11,10 @@ import pytest
 from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce, scenarios
-from hrsafety.reproduce import gain_deviations, gain_tables
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.gain_runs import CHANGES_PERCENT, GAIN_TABLES, gain_runs
+from hrsafety.reproduce.gain import deviations as gain_deviations
+from hrsafety.reproduce.gain import tables as gain_tables
+from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, gain_runs
 
 REPEATED = 1e-12  # the same operations in another order
 

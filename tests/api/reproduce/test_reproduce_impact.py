@@ -12,17 +12,15 @@ import pytest
 
 from api.read_pages import page_of
 from hrsafety import reproduce
-from hrsafety.reproduce import (
-    impact_appendix,
-    impact_cases,
-    impact_experiments,
-    impact_maneuvers,
-    impact_part,
-    impact_studies,
-    impact_tables,
-    views,
-)
+from hrsafety.reproduce import views
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.impact import appendix as impact_appendix
+from hrsafety.reproduce.impact import cases as impact_cases
+from hrsafety.reproduce.impact import experiments as impact_experiments
+from hrsafety.reproduce.impact import maneuvers as impact_maneuvers
+from hrsafety.reproduce.impact import part as impact_part
+from hrsafety.reproduce.impact import studies as impact_studies
+from hrsafety.reproduce.impact import tables as impact_tables
 from hrsafety.reproduce.names import TABLE_TITLES
 from hrsafety.reproduce.sheets import Sheet
 

@@ -11,9 +11,14 @@ import pytest
 from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce
-from hrsafety.reproduce import laws_claims, laws_compared, laws_demonstrations, laws_figures, laws_study, tables
+from hrsafety.reproduce import tables
 from hrsafety.reproduce.cells import Cell
-from hrsafety.reproduce.laws_compared import COMPARED, FORCES, LIKE_SOURCE, PLANNERS
+from hrsafety.reproduce.laws import claims as laws_claims
+from hrsafety.reproduce.laws import compared as laws_compared
+from hrsafety.reproduce.laws import demonstrations as laws_demonstrations
+from hrsafety.reproduce.laws import figures as laws_figures
+from hrsafety.reproduce.laws import study as laws_study
+from hrsafety.reproduce.laws.compared import COMPARED, FORCES, LIKE_SOURCE, PLANNERS
 
 WALKS = 12
 # Times and distances that the specification gives are rounded to 0.01 s and 1 mm.

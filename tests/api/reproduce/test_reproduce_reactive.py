@@ -12,8 +12,8 @@ import pytest
 
 from api.read_pages import page_of
 from hrsafety import reproduce
-from hrsafety.reproduce import reactive_follower_study
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.reactive import follower_study as reactive_follower_study
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 PAPERS = ("avi2019", "avi2017", "gussu2017")

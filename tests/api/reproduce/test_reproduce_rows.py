@@ -15,21 +15,17 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("scipy")
 
 from hrsafety import reproduce
-from hrsafety.reproduce import (
-    gain_tables,
-    impact_inputs,
-    impact_part,
-    page,
-    reactive_follower_tables,
-    reactive_skirt_study,
-    reactive_skirt_tables,
-    reactive_sound_study,
-    reactive_sound_tables,
-    tables,
-    wheels_tables,
-)
+from hrsafety.reproduce import page, tables, wheels_tables
 from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.gain import tables as gain_tables
+from hrsafety.reproduce.impact import inputs as impact_inputs
+from hrsafety.reproduce.impact import part as impact_part
 from hrsafety.reproduce.parts import Made
+from hrsafety.reproduce.reactive import follower_tables as reactive_follower_tables
+from hrsafety.reproduce.reactive import skirt_study as reactive_skirt_study
+from hrsafety.reproduce.reactive import skirt_tables as reactive_skirt_tables
+from hrsafety.reproduce.reactive import sound_study as reactive_sound_study
+from hrsafety.reproduce.reactive import sound_tables as reactive_sound_tables
 from hrsafety.reproduce.views import by_table, view
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))

@@ -10,7 +10,7 @@ use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
 use vff_core::search::{Evaluation, arrival_margin};
 use vff_core::world::scenario::Scenario;
 
-use crate::batch::columns;
+use crate::run::batch::columns;
 
 /// A callable that turns the columns of batches, one batch for each seed, into values and margins.
 pub struct Scorer {

@@ -1,6 +1,6 @@
 //! Simulated direct-drive joint in an impact.
 
-use impact_core::direct_drive::{self, DriveImpact};
+use impact_core::joint::direct_drive::{self, DriveImpact};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

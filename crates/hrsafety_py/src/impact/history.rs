@@ -1,7 +1,7 @@
 //! Histories of one impact.
 
 use impact_core::criteria;
-use impact_core::drive::{self, DriveSegment, Stop};
+use impact_core::joint::drive::{self, DriveSegment, Stop};
 use impact_core::metrics::{Loads, MetricOptions, Metrics, Status};
 use impact_core::parameters::{GRAVITY, System, Target};
 use impact_core::response::{

@@ -1,7 +1,7 @@
 //! Joints and the effective manipulator that they make.
 
-use impact_core::effective::{OneJoint, Reach, TwoJoints, UniformLinks};
 use impact_core::joint;
+use impact_core::joint::effective::{OneJoint, Reach, TwoJoints, UniformLinks};
 use impact_core::parameters::Manipulator;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;

@@ -24,7 +24,7 @@ use vff_core::world::obstacle::Obstacle;
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{Keywords, taken};
-use crate::sensing::Vision;
+use crate::robots::sensing::Vision;
 use echoes::{EchoShape, Sonar};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;

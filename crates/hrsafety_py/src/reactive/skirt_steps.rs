@@ -7,11 +7,11 @@ use vff_core::lanes::Vector2;
 use vff_core::run::skirt::{Action, Direction, SkirtRecord, SkirtSteps as Steps, TestPlan};
 
 use crate::arrays::Fields;
-use crate::episode::BUSY;
 use crate::errors::CoreResult;
 use crate::reactive::percept_fields;
 use crate::reactive::skirt::{SkirtMotion, SkirtScene, UltrasonicSkirt, action_word};
-use crate::stepped::Stepped;
+use crate::run::episode::BUSY;
+use crate::run::stepped::Stepped;
 
 /// A test under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]

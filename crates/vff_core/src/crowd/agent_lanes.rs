@@ -1,8 +1,8 @@
 //! People and robots of several worlds side by side, each world a lane, and pairs of them.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::others::parted;
-pub(super) use crate::crowd::pairs::{Each, WIDTH};
+use crate::crowd::neighbors::others::parted;
+pub(super) use crate::crowd::neighbors::pairs::{Each, WIDTH};
 use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
 
 /// Most people and robots who are compared with each other without lists.

@@ -1,34 +1,22 @@
 //! People that react to each other and to robots, all in one world that moves in step.
 //!
-//! One file per pedestrian model; [`neighbors`] says who is near whom, [`world`] what there is, and
+//! [`models`] has a file per pedestrian model; [`neighbors`] says who is near whom, [`world`] what there is, and
 //! [`simulation`] what an episode of it consists of, stepped by the loop of [`crate::run`].
 
 pub mod agent;
 mod agent_lanes;
 mod batch;
-pub mod circle;
-pub mod collision_free_speed;
 pub mod environments;
-pub mod grid;
 pub mod metrics;
 pub mod models;
-pub mod moussaid;
-pub mod mutual;
-pub mod nearest;
 pub mod neighbors;
-pub mod others;
-pub mod pairs;
 pub mod pedestrian;
 pub mod people;
-pub mod reciprocal_pairs;
-pub mod reciprocal_people;
 mod record;
 pub mod robots;
 mod sight;
 pub mod simulation;
 pub mod snapshot;
-pub mod social_force_1995;
-pub mod social_force_2000;
 mod sources;
 mod velocity_programs;
 pub mod walls;

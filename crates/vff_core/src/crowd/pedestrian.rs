@@ -1,12 +1,12 @@
 //! What a pedestrian model knows and answers.
 
 use crate::crowd::agent::{Agent, SHORTEST};
-use crate::crowd::grid::Period;
-use crate::crowd::mutual::Mutual;
-use crate::crowd::nearest::Nearest;
 use crate::crowd::neighbors::Neighbors;
-use crate::crowd::others::Each;
-use crate::crowd::pairs::PairQueue;
+use crate::crowd::neighbors::grid::Period;
+use crate::crowd::neighbors::mutual::Mutual;
+use crate::crowd::neighbors::nearest::Nearest;
+use crate::crowd::neighbors::others::Each;
+use crate::crowd::neighbors::pairs::PairQueue;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
@@ -148,7 +148,7 @@ pub struct Room {
     pub ways: Vec<Vector2<f64>>,
     /// See `ways`.
     pub aheads: Vec<Vector2<f64>>,
-    /// What everybody has gathered so far, by the places of [`Pairs`](crate::crowd::pairs::Pairs).
+    /// What everybody has gathered so far, by the places of [`Pairs`](crate::crowd::neighbors::pairs::Pairs).
     pub sums: Vec<Vector2<f64>>,
 }
 

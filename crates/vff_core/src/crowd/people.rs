@@ -3,8 +3,8 @@
 use numeric::random::Stream;
 
 use crate::crowd::agent::{Agent, SHORTEST, direction_of};
-use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::pedestrian::{Company, Fellows, Walker, company_of};
 use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
 use crate::lanes::Vector2;

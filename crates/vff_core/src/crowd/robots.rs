@@ -1,7 +1,7 @@
 //! The robots of a world at work: what drives and moves each of them.
 
 use crate::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
-use crate::crowd::grid::Period;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
 use crate::crowd::sight::{Known, Sight};
 use crate::crowd::world::CrowdWorld;

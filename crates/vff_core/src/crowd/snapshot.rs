@@ -1,9 +1,9 @@
 //! Decisions of everybody from the same snapshot.
 
 use crate::crowd::agent::Agent;
-use crate::crowd::grid::{Grid, Period};
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Neighbors;
+use crate::crowd::neighbors::grid::{Grid, Period};
 use crate::crowd::pedestrian::{Around, Fellows, Pedestrian, Room, Walker};
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;

@@ -2,7 +2,7 @@
 
 use numeric::random::Stream;
 
-use crate::crowd::grid::Period;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::world::{CrowdWorld, SourceSetup};

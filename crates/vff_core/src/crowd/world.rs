@@ -1,7 +1,7 @@
 //! What a world of people and robots consists of, and what it must obey.
 
-use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::walls::Wall;
 use crate::error::{Failure, Given, Result, at_most, finite, finite_pair, not_negative, positive};
 use crate::lanes::Vector2;

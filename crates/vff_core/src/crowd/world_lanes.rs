@@ -5,8 +5,8 @@
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
 use crate::crowd::agent_lanes::{AgentLanes, Each, FEW, Vectors, WIDTH};
-use crate::crowd::grid::Period;
 use crate::crowd::models::Model;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;

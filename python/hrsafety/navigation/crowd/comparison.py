@@ -10,7 +10,7 @@ from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.metrics.declared import METRICS
-from hrsafety.navigation.paired_runs import PairedRuns
+from hrsafety.navigation.tables.pairs import PairedRuns
 from hrsafety.tables import Columns
 
 __all__ = ["CrowdComparison", "CrowdStanding"]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
-from hrsafety.navigation.shield_warnings import Motion, Mover, of_surroundings
+from hrsafety.navigation.warnings.shields import Motion, Mover, of_surroundings
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_robots"]

@@ -14,7 +14,7 @@ from hrsafety._statistics import Share, wilson
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld
-from hrsafety.navigation.run_rows import RunRows
+from hrsafety.navigation.tables.rows import RunRows
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, unit_suffix
 

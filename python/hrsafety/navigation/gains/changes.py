@@ -10,13 +10,13 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 

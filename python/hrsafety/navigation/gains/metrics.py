@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from hrsafety._arguments import Array, word
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 
 __all__ = ["METRICS", "METRIC_UNITS", "Metric", "check_metric", "is_maximized", "metric_values"]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from hrsafety._arguments import Array, count
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.gains.metrics import METRIC_UNITS
 from hrsafety.navigation.gains.problem import with_gains
 from hrsafety.navigation.gains.settings import SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, unit_suffix
 

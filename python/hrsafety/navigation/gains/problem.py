@@ -14,8 +14,8 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gains.confidence import student_quantile
 from hrsafety.navigation.gains.settings import GainConstraint, Judge, SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.run_table import RunTable, table_of_batch
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.runs import RunTable, table_of_batch
 
 __all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
 

@@ -13,13 +13,13 @@ from hrsafety._bounds import MOST_POINTS_OF_AXIS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InfeasibleError
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gains.confidence import Confidence
 from hrsafety.navigation.gains.pareto import gain_columns
 from hrsafety.navigation.gains.problem import gain_problem
 from hrsafety.navigation.gains.settings import SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 

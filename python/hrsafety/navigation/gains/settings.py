@@ -30,8 +30,8 @@ from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.planners import RapidlyExploringRandomTree
 from hrsafety.navigation.laws.python_law import law_with_gains
 from hrsafety.navigation.performance import check_weights
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 
 __all__ = ["Constraint", "GainConstraint", "Method", "Objective", "Robustness", "SearchSettings"]

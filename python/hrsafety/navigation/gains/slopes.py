@@ -11,14 +11,14 @@ from hrsafety._arguments import Array, numbers, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.navigation import run_warnings
 from hrsafety.navigation.batch import check_scenarios, simulate_batch
 from hrsafety.navigation.gains.metrics import Metric, check_metric, metric_values
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["GainGradient", "gain_gradient"]

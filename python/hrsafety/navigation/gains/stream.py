@@ -15,8 +15,8 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown, Simulation
 from hrsafety.navigation.batch import check_scenarios, gain_sets, simulate_batch
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
-from hrsafety.navigation.run_table import RunTable
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.tables.runs import RunTable
 
 __all__ = ["stream_batch"]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.bands import Band
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plotting import floor, inputs, notes, shapes, style
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.outcomes import OUTCOMES
-from hrsafety.navigation.run_table import RunTable
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plotting import notes, style
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ use vff_core::world::shape::Shape;
 
 use super::{Follower, Mover, VirtualImpedance};
 use crate::arrays::Fields;
-use crate::episode::BUSY;
 use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::reactive::percept_fields;
-use crate::stepped::Stepped;
+use crate::run::episode::BUSY;
+use crate::run::stepped::Stepped;
 
 /// A run under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]

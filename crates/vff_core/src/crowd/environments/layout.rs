@@ -2,7 +2,7 @@
 
 use numeric::random::Stream;
 
-use crate::crowd::circle;
+use crate::crowd::neighbors::circle;
 use crate::crowd::world::CrowdWorld;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;

@@ -1,6 +1,6 @@
 //! What is scored: positions over time with the sizes and rules that they are measured by.
 
-use crate::crowd::grid::Period;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::walls::Wall;
 use crate::error::{Failure, Given, Result, finite_pair, not_negative, positive};
 use crate::lanes::Vector2;

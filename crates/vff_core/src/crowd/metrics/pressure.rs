@@ -1,8 +1,8 @@
 //! Social force between a robot and a person, which measures how much they are in each other's way.
 
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::moussaid::Moussaid;
-use crate::crowd::pairs::{Each, WIDTH};
+use crate::crowd::models::moussaid::Moussaid;
+use crate::crowd::neighbors::pairs::{Each, WIDTH};
 use crate::lanes::{Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;

@@ -1,0 +1,431 @@
+//! Worlds of people and robots.
+
+pub(crate) mod gym;
+pub(crate) mod metrics;
+
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
+use vff_core::crowd::neighbors::circle;
+use vff_core::crowd::neighbors::grid::Period;
+use vff_core::crowd::pedestrian::{Groupings, Walker};
+use vff_core::crowd::snapshot::{Setting, Snapshot};
+use vff_core::crowd::walls::Wall;
+use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
+use vff_core::crowd::{Diverged, Model, Simulation, Trajectories, simulate_worlds};
+use vff_core::lanes::Vector2;
+use vff_core::world::motion::Motion;
+use vff_core::world::shape::PlacedShape;
+
+use crate::arrays::Fields;
+use crate::errors::{CoreError, CoreResult};
+use crate::keywords::Keywords;
+use crate::laws::Law;
+use crate::parameters::{Measurement, Obstacle, mover_of, word};
+use crate::watch::{Report, watched};
+
+/// A model of people.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdModel(Model);
+
+#[pymethods]
+impl CrowdModel {
+    /// A model by name; `cutoff` is infinite for none.
+    #[new]
+    #[pyo3(signature = (name, **given))]
+    fn new(name: &str, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let model = Model::named(name, &given).map_err(CoreError::from)?;
+        given.done()?;
+        Ok(Self(model))
+    }
+
+    /// Largest step in s.
+    #[getter]
+    fn largest_step(&self) -> f64 {
+        self.0.largest_step()
+    }
+
+    /// Largest speed as a multiple of the wanted one, infinite for none.
+    #[getter]
+    fn cap(&self) -> f64 {
+        self.0.cap()
+    }
+
+    /// Whether a decision is an acceleration, not a velocity.
+    #[getter]
+    fn is_force(&self) -> bool {
+        self.0.is_force()
+    }
+}
+
+/// What people have in common.
+fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
+    let ends = [
+        ("stay", RouteEnd::Stay),
+        ("leave", RouteEnd::Leave),
+        ("repeat", RouteEnd::Repeat),
+    ];
+    let end: Bound<'_, PyAny> = given.take("at_end")?;
+    let rule = "be \"stay\", \"leave\" or \"repeat\"";
+    Ok(Traits {
+        radius: given.take("radius")?,
+        desired_speed: given.take("desired_speed")?,
+        awareness: given.take("awareness")?,
+        distracted_share: given.take("distracted_share")?,
+        model: 0,
+        route: Route {
+            points: given.take("route")?,
+            end: word("at_end", &end, rule, &ends)?,
+            arrival_radius: given.take("arrival_radius")?,
+        },
+    })
+}
+
+/// The way of a person who follows a recording: instants and positions, if they are given.
+fn recording_of(given: &Keywords<'_>) -> PyResult<Option<Motion>> {
+    let recorded: Option<(Vec<f64>, Vec<[f64; 2]>)> = given.take("recording")?;
+    let motion = recorded.map(|(time, position)| Motion::recorded(&time, &position));
+    let motion = motion.transpose();
+    Ok(motion.map_err(|error| CoreError::from(error.within("recording")))?)
+}
+
+/// A person at the start.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdPerson(PersonSetup, Model);
+
+#[pymethods]
+impl CrowdPerson {
+    #[new]
+    #[pyo3(signature = (model, **given))]
+    fn new(model: &CrowdModel, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let person = PersonSetup {
+            start: given.take("start")?,
+            velocity: given.take("velocity")?,
+            enters: given.take("enters")?,
+            recorded: recording_of(&given)?,
+            group: given.take("group")?,
+            traits: traits_of(&given)?,
+        };
+        given.done()?;
+        person.check().map_err(CoreError::from)?;
+        Ok(Self(person, model.0))
+    }
+}
+
+/// Where people come from.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdSource(SourceSetup, Model);
+
+#[pymethods]
+impl CrowdSource {
+    #[new]
+    #[pyo3(signature = (model, **given))]
+    fn new(model: &CrowdModel, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let source = SourceSetup {
+            low: given.take("low")?,
+            high: given.take("high")?,
+            rate: given.take("rate")?,
+            regular: given.take("regular")?,
+            traits: traits_of(&given)?,
+        };
+        given.done()?;
+        source.check().map_err(CoreError::from)?;
+        Ok(Self(source, model.0))
+    }
+}
+
+/// A robot at the start.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdRobot {
+    setup: RobotSetup,
+    /// Whether its law runs under the interpreter.
+    python: bool,
+}
+
+#[pymethods]
+impl CrowdRobot {
+    #[new]
+    #[pyo3(signature = (robot, law, measurement, **given))]
+    fn new(
+        robot: &Bound<'_, PyAny>,
+        law: Option<&Law>,
+        measurement: Option<&Measurement>,
+        given: Option<Keywords<'_>>,
+    ) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let setup = RobotSetup {
+            mover: mover_of(robot)?,
+            start: given.take("start")?,
+            goal: given.take("goal")?,
+            heading: given.take("heading")?,
+            control_period: given.take("control_period")?,
+            arrival_tolerance: given.take("arrival_tolerance")?,
+            sensing_range: given.take("sensing_range")?,
+            measurement: measurement.map(Measurement::core),
+            law: law.map(|law| law.any.clone()),
+        };
+        given.done()?;
+        setup.check().map_err(CoreError::from)?;
+        let python = law.is_some_and(Law::is_python);
+        Ok(Self { setup, python })
+    }
+}
+
+/// What stands.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdWall(Wall);
+
+#[pymethods]
+impl CrowdWall {
+    /// Segments from point to point.
+    #[staticmethod]
+    fn polyline(points: Vec<[f64; 2]>) -> CoreResult<Self> {
+        Ok(Self(Wall::polyline(points)?))
+    }
+
+    /// A disc or a rectangle that stands still.
+    #[staticmethod]
+    fn solid(obstacle: &Obstacle) -> CoreResult<Self> {
+        let obstacle = obstacle.core();
+        let shape: PlacedShape = obstacle.at(0.0, &mut 0);
+        Ok(Self(Wall::solid(shape)?))
+    }
+}
+
+/// The number of a model among those of a world.
+fn number_of(models: &mut Vec<Model>, model: Model) -> usize {
+    let known = models.iter().position(|known| *known == model);
+    known.unwrap_or_else(|| {
+        models.push(model);
+        models.len() - 1
+    })
+}
+
+/// A world.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct CrowdWorld {
+    core: vff_core::crowd::CrowdWorld,
+    python: bool,
+}
+
+#[pymethods]
+impl CrowdWorld {
+    #[new]
+    #[pyo3(signature = (people, robots, sources, walls, **given))]
+    fn new(
+        people: Vec<PyRef<'_, CrowdPerson>>,
+        robots: Vec<PyRef<'_, CrowdRobot>>,
+        sources: Vec<PyRef<'_, CrowdSource>>,
+        walls: Vec<PyRef<'_, CrowdWall>>,
+        given: Option<Keywords<'_>>,
+    ) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let mut models = Vec::new();
+        let people = people.iter().map(|person| {
+            let mut setup = person.0.clone();
+            setup.traits.model = number_of(&mut models, person.1);
+            setup
+        });
+        let people = people.collect();
+        let sources = sources.iter().map(|source| {
+            let mut setup = source.0.clone();
+            setup.traits.model = number_of(&mut models, source.1);
+            setup
+        });
+        let core = vff_core::crowd::CrowdWorld {
+            people,
+            sources: sources.collect(),
+            robots: robots.iter().map(|robot| robot.setup.clone()).collect(),
+            walls: walls.iter().map(|wall| wall.0.clone()).collect(),
+            models,
+            period: Period(given.take("period")?),
+            step: given.take("step")?,
+            time_limit: given.take("time_limit")?,
+            seed: given.take("seed")?,
+        };
+        given.done()?;
+        Ok(Self {
+            core: core.checked().map_err(CoreError::from)?,
+            python: robots.iter().any(|robot| robot.python),
+        })
+    }
+}
+
+impl CrowdWorld {
+    /// As the core has it.
+    pub fn core(&self) -> &vff_core::crowd::CrowdWorld {
+        &self.core
+    }
+}
+
+/// Fields of what was recorded.
+fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    let nothing = Trajectories::default();
+    let found = ended.recorded().unwrap_or(&nothing);
+    let (instants, people, robots) = (found.time.len(), found.people(), ended.robots().len());
+    let flat =
+        |vectors: &[Vector2<f64>]| vectors.iter().flat_map(|each| [each.x, each.y]).collect();
+    fields.vector("time", found.time.clone())?;
+    fields.cube("position", found.person_positions(), [instants, people, 2])?;
+    fields.cube("velocity", found.person_velocities(), [instants, people, 2])?;
+    fields.cube(
+        "robot_position",
+        flat(&found.robot_position),
+        [instants, robots, 2],
+    )?;
+    fields.cube(
+        "robot_velocity",
+        flat(&found.robot_velocity),
+        [instants, robots, 2],
+    )?;
+    fields.matrix(
+        "robot_heading",
+        found.robot_heading.clone(),
+        instants,
+        robots,
+    )?;
+    let column = |of: &dyn Fn(usize) -> f64| (0..people).map(of).collect::<Vec<f64>>();
+    let all = ended.people();
+    fields.vector("radius", column(&|index| all[index].radius))?;
+    fields.vector("desired_speed", column(&|index| all[index].desired_speed))?;
+    fields.vector("awareness", column(&|index| all[index].awareness))?;
+    fields.vector("arrival_time", column(&|index| all[index].arrival_time))?;
+    let ends: Vec<_> = all[..people]
+        .iter()
+        .map(|each| each.arrival_position)
+        .collect();
+    fields.matrix("arrival_position", flat(&ends), people, 2)?;
+    let robots = ended.robots().iter();
+    fields.vector(
+        "robot_arrival_time",
+        robots
+            .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
+            .collect(),
+    )?;
+    let diverged = ended.divergence().map(|found| {
+        let (kind, number) = match found.agent {
+            Diverged::Person(number) => ("person", number),
+            Diverged::Robot(number) => ("robot", number),
+        };
+        (found.time, kind, number)
+    });
+    fields.value("diverged", diverged)?;
+    Ok(fields.finish())
+}
+
+/// Everything that happens in each of some worlds.
+#[pyfunction]
+#[pyo3(signature = (worlds, *, threads, progress))]
+pub fn crowd_simulate<'py>(
+    py: Python<'py>,
+    worlds: Vec<PyRef<'py, CrowdWorld>>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let python = worlds.iter().any(|world| world.python);
+    let cores: Vec<_> = worlds.iter().map(|world| world.core.clone()).collect();
+    let threads = if python { Some(1) } else { threads };
+    let report = Report::new(progress.as_ref(), cores.len());
+    let work = |control: &crate::watch::Control<'_>| {
+        simulate_worlds(&cores, threads, &|| control.interrupted(), &|more| {
+            control.count(more);
+        })
+    };
+    let ended = if python || threads == Some(1) {
+        crate::watch::here(py, report, work)?
+    } else {
+        watched(py, report, work)?
+    };
+    ended.iter().map(|each| fields_of(py, each)).collect()
+}
+
+/// Starts of people who cross a circle.
+#[pyfunction]
+pub fn crowd_circle(seed: u64, people: usize) -> Vec<[f64; 2]> {
+    circle::starts(seed, people)
+}
+
+/// Decisions of everybody at a state, in m/s^2 or m/s; NaN for robots.
+#[pyfunction]
+#[pyo3(signature = (model, position, velocity, goal, sizes, **given))]
+pub fn crowd_decisions<'py>(
+    py: Python<'py>,
+    model: &CrowdModel,
+    position: PyReadonlyArray2<'py, f64>,
+    velocity: PyReadonlyArray2<'py, f64>,
+    goal: PyReadonlyArray2<'py, f64>,
+    sizes: PyReadonlyArray2<'py, f64>,
+    given: Option<Keywords<'py>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
+    let robot: PyReadonlyArray1<'py, bool> = given.take("robot")?;
+    let heading: PyReadonlyArray2<'py, f64> = given.take("heading")?;
+    let walls: Vec<PyRef<'py, CrowdWall>> = given.take("walls")?;
+    let group: Vec<Option<u32>> = given.take("group")?;
+    let (step, period) = (given.take("step")?, Period(given.take("period")?));
+    given.done()?;
+    let (position, velocity, goal) = (position.as_array(), velocity.as_array(), goal.as_array());
+    let (sizes, robot, heading) = (sizes.as_array(), robot.as_array(), heading.as_array());
+    let (mut agents, mut people, mut robots) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, number) in (0..position.nrows()).zip(0_u32..) {
+        let vector = |rows: &numpy::ndarray::ArrayView2<'_, f64>| {
+            Vector2::new(rows[[index, 0]], rows[[index, 1]])
+        };
+        let (place, speed) = (vector(&position), vector(&velocity));
+        let way = vector(&goal) - place;
+        let is_robot = robot[index];
+        let agent = Agent {
+            position: place,
+            velocity: speed,
+            direction: direction_of(if is_robot { speed } else { way }),
+            radius: sizes[[index, 0]],
+            number: if is_robot {
+                FIRST_ROBOT + number
+            } else {
+                number
+            },
+        };
+        agents.push(agent);
+        if is_robot {
+            robots.push(agent);
+        }
+        people.push((!is_robot).then(|| Walker {
+            agent,
+            desired_speed: sizes[[index, 1]],
+            to_go: way.norm(),
+            decides: true,
+            stays: way.norm() == 0.0,
+            heading: vector(&heading),
+            awareness: sizes[[index, 2]],
+        }));
+    }
+    let walls: Vec<Wall> = walls.iter().map(|wall| wall.0.clone()).collect();
+    let setting = Setting {
+        walls: &walls,
+        company: &Groupings {
+            agents: &agents,
+            of: &group,
+            period,
+        },
+        period,
+        reach: model.0.cutoff(),
+        step,
+    };
+    let mut decisions = Vec::new();
+    let mut snapshot = Snapshot::default();
+    snapshot.decide(&setting, &mut people, &robots, |_| &model.0, &mut decisions);
+    for (decision, person) in decisions.iter_mut().zip(&people) {
+        if person.is_none() {
+            *decision = Vector2::repeat(f64::NAN);
+        }
+    }
+    let flat = decisions.iter().flat_map(|each| [each.x, each.y]).collect();
+    let fields = Fields::new(py);
+    fields.matrix("decision", flat, decisions.len(), 2)?;
+    Ok(fields.finish())
+}

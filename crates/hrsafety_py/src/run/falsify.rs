@@ -1,0 +1,179 @@
+//! Search for a pursuer against whom a law breaks a property.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vff_core::run::as_built;
+use vff_core::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer};
+use vff_core::search;
+
+use crate::arrays::Fields;
+use crate::errors::InvalidParameterError;
+use crate::laws::Law;
+use crate::parameters::Scenario;
+use crate::robots::as_built::AsBuilt;
+use crate::watch::{Report, watched_law};
+
+/// A robot under a law, and the bounds of who pursues it.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct Hunt {
+    scenario: vff_core::world::scenario::Scenario,
+    law: Py<Law>,
+    built: as_built::AsBuilt,
+    max_speed: f64,
+    free: f64,
+}
+
+impl Hunt {
+    fn with<T>(&self, law: &Law, work: impl FnOnce(&search::Hunt<'_>) -> T) -> T {
+        work(&search::Hunt {
+            scenario: &self.scenario,
+            law: &law.any,
+            built: &self.built,
+            max_speed: self.max_speed,
+            free: self.free,
+        })
+    }
+}
+
+/// A property by its word and its limit.
+#[derive(FromPyObject)]
+struct Limited(String, f64);
+
+impl Limited {
+    fn property(self) -> PyResult<search::Property> {
+        let Self(word, limit) = self;
+        match word.as_str() {
+            "at_fault" => Ok(search::Property::NotAtFault),
+            "clearance" => Ok(search::Property::Clearance(limit)),
+            "arrival" => Ok(search::Property::Arrival),
+            "speed" => Ok(search::Property::Speed(limit)),
+            _ => {
+                let rule = "be one of \"at_fault\", \"clearance\", \"arrival\", \"speed\"";
+                Err(InvalidParameterError::new_err(("property", rule, word)))
+            }
+        }
+    }
+}
+
+/// Columns of encounters, with the margin of a property.
+fn columns<'py>(
+    py: Python<'py>,
+    found: &[Encounter],
+    property: search::Property,
+) -> PyResult<Bound<'py, PyDict>> {
+    let fields = Fields::new(py);
+    let column = |of: &dyn Fn(&Encounter) -> f64| found.iter().map(of).collect::<Vec<f64>>();
+    fields.vector("margin", column(&|each| property.margin(each)))?;
+    fields.vector("least_toward", column(&|each| each.least_toward))?;
+    fields.vector("min_clearance", column(&|each| each.least))?;
+    fields.vector("arrival_time", column(&|each| each.arrival_time))?;
+    fields.vector("top_speed", column(&|each| each.top_speed))?;
+    fields.vector("end_time", column(&|each| each.end_time))?;
+    Ok(fields.finish())
+}
+
+#[pymethods]
+impl Hunt {
+    #[new]
+    #[pyo3(signature = (scenario, law, built, *, step, person_speed, free))]
+    fn new(
+        scenario: &Scenario,
+        law: Py<Law>,
+        built: &AsBuilt,
+        step: f64,
+        person_speed: f64,
+        free: f64,
+    ) -> Self {
+        Self {
+            scenario: scenario.0.clone(),
+            law,
+            built: built.run(step, false),
+            max_speed: person_speed,
+            free,
+        }
+    }
+
+    /// Columns of episodes against random pursuers.
+    #[pyo3(signature = (property, *, episodes, seed, threads, progress))]
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        property: Limited,
+        episodes: usize,
+        seed: u64,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let property = property.property()?;
+        let law = self.law.get();
+        let report = Report::new(progress.as_ref(), episodes);
+        let found = watched_law(py, (law, threads), report, |control| {
+            let interrupted = || control.interrupted();
+            let count = |runs| control.count(runs);
+            let threads = law.threads(threads);
+            self.with(law, |hunt| {
+                hunt.sweep(episodes, seed, threads, &interrupted, &count)
+            })
+        })?;
+        columns(py, &found, property)
+    }
+
+    /// Numbers of the worst pursuer that CMA-ES finds, and the margin against him.
+    #[pyo3(signature = (property, *, episodes, seed, threads, progress))]
+    fn worst(
+        &self,
+        py: Python<'_>,
+        property: Limited,
+        episodes: usize,
+        seed: u64,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Vec<f64>, f64)> {
+        let property = property.property()?;
+        let law = self.law.get();
+        let report = Report::new(progress.as_ref(), episodes);
+        let found = watched_law(py, (law, threads), report, |control| {
+            let interrupted = || control.interrupted();
+            let count = |runs| control.count(runs);
+            let threads = law.threads(threads);
+            let budget = episodes as u64;
+            self.with(law, |hunt| {
+                hunt.worst(property, budget, seed, threads, &interrupted, &count)
+            })
+        })?;
+        let (numbers, margin) = found.unwrap_or(([f64::NAN; NUMBERS], f64::NAN));
+        Ok((numbers.to_vec(), margin))
+    }
+
+    /// One episode again with its rows: that of a random pursuer, or of the numbers of one.
+    #[pyo3(signature = (*, seed, index, numbers))]
+    fn replay<'py>(
+        &self,
+        py: Python<'py>,
+        seed: u64,
+        index: u64,
+        numbers: Option<[f64; NUMBERS]>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let law = self.law.get();
+        let mut rows = Pursued::default();
+        let found = watched_law(py, (law, Some(1)), Report::none(), |control| {
+            let interrupted = || control.interrupted();
+            self.with(law, |hunt| {
+                let (pursuer, own): (Pursuer, u64) = match &numbers {
+                    Some(numbers) => (hunt.planned(numbers), seed),
+                    None => (hunt.random(seed, index), seed.wrapping_add(index)),
+                };
+                hunt.episode(&pursuer, own, Some(&mut rows), &interrupted)
+            })
+        })?;
+        let fields = columns(py, &[found], search::Property::NotAtFault)?;
+        let more = Fields::new(py);
+        let count = rows.time.len();
+        more.vector("time", rows.time)?;
+        more.matrix("position", rows.position, count, 2)?;
+        more.matrix("velocity", rows.velocity, count, 2)?;
+        more.matrix("person_position", rows.pursuer, count, 2)?;
+        fields.update(more.finish().as_mapping())?;
+        Ok(fields)
+    }
+}

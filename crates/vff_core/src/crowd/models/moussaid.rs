@@ -1,0 +1,205 @@
+//! Model of Moussaid et al., Proceedings of the Royal Society B 276 (2009) 2755, with the groups of Moussaid et al.,
+//! `PLoS` ONE 5 (2010) e10047.
+//!
+//! The angle between line of sight and interaction direction is wrapped into (-pi, pi] before the bias `epsilon B` is
+//! added: other programs leave it out and turn people the wrong way.
+
+use std::f64::consts::PI;
+
+use crate::crowd::agent::SHORTEST;
+use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
+use crate::crowd::neighbors::Unnoticed;
+use crate::crowd::neighbors::others::Each;
+use crate::crowd::pedestrian::{
+    Around, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+};
+use crate::crowd::walls::pushes;
+use crate::lanes::{Planar, Real, Vector2};
+use numeric::angle::unsigned_angle;
+use numeric::elementary::decay;
+
+type Vector = Vector2<f64>;
+
+/// Parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moussaid {
+    /// `tau` in s.
+    pub relaxation_time: f64,
+    /// `A` in m/s^2.
+    pub strength: f64,
+    /// `gamma`.
+    pub gamma: f64,
+    /// `n`, how narrow the turning is.
+    pub n: f64,
+    /// `n'`, how narrow the slowing is.
+    pub n_prime: f64,
+    /// `lambda`, weight of the relative velocity, in s/m.
+    pub velocity_weight: f64,
+    /// `epsilon`, bias to one side.
+    pub side_bias: f64,
+    /// Push of walls in m/s^2.
+    pub wall_strength: f64,
+    /// Range of walls in m.
+    pub wall_range: f64,
+    /// `beta_1` in 1/(s rad).
+    pub gaze: f64,
+    /// `beta_2` in m/s^2.
+    pub cohesion: f64,
+    /// `beta_3` in m/s^2.
+    pub separation: f64,
+    /// `phi`, half the angle of view in groups, in rad.
+    pub view_angle: f64,
+    /// `d0`, distance that members of a group keep, in m.
+    pub contact_distance: f64,
+    /// Distance in m beyond which nobody acts; infinite for none.
+    pub cutoff: f64,
+}
+
+impl Moussaid {
+    /// Acceleration by somebody at distance `d` in direction `-n`, with the velocity relative to him in m/s.
+    #[inline(always)]
+    #[must_use]
+    pub fn push<R: Real>(
+        &self,
+        normal: Vector2<R>,
+        distance: R,
+        relative: Vector2<R>,
+    ) -> Vector2<R> {
+        let (zero, pi) = (R::zero(), R::splat(PI));
+        let sight = Vector2::new(-normal.x, -normal.y);
+        let weight = R::splat(self.velocity_weight);
+        let interaction = Vector2::new(relative.x * weight, relative.y * weight) + sight;
+        let length = interaction.dot(&interaction).sqrt();
+        let along = Vector2::new(interaction.x / length, interaction.y / length);
+        let reach = R::splat(self.gamma) * length;
+        let across = sight.x * along.y - sight.y * along.x;
+        let angle = unsigned_angle(across, sight.dot(&along));
+        let angle = R::select(across.lt(zero), -angle, angle);
+        let angle = R::select(angle.le(-pi), pi, angle);
+        let theta = angle + R::splat(self.side_bias) * reach;
+        let turning = bell(R::splat(self.n) * reach * theta);
+        let slowing = bell(R::splat(self.n_prime) * reach * theta);
+        let size = R::splat(self.strength) * decay(-distance / reach);
+        let side = R::select(theta.gt(zero), turning, -turning);
+        let side = R::select(theta.lt(zero) | theta.gt(zero), side, zero);
+        let push = Vector2::new(
+            (-along.y * side - along.x * slowing) * size,
+            (along.x * side - along.y * slowing) * size,
+        );
+        Planar::<R>::select(
+            length.lt(R::splat(SHORTEST)),
+            Vector2::new(zero, zero),
+            push,
+        )
+    }
+
+    /// Adds walls and the group of a person, if there may be one, to a force.
+    #[inline(always)]
+    fn beside_others(
+        &self,
+        mut force: Vector,
+        own: &Walker,
+        (around, grouped): (&Around<'_>, bool),
+    ) -> Vector {
+        force += pushes(around.walls, own.agent.position, |near| {
+            near.normal * (self.wall_strength * (-near.distance / self.wall_range).exp())
+        });
+        if !grouped {
+            return force + Vector::zeros();
+        }
+        force + self.group(own, around)
+    }
+
+    /// Acceleration by the group of a person.
+    fn group(&self, own: &Walker, around: &Around<'_>) -> Vector {
+        let found = around.company.company(&own.agent, self.contact_distance);
+        if found.members < 2 {
+            return Vector::zeros();
+        }
+        let members = found.members as f64;
+        let center = found.ways / members;
+        let mut force = found.crowding * self.separation;
+        let away = center.norm();
+        if away > 0.5 * (members - 1.0) {
+            force += center * (self.cohesion / away);
+        }
+        let others = found.ways / (members - 1.0);
+        let ahead = own.agent.direction;
+        if others.norm() > 0.0 && ahead != Vector::zeros() {
+            let angle = ahead.perp(&others).abs().atan2(ahead.dot(&others));
+            let turned = (angle - self.view_angle).max(0.0);
+            force -= own.agent.velocity * (self.gaze * turned);
+        }
+        force
+    }
+}
+
+/// `exp(-x^2)`.
+#[inline(always)]
+fn bell<R: Real>(x: R) -> R {
+    decay(-x * x)
+}
+
+impl Moussaid {
+    /// Decides for everybody in a world that does not repeat itself: two people push each other by opposite vectors.
+    #[inline(always)]
+    pub(in crate::crowd) fn decide_together(
+        &self,
+        walkers: &[Option<Walker>],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Vector],
+    ) {
+        let people = around.neighbors.people.agents();
+        let awareness = awareness_of(people, walkers);
+        let Room { pairs, sums, .. } = room;
+        sums.clear();
+        sums.extend(drives(people, walkers, self.relaxation_time));
+        let robots = around.neighbors.robots.agents().len();
+        sums.resize(people.len() + robots, Vector::zeros());
+        pairs.open(&around.neighbors);
+        while pairs.find(&around.neighbors, self.cutoff, awareness) {
+            for pairs in pairs.side_by_side() {
+                let push = self.push(pairs.normal, pairs.distance, pairs.relative);
+                pairs.add(push * pairs.weight, sums);
+            }
+        }
+        let grouped = around.company.any();
+        for (place, own) in deciding(people, walkers) {
+            let decision = self.beside_others(sums[place], own, (around, grouped));
+            decisions[own.agent.number as usize] = decision;
+        }
+    }
+}
+
+impl Moussaid {
+    /// Decides for the people of worlds side by side.
+    #[inline(always)]
+    pub(in crate::crowd) fn decide_in_lanes(
+        &self,
+        agents: &AgentLanes,
+        decisions: &mut Vec<Vectors>,
+    ) {
+        let forces = |_, pair: &Pair| {
+            let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
+            [push, -push]
+        };
+        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
+    }
+}
+
+impl Pedestrian for Moussaid {
+    #[inline(always)]
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
+        let mut force = drive(own, self.relaxation_time);
+        let velocity: Vector2<Each> = Planar::<Each>::splat(own.agent.velocity.into());
+        let limits = (self.cutoff, own.awareness);
+        let neighbors = around.neighbors;
+        for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
+            let relative = velocity - others.velocity();
+            let push = self.push(others.normal, others.distance, relative);
+            others.add(push * others.weight, &mut force);
+        }
+        self.beside_others(force, own, (around, true))
+    }
+}

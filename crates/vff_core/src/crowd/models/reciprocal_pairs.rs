@@ -1,0 +1,153 @@
+//! A few people who avoid each other reciprocally, each pair of them looked at once.
+
+use crate::crowd::agent_lanes::{self, AgentLanes};
+use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
+use crate::crowd::neighbors::mutual::Known;
+use crate::crowd::neighbors::pairs::Each;
+use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
+use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
+use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::laws::planning::half_planes::HalfPlane;
+
+type Vector = Vector2<f64>;
+
+/// Change of the velocity of one of two, and the direction of the line of permitted velocities.
+type Side<R> = (Vector2<R>, Vector2<R>);
+
+impl ReciprocalPeople {
+    /// Decides for a few people in a world that does not repeat itself: two of them who do not touch change their
+    /// velocities by opposite vectors.
+    #[inline(always)]
+    pub(in crate::crowd) fn decide_together(
+        &self,
+        walkers: &[Option<Walker>],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Vector],
+    ) {
+        self.meet(walkers, around, room);
+        for (place, own) in deciding(around.neighbors.people.agents(), walkers) {
+            let hard = self.keep_off_walls(own, around, room);
+            let Room {
+                nearest,
+                pairs,
+                planes,
+                mutual,
+                ..
+            } = &mut *room;
+            let known = mutual.row(place);
+            let distance = |index: usize| known[index].distance;
+            let number_of = |index: u32| pairs.number(known[index as usize].other);
+            for index in nearest.at((known.len(), distance), self.max_neighbors, number_of) {
+                let Known {
+                    change, direction, ..
+                } = known[*index as usize];
+                planes.push(HalfPlane {
+                    point: own.agent.velocity + change,
+                    direction,
+                });
+            }
+            decisions[own.agent.number as usize] = permitted(own, hard, around.step, room);
+        }
+    }
+
+    /// Changes of the velocities of the two of each pair, and directions of their lines.
+    #[inline(always)]
+    fn sides<R: Real>(&self, discs: &DiscPair<R>, weight: R, step: f64) -> [Side<R>; 2] {
+        let share = R::splat(0.5) * weight;
+        let (direction, change) = discs.avoided(self.horizon, step);
+        let mut sides = [(change * share, direction), (-change * share, -direction)];
+        if discs.touching().any() {
+            let (direction, change) = discs.reversed().avoided(self.horizon, step);
+            sides[1] = (change * share, direction);
+        }
+        sides
+    }
+
+    /// Decides for the people of worlds side by side.
+    #[inline(always)]
+    pub(in crate::crowd) fn decide_in_lanes(
+        &self,
+        agents: &AgentLanes,
+        step: f64,
+        programs: &mut VelocityPrograms,
+        decisions: &mut Vec<agent_lanes::Vectors>,
+    ) {
+        self.constrain_in_lanes(agents, step, programs);
+        for (person, intention) in agents.intentions.iter().enumerate() {
+            let own = &agents.all[person];
+            let speed = intention
+                .desired_speed
+                .min(intention.to_go / Real::splat(step));
+            let objective = Objective {
+                max_speed: intention.desired_speed,
+                wanted: own.direction * speed,
+            };
+            let who = (person, own.velocity);
+            let most = self.max_neighbors;
+            decisions.push(programs.nearest(who, most, &objective));
+        }
+    }
+
+    /// Finds how everybody of worlds side by side keeps off the others.
+    #[inline(always)]
+    fn constrain_in_lanes(&self, agents: &AgentLanes, step: f64, programs: &mut VelocityPrograms) {
+        programs.open(agents.people());
+        for places in agents.pairs() {
+            let Some(pair) = agents.pair(places, self.cutoff) else {
+                continue;
+            };
+            let [first, second] = [places.0, places.1].map(|place| agents.all[place].radius);
+            let discs = DiscPair {
+                way: -away(pair.offset, pair.distance, pair.normal),
+                relative: pair.relative,
+                touch: first + second + Real::splat(2.0 * self.margin),
+            };
+            let sides = self.sides(&discs, pair.weight, step);
+            let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
+            for (person, (change, direction)) in [places.0, places.1].into_iter().zip(sides) {
+                let constraint = Constraint {
+                    change,
+                    direction,
+                    distance,
+                    near: pair.near,
+                };
+                programs.constrain(person, &constraint);
+            }
+        }
+    }
+
+    /// Finds how everybody keeps off the others.
+    #[inline(always)]
+    fn meet(&self, walkers: &[Option<Walker>], around: &Around<'_>, room: &mut Room) {
+        let neighbors = &around.neighbors;
+        let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
+        let awareness = awareness_of(people, walkers);
+        let Room { pairs, mutual, .. } = room;
+        mutual.open(people.len(), robots.len());
+        pairs.open(neighbors);
+        while pairs.find(neighbors, self.cutoff, awareness) {
+            for pair in pairs.side_by_side() {
+                let discs = DiscPair {
+                    way: -away(pair.offset, pair.distance, pair.normal),
+                    relative: pair.relative,
+                    touch: pairs.touch(&pair) + Each::splat(2.0 * self.margin),
+                };
+                let sides = self.sides(&discs, pair.weight, around.step);
+                for lane in 0..pair.count {
+                    let places = pair.places.map(|places| places[lane] as usize);
+                    let distance = pair.distance.lane(lane);
+                    for (side, (change, direction)) in sides.iter().enumerate() {
+                        let known = Known {
+                            change: change.lane(lane).into(),
+                            direction: direction.lane(lane).into(),
+                            distance,
+                            other: places[1 - side],
+                        };
+                        mutual.push(places[side], known);
+                    }
+                }
+            }
+        }
+    }
+}

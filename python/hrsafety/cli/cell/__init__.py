@@ -1,0 +1,1 @@
+"""The `contact` command: from a cell file to its report."""

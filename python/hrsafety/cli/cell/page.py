@@ -1,0 +1,88 @@
+"""The page of a contact report: every number is read from report.json and carries the path of its field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from hrsafety.cli.cell.pictures import PARTS, Drawing
+from hrsafety.cli.cell.report import at_path
+from hrsafety.pages import DASH, shown, written
+from hrsafety.standards.verdicts import VERDICT_WORDS
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+__all__ = ["html"]
+
+STATUS_WORDS = {
+    "closed_form": "exact from stored energy",
+    "monotone": "by simulation",
+    "several_crossings": "by simulation; loads fall again beyond: lowest speed taken",
+    "unlimited_up_to_20": "no limit is reached up to 20 m/s",
+    "unbounded_mass": "the robot cannot yield here",
+    "not_checked": "no limit is checked",
+    "unfinished": "a simulation did not end: nothing is known",
+    "not_permitted": "not permitted",
+}
+CONTACT_WORDS = {"quasi_static": "clamped", "transient": "free (transient)"}
+
+
+def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    report : dict
+        What report.json holds.
+    drawings : sequence of Drawing
+        Pictures.
+
+    Returns
+    -------
+    str
+        A complete HTML document without anything from elsewhere.
+    """
+    from markupsafe import Markup, escape
+
+    def number(path: str, spec: str = ".4g", scale: float = 1.0) -> Markup:
+        """Return a number of the report with its path; words as they are."""
+        value = at_path(report, path)
+        if value is None:
+            words = DASH
+        elif isinstance(value, (str, bool)):
+            words = str(value).replace("_", " ") if spec else str(value)
+        else:
+            words = shown(scale * value, spec) if spec else repr(value)
+        held = "" if value is None else value
+        template = Markup('<data value="{}" data-path="{}" title="{}">{}</data>')
+        return template.format(escape(held), escape(path), escape(path), escape(words))
+
+    by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
+    for each in drawings:
+        by_part[each.part].append(each)
+    return written(
+        "cell.html",
+        title=report["title"],
+        report=report,
+        n=number,
+        drawn=by_part,
+        svg=Markup,
+        verdict_words=VERDICT_WORDS,
+        status_words=STATUS_WORDS,
+        contact_words=CONTACT_WORDS,
+        good="within_limits",
+        inputs=list(_paths(report["inputs"], "inputs")),
+    )
+
+
+def _paths(value: Any, path: str) -> Iterator[str]:
+    """Yield the path of every single value."""
+    if isinstance(value, dict):
+        for key in sorted(value):
+            yield from _paths(value[key], f"{path}.{key}")
+    elif isinstance(value, list):
+        for index, each in enumerate(value):
+            yield from _paths(each, f"{path}[{index}]")
+    else:
+        yield path

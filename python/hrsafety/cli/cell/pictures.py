@@ -1,0 +1,170 @@
+"""Pictures of a contact report as SVG that stands in the page."""
+
+from __future__ import annotations
+
+import html
+import io
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from hrsafety.cli.cell.file import Cell
+from hrsafety.cli.cell.study import Study
+from hrsafety.contact import ContactImpact
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["PARTS", "Drawing", "drawings"]
+
+PARTS = ("force_over_time", "force_over_speed", "map", "speed_over_distance", "sensitivity")
+"""Kinds of pictures."""
+
+STRENGTHS = {"modulus": "modulus (Pa)", "plateau": "plateau stress (Pa)", "b": "stress b (Pa)"}
+CLASSES = {"quasi_static": "clamped", "transient": "free"}
+
+
+class Drawing(NamedTuple):
+    """A picture in the page.
+
+    Attributes
+    ----------
+    name : str
+        Anchor.
+    part : str
+        One of `PARTS`.
+    path : str
+        Where its numbers stand in report.json.
+    caption : str
+        What it shows.
+    svg : str
+        The picture.
+    """
+
+    name: str
+    part: str
+    path: str
+    caption: str
+    svg: str
+
+
+def drawings(cell: Cell, study: Study) -> list[Drawing]:
+    """Return the pictures of a report.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked.
+    study : Study
+        What was found.
+
+    Returns
+    -------
+    list of Drawing
+        In the order of the page.
+    """
+    return list(_drawn(cell, study))
+
+
+def _drawn(cell: Cell, study: Study) -> Iterator[Drawing]:
+    from hrsafety import plotting
+
+    pictures = plotting.contacts
+    for index, curves in enumerate(study.fields["curves"]):
+        region = curves["region"]
+        words, limits = region.replace("_", " "), _limits(cell, region)
+        path = f"curves[{index}].force_over_time"
+        figure = pictures.contact_forces(_without_warnings(study.impacts[region]), limits=limits)
+        yield _drawing(
+            f"time-{index}", "force_over_time", path, f"{words}: force over time at the planned speed", figure
+        )
+        lines = study.curves.get(region, [])
+        if lines:
+            path = f"curves[{index}].force_over_speed"
+            figure = _over_speed(lines, limits, _planned(cell, region))
+            caption = f"{words}: peak force over the closing speed"
+            yield _drawing(f"speed-{index}", "force_over_speed", path, caption, figure)
+    yield from _of_governing(cell, study)
+    if study.speeds is not None:
+        figure = pictures.speed_over_distance(study.speeds)
+        caption = "Allowed speed of the robot over its distance to the person"
+        yield _drawing("speed-over-distance", "speed_over_distance", "speed_over_distance", caption, figure)
+
+
+def _of_governing(cell: Cell, study: Study) -> Iterator[Drawing]:
+    from hrsafety import plotting
+
+    found = study.fields["map"]
+    if found is not None:
+        pad = cell.coverings[found["covering"]]
+        table = np.array([[np.nan if each is None else each for each in row] for row in found["speed"]])
+        figure = plotting.contacts.speed_map(
+            found["thickness"],
+            found["strength"],
+            table,
+            quantity=STRENGTHS[found["number"]],
+            wanted=found["planned_closing_speed"],
+            own=(pad.thickness, getattr(pad.material, found["number"])),
+        )
+        caption = f"{_place(found)}: allowed closing speed over the covering; white: the planned speed"
+        yield _drawing("map", "map", "map", caption, figure)
+    found = study.fields["sensitivity"]
+    if found is not None and found["values"]:
+        values = {each["name"]: each["value"] for each in found["values"]}
+        figure = plotting.contacts.contact_sensitivity(values)
+        yield _drawing("sensitivity-bars", "sensitivity", "sensitivity.values", f"{_place(found)}: sensitivity", figure)
+
+
+def _place(found: Mapping[str, Any]) -> str:
+    covering = "bare" if found["covering"] is None else found["covering"]
+    return f"{found['region'].replace('_', ' ')}, {CLASSES[found['contact']]}, {covering}"
+
+
+def _over_speed(lines: list[Any], limits: Mapping[str, float], planned: float) -> Figure:
+    """Return peak forces over one axis of speeds: lines end where their own speeds end."""
+    from hrsafety import plotting
+
+    speeds = np.unique(np.concatenate([line.speed for line in lines]))
+    forces = {line.label: np.interp(speeds, line.speed, line.force, left=np.nan, right=np.nan) for line in lines}
+    return plotting.contacts.forces_over_speed(speeds, forces, limits=limits, planned=planned)
+
+
+def _limits(cell: Cell, region: str) -> dict[str, float]:
+    found = {}
+    for each in cell.contacts:
+        if each.limit.region == region and each.limit.force is not None and each.limit.permitted:
+            found[CLASSES[each.limit.contact]] = each.limit.force
+    return found
+
+
+def _planned(cell: Cell, region: str) -> float:
+    return next(each.speed for each in cell.contacts if each.limit.region == region) + cell.human_speed
+
+
+def _without_warnings(impacts: Mapping[str, ContactImpact]) -> dict[str, ContactImpact]:
+    """Return collisions whose warnings stand on the page, not below each picture."""
+    return {label: replace(impact, warnings=()) for label, impact in impacts.items()}
+
+
+def _drawing(name: str, part: str, path: str, caption: str, figure: Figure) -> Drawing:
+    return Drawing(name, part, path, caption, _svg(name, caption, figure))
+
+
+def _svg(name: str, caption: str, figure: Figure) -> str:
+    """Return a figure as an element of a page: the same bytes every time, and names that no other picture has."""
+    from matplotlib import rc_context
+
+    buffer = io.StringIO()
+    with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
+    text = re.sub(r'\bid="', f'id="{name}-', text)
+    text = re.sub(r'(xlink:href="|url\()#', rf"\1#{name}-", text)
+    size = re.compile(r'width="[\d.]+pt" height="[\d.]+pt"|height="[\d.]+pt" viewBox|width="[\d.]+pt"')
+    text = size.sub(lambda match: "viewBox" if match[0].endswith("viewBox") else "", text, count=2)
+    return text.replace("<svg", f'<svg role="img" aria-label="{html.escape(caption)}"', 1).rstrip()

@@ -1,0 +1,373 @@
+"""What a cell file asks for, computed: verdicts, loads, curves, sensitivities and chances as fields of the report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hrsafety import contact, standards
+from hrsafety._arguments import Array
+from hrsafety._records import dataclass
+from hrsafety.cli.cell.chances import chance_of
+from hrsafety.cli.cell.file import Cell, Planned
+from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, strain
+from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
+from hrsafety.standards.verdicts import strictest
+
+__all__ = ["Study", "numbers_of", "studied"]
+
+SPEEDS = 41
+MAP_POINTS = 25
+MAP_SPAN = 4.0
+"""A map reaches from a quarter of the covering's own numbers to four times them."""
+CURVE_POINTS = 61
+MAPPED = {"linear": "modulus", "gibson_ashby": "plateau", "rusch": "b", "avalle": "plateau"}
+"""Number of each law that a map varies beside the thickness."""
+
+_RESULT = (
+    *("covering", "allowed_closing_speed", "governs", "status", "speed_force", "speed_pressure", "speed_strain"),
+    *("further_crossings", "not_checked", "peak_force", "peak_pressure", "peak_strain", "bottomed", "end"),
+    *("least_thickness", "least_thickness_status"),
+)
+"""Fields of a result; null where there is none."""
+
+
+class Curve(NamedTuple):
+    """Force over speed of one contact."""
+
+    label: str
+    speed: Array
+    force: Array
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Study:
+    """Results, and what pictures are drawn from.
+
+    Attributes
+    ----------
+    fields : dict
+        What report.json holds of the results.
+    impacts : dict of str to dict of str to ContactImpact
+        Collisions at the planned speed by region and label.
+    curves : dict of str to list of Curve
+        Peak force over closing speed by region.
+    speeds : SpeedCurve or None
+        Allowed speed over distance.
+    warnings : tuple of ResultWarning
+        Of every result.
+    """
+
+    fields: dict[str, Any]
+    impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
+    curves: Mapping[str, list[Curve]]
+    speeds: standards.SpeedCurve | None
+    warnings: tuple[ResultWarning, ...]
+
+
+def studied(cell: Cell) -> Study:
+    """Return everything that the report shows.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked.
+
+    Returns
+    -------
+    Study
+        With the warnings of all results.
+    """
+    judged = [judged_of(cell, planned) for planned in cell.contacts]
+    impacts, curves = _loads(cell, judged), _over_speed(cell, judged)
+    least = governing(judged)
+    speeds = _over_distance(cell, judged)
+    results = [_result(cell, each, impacts) for each in judged]
+    fields: dict[str, Any] = {
+        "verdict": strictest(each.verdict["verdict"] for each in judged),
+        "verdicts": [each.verdict for each in judged],
+        "robot": _robot(cell),
+        "limits": _limits(cell),
+        "results": results,
+        "curves": _curve_fields(impacts, curves),
+        "map": None if least is None else _map(cell, least),
+        "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
+        "sensitivity": None if least is None else _sensitivity(cell, least),
+        "probability": [_named(each) | chance_of(cell, each.planned, each.chosen) for each in judged],
+    }
+    return Study(
+        fields=fields, impacts=impacts, curves=curves, speeds=speeds, warnings=tuple(_warnings(cell, judged, impacts))
+    )
+
+
+def numbers_of(value: Any) -> Any:
+    """Return a result as JSON holds it: infinite masses are words, what does not exist is null."""
+    if isinstance(value, Mapping):
+        return {str(key): numbers_of(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [numbers_of(each) for each in value]
+    if isinstance(value, np.ndarray):
+        return numbers_of(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return "unbounded" if value > 0.0 else None
+    return value
+
+
+# ---- robot and limits ---------------------------------------------------------------------------
+
+
+def _robot(cell: Cell) -> dict[str, Any]:
+    facts = asdict(replace(cell.robot, warnings=(), inputs={}))
+    del facts["inputs"]
+    if cell.robot.pose is not None:
+        facts["pose"] = [{"joint": name, "value": value} for name, value in cell.robot.pose.items()]
+    facts["warnings"] = [each.message for each in cell.robot.warnings]
+    return facts
+
+
+def _limits(cell: Cell) -> dict[str, Any]:
+    rows = []
+    for planned in cell.contacts:
+        limit = planned.limit
+        row: dict[str, Any] = {
+            "region": limit.region,
+            "area_name": limit.area,
+            "contact": limit.contact,
+            "permitted": limit.permitted,
+            "pressure_area": limit.pressure_area,
+        }
+        numbers = {
+            "force": limit.force_limit,
+            "pressure": limit.pressure_limit,
+            "spring_constant": limit.spring,
+            "body_mass": limit.mass if limit.contact == "transient" else None,
+        }
+        for name, quantity in numbers.items():
+            row[name] = None if quantity is None else quantity.value
+            row[f"{name}_certainty"] = None if quantity is None else quantity.certainty
+            row[f"{name}_sources"] = None if quantity is None else list(quantity.sources)
+        rows.append(row)
+    found = cell.limits
+    header = {name: getattr(found, name) for name in ("id", "title", "edition", "note")}
+    return {**header, "sources": dict(found.sources), "rows": rows}
+
+
+# ---- loads --------------------------------------------------------------------------------------
+
+
+def _label(planned: Planned, covering: str | None) -> str:
+    kind = "clamped" if planned.limit.contact == "quasi_static" else "free"
+    return f"{kind}, {covering or 'bare'}"
+
+
+def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.ContactImpact | None:
+    pad = None if covering is None else cell.coverings[covering]
+    given = common(cell, planned)
+    if math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"]):
+        return None
+    try:
+        return contact.simulate(**given, covering=pad, closing_speed=planned.speed + cell.human_speed, head=False)
+    except InvalidParameterError as error:
+        # A covering that is compressed by more than was measured has no loads; the verdict says so, too.
+        if "beyond_data" not in error.requirement:
+            raise
+        return None
+
+
+def _loads(cell: Cell, judged: list[Judged]) -> dict[str, dict[str, contact.ContactImpact]]:
+    found: dict[str, dict[str, contact.ContactImpact]] = {}
+    for each in judged:
+        if not known(each.planned):
+            continue
+        for covering in (None, *cell.coverings):
+            impact = _impact(cell, each.planned, covering)
+            if impact is not None:
+                found.setdefault(each.planned.limit.region, {})[_label(each.planned, covering)] = impact
+    return found
+
+
+def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
+    found: dict[str, list[Curve]] = {}
+    for each in judged:
+        given = common(cell, each.planned)
+        if not known(each.planned) or (math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"])):
+            continue
+        most = 1.5 * max(each.verdict["planned_closing_speed"], each.verdict["allowed_closing_speed"] or 0.0)
+        speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
+        for covering in dict.fromkeys((None, each.planned.covering)):
+            pad = None if covering is None else cell.coverings[covering]
+            rows = contact.batch(**given, covering=pad, closing_speed=speeds)
+            label = _label(each.planned, covering)
+            found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
+    return found
+
+
+def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
+    return {
+        "allowed_closing_speed": allowed.speed,
+        "governs": allowed.governs,
+        "status": allowed.status,
+        **{f"speed_{name}": value for name, value in allowed.speeds.items()},
+        "further_crossings": list(allowed.further),
+        "not_checked": list(allowed.not_checked),
+    }
+
+
+def _result(cell: Cell, judged: Judged, impacts: Mapping[str, Mapping[str, contact.ContactImpact]]) -> dict[str, Any]:
+    """Return what was found of a contact bare and with every covering."""
+    planned = judged.planned
+    rows = []
+    for covering in (None, *cell.coverings):
+        allowed = judged.bare if covering is None else judged.covered.get(covering)
+        row: dict[str, Any] = dict.fromkeys(_RESULT) | {"covering": covering, "not_checked": []}
+        if allowed is not None:
+            row |= _allowed_fields(allowed)
+        impact = impacts.get(planned.limit.region, {}).get(_label(planned, covering))
+        if impact is not None:
+            row |= {
+                "peak_force": impact.peak_force,
+                "peak_pressure": _pressure(planned, covering, impact),
+                "peak_strain": impact.peak_strain,
+                "bottomed": impact.bottomed,
+                "end": impact.status,
+            }
+        if covering is not None and allowed is not None:
+            row |= _thickness(cell, planned, covering)
+        rows.append(row)
+    return _named(judged) | {"rows": rows}
+
+
+def _pressure(planned: Planned, covering: str | None, impact: contact.ContactImpact) -> float | None:
+    """Return the peak pressure; of a bare contact it is the force over the area that was given."""
+    if covering is not None:
+        return impact.peak_pressure
+    return None if planned.area is None or impact.peak_force is None else impact.peak_force / planned.area
+
+
+def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
+    pad = cell.coverings[covering]
+    if pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0) or math.isinf(cell.robot.mass):
+        return {"least_thickness": None, "least_thickness_status": "not_computed"}
+    limits = {"force": planned.limit.force, "pressure": planned.limit.pressure}
+    closing = planned.speed + cell.human_speed
+    found = contact.thickness(
+        **common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=strain(cell, covering)
+    )
+    return {"least_thickness": found.thickness, "least_thickness_status": found.status}
+
+
+def _curve_fields(
+    impacts: Mapping[str, Mapping[str, contact.ContactImpact]], curves: Mapping[str, list[Curve]]
+) -> list[dict[str, Any]]:
+    return [
+        {
+            "region": region,
+            "force_over_time": [
+                {"label": label, "time": impact.time, "force": impact.force} for label, impact in by_label.items()
+            ],
+            "force_over_speed": [each._asdict() for each in curves.get(region, [])],
+        }
+        for region, by_label in impacts.items()
+    ]
+
+
+# ---- maps and chances ---------------------------------------------------------------------------
+
+
+def _named(judged: Judged) -> dict[str, Any]:
+    limit = judged.planned.limit
+    return {
+        "region": limit.region,
+        "area_name": limit.area,
+        "contact": limit.contact,
+        "covering": judged.planned.covering,
+    }
+
+
+def _map(cell: Cell, judged: Judged) -> dict[str, Any] | None:
+    """Return the allowed speed over thickness and strength of the covering that is planned."""
+    if judged.planned.covering is None:
+        return None
+    pad = cell.coverings[judged.planned.covering]
+    name = MAPPED.get(pad.material.law)
+    own = None if name is None else getattr(pad.material, name)
+    if name is None or not own:
+        return None
+    span = np.geomspace(1.0 / MAP_SPAN, MAP_SPAN, MAP_POINTS)
+    thickness, strength = pad.thickness * span, own * span
+    limit = judged.planned.limit
+    found = contact.allowed_speeds(
+        **common(cell, judged.planned),
+        limits={"force": limit.force, "pressure": limit.pressure},
+        covering=pad,
+        max_strain=strain(cell, judged.planned.covering),
+        **{"thickness": thickness[:, np.newaxis], name: strength},
+    )
+    return {
+        **_named(judged),
+        "number": name,
+        "thickness": thickness,
+        "strength": strength,
+        "speed": [[None if math.isnan(each) else each for each in row] for row in found.speed.tolist()],
+        "planned_closing_speed": judged.verdict["planned_closing_speed"],
+    }
+
+
+def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | None:
+    if cell.separation is None:
+        return None
+    rules: dict[str, Any] = dict(cell.separation)
+    farthest, most = rules.pop("farthest"), rules.pop("max_speed")
+    # A contact that is not permitted, or of which nothing is known, allows none at all.
+    speeds = [each.verdict["allowed_speed"] for each in judged]
+    unknown = any(each.verdict["verdict"] in ("not_permitted", "not_checked") for each in judged)
+    least = None if unknown or any(each is None for each in speeds) else min(speeds)
+    return standards.speed_over_distance(
+        np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=least, max_speed=most, **rules
+    )
+
+
+def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
+    return {
+        "rules": dict(cell.separation or {}),
+        "contact": curve.status,
+        "distance": curve.distance,
+        "speed": curve.speed,
+        "mode": curve.mode,
+        "capped": curve.capped,
+    }
+
+
+def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
+    planned = judged.planned
+    pad = None if planned.covering is None else cell.coverings[planned.covering]
+    if math.isinf(cell.robot.mass):
+        return None
+    found = contact.sensitivity(
+        **common(cell, planned),
+        limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
+        covering=pad,
+        area=planned.area if pad is None else None,
+        max_strain=strain(cell, planned.covering),
+    )
+    return {**_named(judged), "values": [{"name": name, "value": value} for name, value in found.items()]}
+
+
+def _warnings(
+    cell: Cell, judged: list[Judged], impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
+) -> Iterator[ResultWarning]:
+    yield from cell.robot.warnings
+    for each in judged:
+        limit = each.planned.limit
+        for found in () if each.chosen is None else each.chosen.warnings:
+            place = f"{limit.region}, {limit.contact}"
+            yield replace(found, message=f"{place}: {found.message}")
+    for region, by_label in impacts.items():
+        for label, impact in by_label.items():
+            for found in impact.warnings:
+                yield replace(found, message=f"{region}, {label}, at the planned speed: {found.message}")

@@ -1,0 +1,1 @@
+"""The `foam` command: from recorded tests to a page."""

@@ -1,0 +1,233 @@
+"""``hrsafety foam DESIGN.toml``: which foams keep the limits, with a page and a picture."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from hrsafety import impact
+from hrsafety.cli import output, terminal
+from hrsafety.cli.foam import page as foam_page
+from hrsafety.cli.foam.curves import Remembered
+from hrsafety.cli.foam.file import Array, FoamDesignFile, load
+from hrsafety.cli.foam.report import Check, FoamReport, Judged, Range
+from hrsafety.pages import require_jinja
+from hrsafety.plausibility import ResultWarning
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["design_file"]
+
+KILO = 1000.0
+
+
+def design_file(options: argparse.Namespace) -> None:
+    """Judge the foams of a file, print the result and write the page.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety foam``.
+    """
+    output.planned_folder(options.out)
+    output.require_matplotlib("foam")
+    require_jinja("foam")
+    with output.located(options.design):
+        described = load(options.design)
+    place = output.folder(options.out)
+    design = _design(described)
+    curves = _Curves(
+        upper=Remembered(design.upper) if design.limits.given().keys() - {"max_compression"} else None,
+        lower=Remembered(design.lower),
+    )
+    report = _report(described, design, curves)
+    print(f"design         {options.design}")
+    print("\n".join(_summary(report)))
+    if report.foams:
+        print()
+        print(_foam_table(report))
+    print()
+    for path in _write(report, _picture(report, design, curves), place):
+        print(f"wrote {path}")
+    output.report_warnings(report.warnings, options.strict)
+
+
+# ---- judging ----------------------------------------------------------------------------------------
+
+# Field of the limits: words, unit, how many of it an SI unit is, power of the closing speed.
+_LOADS = {
+    "peak_head_acceleration_g": ("head acceleration", "g", 1.0, 1.0),
+    "hic15": ("HIC15", "", 1.0, 2.5),
+    "hic36": ("HIC36", "", 1.0, 2.5),
+    "peak_contact_force": ("contact force", "N", 1.0, 1.0),
+    "max_compression": ("compression", "mm", KILO, 1.0),
+}
+
+
+def _design(file: FoamDesignFile) -> impact.FoamDesign:
+    # Beyond its linear range no foam keeps a limit: the range is one, whether the file names it or not.
+    most = min(file.limits.max_compression or math.inf, file.sought.linear_range)
+    return impact.design_foam(
+        file.manipulator,
+        replace(file.limits, max_compression=most),
+        closing_speed=file.closing_speed,
+        thickness=file.sought.thickness,
+        linear_range=file.sought.linear_range,
+    )
+
+
+class _Curves(NamedTuple):
+    """Boundaries over the damping, for table and picture; ``None`` without a limit for them."""
+
+    upper: Remembered | None
+    lower: Remembered
+
+
+def _report(file: FoamDesignFile, design: impact.FoamDesign, curves: _Curves) -> FoamReport:
+    return FoamReport(
+        file=file,
+        upper=curves.upper(file.damping) if curves.upper else None,
+        lower=curves.lower(file.damping),
+        foams=tuple(_judged(design, name, foam) for name, foam in file.foams.items()),
+        widest=_widest(file.damping, *design.stiffness_range(file.damping, file.margin)),
+        feasibility=design.feasibility(file.damping, file.margin),
+        warnings=_warnings(file, design),
+    )
+
+
+def _warnings(file: FoamDesignFile, design: impact.FoamDesign) -> tuple[ResultWarning, ...]:
+    """Return the warnings of all numbers of the file, those of a foam with its place in it."""
+    of_foams = [
+        replace(each, subject=f"foams[{index}].{each.subject}", message=f"foams[{index}] ({name!r}): {each.message}")
+        for index, (name, foam) in enumerate(file.foams.items())
+        for each in foam.warnings
+    ]
+    return (*design.warnings, *file.limits.warnings, *file.sought.warnings, *of_foams)
+
+
+def _widest(damping: Array, least: Array, largest: Array) -> Range | None:
+    """Return the widest range of stiffness, if there is one at any damping."""
+    width = largest - least
+    if np.isnan(width).all():
+        return None
+    index = int(np.nanargmax(width))
+    if np.isinf(width[index]):
+        # Nothing limits the stiffness: the range that begins first is the widest.
+        index = int(np.nanargmin(np.where(np.isinf(width), least, np.nan)))
+    return Range(float(damping[index]), float(least[index]), float(largest[index]))
+
+
+def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
+    left = design.margin(foam)
+    checks, speeds = [], []
+    for key, limit in design.limits.given().items():
+        words, unit, scale, power = _LOADS[key]
+        margin = getattr(left, key)
+        checks.append(
+            Check(name=words, unit=unit, value=scale * limit * (1.0 - margin), limit=scale * limit, margin=margin)
+        )
+        # Loads are proportional to this power of the closing speed.
+        speeds.append(design.closing_speed * (1.0 - margin) ** (-1.0 / power) if margin < 1.0 else math.inf)
+    return Judged(
+        name=name,
+        foam=foam,
+        accepted=design.accepts(foam),
+        status=left.status,
+        checks=tuple(checks),
+        # The range of the foam itself binds as well; loads that never end leave no speed at all.
+        max_closing_speed=min(*speeds, design.closing_speed / max(1.0 - left.linear_range, 1e-300)),
+    )
+
+
+# ---- words ------------------------------------------------------------------------------------------
+
+
+def _summary(report: FoamReport) -> Iterator[str]:
+    file = report.file
+    arm = file.manipulator
+    yield f"manipulator    {arm.mass:g} kg, {arm.damping:g} N s/m, {arm.stiffness / KILO:g} kN/m"
+    yield f"closing speed  {file.closing_speed:g} m/s"
+    yield f"limits         {foam_page.limits_words(file.limits)}"
+    found = report.feasibility
+    span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
+    yield f"margin         {100.0 * file.margin:g} % of every limit and of the linear range"
+    if not found.max_closing_speed > 0.0:
+        yield f"foams          none fits with a damping of {span}, at any speed"
+        return
+    if not found.feasible:
+        yield f"foams          none fits with a damping of {span}"
+        yield f"slow down by   {found.slow_down:.3f} m/s"
+    elif report.widest is not None:
+        words = foam_page.range_words(report.widest)
+        yield f"foams          fit; widest range at {report.widest.damping:g} N s/m: {words}"
+    else:
+        yield f"foams          fit with a damping of {span}"
+    yield (
+        f"fastest        some foam fits up to {found.max_closing_speed:.3f} m/s: {found.stiffness / KILO:.2f} kN/m "
+        f"with {found.damping:g} N s/m"
+    )
+
+
+def _foam_table(report: FoamReport) -> str:
+    rows = []
+    for judged in report.foams:
+        values = [f"{check.value:.3f}{'' if check.kept else ' !'}" for check in judged.checks]
+        verdict = judged.verdict
+        stiffness, damping = f"{judged.foam.stiffness / KILO:.2f}", f"{judged.foam.damping:.1f}"
+        rows.append((judged.name, verdict, stiffness, damping, *values, f"{judged.max_closing_speed:.3f}"))
+    checks = report.foams[0].checks
+    names = ("foam", "verdict", "stiffness", "damping", *(check.name for check in checks), "fits up to")
+    units = ("", "", "kN/m", "N s/m", *(check.unit for check in checks), "m/s")
+    return terminal.table((names, units), rows, left=(0, 1))
+
+
+# ---- files ------------------------------------------------------------------------------------------
+
+
+def _write(report: FoamReport, picture: Figure, place: Path) -> Iterator[Path]:
+    yield output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(report))
+    drawn = output.write_picture(place / "boundaries.png", picture)
+    yield drawn
+    yield output.write_text(place / "summary.html", foam_page.html(report, drawn.read_bytes()))
+
+
+_COLUMNS = ("upper_stiffness_N_per_m", "upper_status", "lower_stiffness_N_per_m", "lower_status")
+
+
+def _rows(report: FoamReport) -> Iterator[list[object]]:
+    for index, damping in enumerate(report.file.damping):
+        row: list[object] = [float(damping)]
+        for boundary in (report.upper, report.lower):
+            if boundary is None:
+                row += ["", "no limit"]
+            else:
+                row += [float(boundary.stiffness[index]), str(boundary.status[index])]
+        yield row
+
+
+def _picture(report: FoamReport, design: impact.FoamDesign, curves: _Curves) -> Figure:
+    from hrsafety import plotting
+    from hrsafety.plotting.impacts.boundaries import refined
+
+    file = report.file
+    damping = refined(file.damping, [curve for curve in curves if curve])
+    return plotting.foam_boundaries(
+        damping,
+        curves.upper(damping) if curves.upper else None,
+        curves.lower(damping),
+        foams=report.file.foams,
+        accepted={judged.name: judged.accepted for judged in report.foams},
+        statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},
+        results=[design],
+        fitting=design.stiffness_range(damping, 0.0),
+        upper_label="upper",
+        lower_label="lower",
+        title=report.file.title,
+    )

@@ -1,0 +1,1 @@
+"""The `optimize` command: a gain search from a file to a page."""

@@ -1,0 +1,1 @@
+"""The `sweep` command: a sweep from a file to a page."""

@@ -1,0 +1,201 @@
+"""``hrsafety sweep STUDY.toml``: run a sweep or resume it, and show what came out."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import multiprocessing
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from hrsafety import sweep
+from hrsafety.cli import output, progress, terminal
+from hrsafety.cli.sweep import page as sweep_page
+from hrsafety.cli.sweep import pictures as sweep_pictures
+from hrsafety.cli.sweep.file import SweepFile, load
+from hrsafety.cli.sweep.summary import Summary, summarized
+from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.pages import Picture, require_jinja
+from hrsafety.sweep.estimates import size_words, time_words
+
+__all__ = ["sweep_file"]
+
+_FORMATS = (".parquet", ".npz")
+# Arguments of a run that options give, and no key of the file.
+_OPTIONS = ("threads", "store", "chunks")
+
+
+def sweep_file(options: argparse.Namespace) -> None:
+    """Run the sweep of a file, or what is left of it, and write the page.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety sweep``.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        After Ctrl-C, when it was said what is finished.
+    """
+    if not options.dry_run:
+        output.planned_folder(options.out)
+        output.require_matplotlib("sweep")
+        require_jinja("sweep")
+    if options.table is not None:
+        output.target("--table", options.table, _FORMATS)
+    if options.workers is not None and options.workers < 1:
+        raise InvalidParameterError("--workers", "be at least 1", options.workers)
+    if options.workers is not None and options.scheduler is not None:
+        raise InvalidParameterError("--workers", "not be given with --scheduler", options.workers)
+    with output.located(options.study):
+        described = _described(options)
+        if options.dry_run:
+            print("\n".join(_expected(options, described)))
+            return
+        begin = time.perf_counter()
+        result = _run(options, described)
+    if options.chunks is not None and not result.complete:
+        print(_share_words(options, result))
+        return
+    seconds = time.perf_counter() - begin
+    summary = summarized(result)
+    print("\n".join(_words(options, described, summary, seconds)))
+    print()
+    for path in _write(options, described, summary, Path(options.out)):
+        print(f"wrote {path}")
+    output.report_warnings(output.warnings_of(result), options.strict)
+
+
+def _described(options: argparse.Namespace) -> SweepFile:
+    """Return what the file describes, with the columns that are asked for."""
+    if options.outputs is None:
+        return load(options.study)
+    try:
+        return load(options.study, tuple(name.strip() for name in options.outputs.split(",")))
+    except InvalidParameterError as error:
+        raise error.renamed("--outputs") if error.argument == "outputs" else error from None
+
+
+def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str]:
+    """Yield what the sweep will take."""
+    try:
+        found = sweep.estimate(
+            described.design,
+            described.study,
+            store=options.store or "npz",
+            chunk_rows=described.chunk_rows,
+            chunks=options.chunks,
+            threads=options.threads,
+        )
+    except InvalidParameterError as error:
+        raise error.renamed(f"--{error.argument}") if error.argument in _OPTIONS else error from None
+    cases = described.study.cases
+    each = 1 if cases is None else len(cases.words)
+    columns = described.study.columns()
+    yield f"study    {options.study}"
+    yield f"rows     {found.rows * each:,} of {len(columns)} columns besides the axes"
+    yield f"chunks   {found.chunk_count:,} of at most {found.chunk_rows * each:,} rows"
+    yield f"size     about {size_words(found.bytes)} in {found.store} files"
+    measured = f"{found.measured_rows * each:,} measured rows"
+    yield f"time     about {time_words(found.seconds)} of computing in one process, from {measured}"
+
+
+def _share_words(options: argparse.Namespace, result: sweep.SweepResult) -> str:
+    """Return what is there when other processes are to compute the rest."""
+    there = f"{len(result.finished):,} of {result.chunk_count:,} chunks are in {options.out}"
+    page = "the same command without --chunks writes the page when all are there"
+    return f"chunks   {options.chunks} finished; {there}\n{page}"
+
+
+def _run(options: argparse.Namespace, described: SweepFile) -> sweep.SweepResult:
+    """Run with live progress; damage that was repaired and a stop are told in a line each."""
+    with progress.live() as shown, _workers(options) as where, warnings.catch_warnings():
+        warnings.simplefilter("always", sweep.SweepWarning)
+        warnings.showwarning = _tell
+        try:
+            return sweep.run(
+                described.design,
+                described.study,
+                out=options.out,
+                store=options.store,
+                chunks=options.chunks,
+                chunk_rows=described.chunk_rows,
+                threads=options.threads,
+                progress=None if shown is None else lambda done, total: shown("rows", done, total, None),
+                **where,
+            )
+        except InvalidParameterError as error:
+            raise error.renamed(f"--{error.argument}") if error.argument in _OPTIONS else error from None
+        except sweep.SweepInterrupted as stop:
+            print(f"hrsafety: {stop}", file=sys.stderr, flush=True)
+            raise
+
+
+def _tell(message: Warning | str, *_where: Any, **_more: Any) -> None:
+    print(f"hrsafety: {message}", file=sys.stderr, flush=True)
+
+
+def _ignore_interrupts() -> None:
+    """Leave Ctrl-C to the process that writes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextlib.contextmanager
+def _workers(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """Yield where chunks are computed, as arguments of a run."""
+    if options.workers is not None:
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(options.workers, mp_context=context, initializer=_ignore_interrupts) as pool:
+            yield {"executor": pool}
+    elif options.scheduler is not None:
+        try:
+            from distributed import Client
+        except ModuleNotFoundError:
+            raise MissingExtraError("--scheduler needs dask.distributed: pip install hrsafety[distributed]") from None
+        connect: Any = Client
+        try:
+            client = connect(options.scheduler, set_as_default=False)
+        except (OSError, ValueError) as error:
+            requirement = f"be the address of a Dask scheduler that answers ({error})"
+            raise InvalidParameterError("--scheduler", requirement, options.scheduler) from None
+        with client:
+            yield {"client": client}
+    else:
+        yield {}
+
+
+def _words(options: argparse.Namespace, described: SweepFile, summary: Summary, seconds: float) -> Iterator[str]:
+    result = summary.result
+    yield f"study    {options.study}"
+    yield f"design   {sweep_page.design_words(result)}"
+    for axis in result.axes:
+        yield f"axis     {axis.label}: {sweep_page.axis_words(axis)}"
+    chunks = "1 chunk" if result.chunk_count == 1 else f"{result.chunk_count:,} chunks"
+    yield f"rows     {len(result):,} in {chunks}, {seconds:.1f} s"
+    yield from (str(warning) for warning in result.warnings)
+    yield ""
+    rows = [(each.label, *each.numbers()) for each in summary.numbers if each.column.name in described.show]
+    yield terminal.table((("column", "least", "mean", "largest", "without value"),), rows, left=(0,))
+    for each in summary.words:
+        yield f"{each.label}: {', '.join(f'{word} {number:,}' for word, number in each.counts)}"
+
+
+def _write(options: argparse.Namespace, described: SweepFile, summary: Summary, place: Path) -> Iterator[Path]:
+    pictures = []
+    for name, figure, caption in sweep_pictures.make(summary.result, described.show):
+        drawn = output.write_picture(place / f"{name}.png", figure)
+        pictures.append(Picture(name=name, caption=f"{caption}.", png=drawn.read_bytes()))
+        yield drawn
+    if options.table is not None:
+        target = Path(options.table)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield summary.result.to_parquet(target) if target.suffix == ".parquet" else summary.result.to_npz(target)
+    page = sweep_page.html(described.title, summary, described.show, pictures)
+    yield output.write_text(place / "summary.html", page)

@@ -1,0 +1,89 @@
+"""Warnings of scenarios that matter for the law that drives the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from hrsafety.navigation.knowledge import warnings_of
+from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
+from hrsafety.navigation.warnings.shields import of_shield
+from hrsafety.plausibility import ResultWarning, gathered
+
+__all__ = ["of_run", "of_runs", "of_scenes"]
+
+
+def of_run(
+    scenario: Scenario, law: Law, built: AsBuilt | None = None, motion_step: float = 0.01
+) -> tuple[ResultWarning, ...]:
+    """Return the warnings of a scenario that matter for a law, and of sensors that see less than they must.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where it runs.
+    law : Law
+        What drives the robot. Only the virtual force field brakes in critical regions, so their size
+        says nothing about the other laws, nor about one that a shield keeps safe.
+    built : AsBuilt or None
+        How the robot is built; a point mass that is told of everything when ``None``.
+    motion_step : float
+        Of the run, in s.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        The warnings.
+    """
+    brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
+    about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
+    # A law that cannot reach a goal in a region is refused, so whatever runs can.
+    of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
+    of_sensors = () if built is None else warnings_of(scenario, built)
+    shield = law.shield if isinstance(law, SafeNavigation) else None
+    return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built, motion_step)))
+
+
+def of_runs(
+    scenarios: Sequence[Scenario],
+    names: Sequence[str],
+    laws: Iterable[Law],
+    built: AsBuilt | None = None,
+    motion_step: float = 0.01,
+) -> tuple[ResultWarning, ...]:
+    """Return the warnings of many runs, the first of each kind with the number of the others.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        Where they run.
+    names : sequence of str
+        Their names, for the subjects.
+    laws : iterable of Law
+        What drives the robots.
+    built : AsBuilt or None
+        How they are built.
+    motion_step : float
+        Of the runs, in s.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One for each code, in the order in which they were found.
+    """
+    kept = list(laws)
+    named = zip(names, scenarios, strict=True)
+    found = (
+        (name, [each for law in kept for each in of_run(scenario, law, built, motion_step)]) for name, scenario in named
+    )
+    return gathered(found, "scenarios")
+
+
+def of_scenes(
+    scenarios: Sequence[Scenario], laws: Iterable[Law], motion_step: float = 0.01
+) -> tuple[ResultWarning, ...]:
+    """Return the warnings of many runs in scenarios that have numbers for names, see `of_runs`."""
+    return of_runs(scenarios, [f"scenarios[{index}]" for index in range(len(scenarios))], laws, None, motion_step)

@@ -1,0 +1,1 @@
+"""Gains of the force field."""

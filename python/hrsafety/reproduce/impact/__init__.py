@@ -1,0 +1,1 @@
+"""Impacts on the covered manipulator."""

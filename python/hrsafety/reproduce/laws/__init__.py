@@ -1,0 +1,1 @@
+"""Laws beside each other."""

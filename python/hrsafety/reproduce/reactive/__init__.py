@@ -1,0 +1,1 @@
+"""Following, sound and sonar."""
