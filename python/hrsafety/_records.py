@@ -15,7 +15,7 @@ __all__ = ["dataclass", "generates"]
 Kind = TypeVar("Kind", bound=type)
 
 if TYPE_CHECKING:  # the same decorator for type checkers, which know that of the standard library
-    from dataclasses import dataclass as dataclass
+    from dataclasses import dataclass
 else:
 
     def dataclass(**options: bool) -> Callable[[Kind], Kind]:

@@ -8,17 +8,8 @@ from typing import Any
 
 from hrsafety._records import dataclass
 from hrsafety.pages import Picture
-from hrsafety.reproduce import (
-    camera_figures,
-    camera_tables,
-    data,
-    figures,
-    records,
-    study,
-    tables,
-    wheels_figures,
-    wheels_tables,
-)
+from hrsafety.reproduce import data, figures, records, study, tables
+from hrsafety.reproduce.built import camera_figures, camera_tables, wheels_figures, wheels_tables
 from hrsafety.reproduce.built import figures as built_figures
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.gain import figures as gain_figures

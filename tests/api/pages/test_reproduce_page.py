@@ -9,7 +9,8 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from hrsafety.pages import Picture
-from hrsafety.reproduce import figures, names, page, tables, wheels_tables
+from hrsafety.reproduce import figures, names, page, tables
+from hrsafety.reproduce.built import wheels_tables
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.parts import PARTS, Made
 from hrsafety.reproduce.sections import section_of

@@ -10,7 +10,7 @@ import pytest
 
 from hrsafety import InvalidParameterError, ShapeError, plotting, reproduce
 from hrsafety import navigation as nav
-from hrsafety.reproduce import camera_figures, camera_tables
+from hrsafety.reproduce.built import camera_figures, camera_tables
 
 TIME = np.arange(201) * 0.01
 PATH = np.column_stack([TIME, 0.2 * TIME])

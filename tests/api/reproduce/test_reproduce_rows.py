@@ -15,7 +15,8 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("scipy")
 
 from hrsafety import reproduce
-from hrsafety.reproduce import page, tables, wheels_tables
+from hrsafety.reproduce import page, tables
+from hrsafety.reproduce.built import wheels_tables
 from hrsafety.reproduce.cells import Cell
 from hrsafety.reproduce.gain import tables as gain_tables
 from hrsafety.reproduce.impact import inputs as impact_inputs

@@ -22,7 +22,8 @@ pub mod velocity_obstacle;
 pub mod yielding;
 
 pub use borenstein_koren::BorensteinKoren;
-pub use field::law::{FieldTerms, ForceFieldLaw, ObstacleTerms, VirtualForceField};
+pub use field::law::{ForceFieldLaw, VirtualForceField};
+pub use field::terms::{FieldTerms, ObstacleTerms};
 pub use ge_cui::GeCui;
 pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;

@@ -9,6 +9,7 @@ use crate::laws::field::lyapunov;
 use crate::laws::field::repulsive::Repulsion;
 use crate::laws::field::side::{self, Detour, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
+use crate::laws::field::terms::FieldTerms;
 use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation};
 use crate::world::geometry::{Approach, Body, Offset, RobotState};
 use crate::world::scenario::{PlacedObstacle, Scenario};
@@ -126,31 +127,31 @@ impl<R: Real> Near<R> {
 
 /// Forces and geometry of one obstacle in one evaluation.
 #[derive(Clone, Copy, Debug)]
-struct Slot<R: Real> {
-    index: usize,
+pub(super) struct Slot<R: Real> {
+    pub(super) index: usize,
     approach: Approach<R>,
-    side: R,
+    pub(super) side: R,
     detour: Detour<R>,
     turning: Turning<R>,
     repulsion: Repulsion<R>,
-    repulsive: Vector2<R>,
-    detouring: Vector2<R>,
+    pub(super) repulsive: Vector2<R>,
+    pub(super) detouring: Vector2<R>,
 }
 
 /// The law at work on robots side by side. `RECORD`: the Lyapunov function is wanted too.
 #[derive(Clone, Debug)]
 pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
-    gains: GainLanes<R>,
+    pub(super) gains: GainLanes<R>,
     stabilizing: Stabilizing,
     rules: SideRules,
-    goal: Vector2<R>,
+    pub(super) goal: Vector2<R>,
     mass: f64,
     max_acceleration: f64,
     control_period: f64,
     /// Side of each obstacle at the sample before, 0 outside its active region.
     latched: Vec<R>,
-    slots: Vec<Slot<R>>,
-    dissipation: Dissipation<R>,
+    pub(super) slots: Vec<Slot<R>>,
+    pub(super) dissipation: Dissipation<R>,
 }
 
 impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
@@ -404,107 +405,4 @@ impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, REC
     fn aim(&mut self, goal: [f64; 2]) {
         self.goal = Vector2::splat(goal);
     }
-}
-
-/// Terms of one obstacle at one state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ObstacleTerms {
-    /// Repulsive force in N.
-    pub repulsive: [f64; 2],
-    /// Detour force in N.
-    pub detour: [f64; 2],
-    /// Region: `free`, `active`, `critical` or `absent`.
-    pub region: &'static str,
-    /// Side of the detour, 0 when not active.
-    pub side: i8,
-}
-
-impl ObstacleTerms {
-    /// An obstacle without force.
-    #[must_use]
-    pub fn idle(region: &'static str) -> Self {
-        Self {
-            repulsive: [0.0; 2],
-            detour: [0.0; 2],
-            region,
-            side: 0,
-        }
-    }
-}
-
-/// Every term at one state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FieldTerms {
-    /// Attractive force in N.
-    pub attractive: [f64; 2],
-    /// Terms of each obstacle.
-    pub obstacles: Vec<ObstacleTerms>,
-    /// Stabilizing force in N.
-    pub stabilizing: [f64; 2],
-    /// Commanded force in N.
-    pub total: [f64; 2],
-    /// Omega in N^2/s; NaN for laws without it.
-    pub omega: f64,
-    /// Lyapunov function in N^2 and its derivative in N^2/s; `None` inside a critical region.
-    pub lyapunov: Option<(f64, f64)>,
-}
-
-impl ForceFieldLaw<f64, true> {
-    /// Every term of one evaluation.
-    pub fn terms(&mut self, situation: &Situation<'_, f64>) -> FieldTerms {
-        let command = self.command(situation);
-        let robot = &situation.robot;
-        let mut terms = FieldTerms {
-            attractive: [0.0; 2],
-            obstacles: situation
-                .bodies
-                .iter()
-                .map(|body| idle(body, robot.position))
-                .collect(),
-            stabilizing: command.stabilizing.lane(0),
-            total: command.force.lane(0),
-            omega: self.dissipation.omega,
-            lyapunov: None,
-        };
-        if terms
-            .obstacles
-            .iter()
-            .any(|obstacle| obstacle.region == "critical")
-        {
-            terms.omega = 0.0;
-            return terms;
-        }
-        terms.attractive =
-            attractive_force(&self.gains, self.goal - robot.position, robot.velocity).lane(0);
-        for slot in &self.slots {
-            terms.obstacles[slot.index] = ObstacleTerms {
-                repulsive: slot.repulsive.lane(0),
-                detour: slot.detouring.lane(0),
-                region: "active",
-                side: if slot.side > 0.0 { 1 } else { -1 },
-            };
-        }
-        let direction = self.dissipation.direction(&self.gains, robot.velocity);
-        // dV2/dt = -b |v_L|^2 - v_L.F_L + Omega (5.5.6).
-        let derivative = -self.gains.ratio * direction.dot(&direction)
-            - direction.dot(&command.stabilizing)
-            + self.dissipation.omega;
-        terms.lyapunov = Some((command.lyapunov, derivative));
-        terms
-    }
-}
-
-/// An obstacle without force.
-fn idle(body: &Body, position: Vector2<f64>) -> ObstacleTerms {
-    let squared = body.offset(position).distance_squared;
-    let region = if !body.state.present {
-        "absent"
-    } else if squared <= body.regions.critical_radius * body.regions.critical_radius {
-        "critical"
-    } else if squared < body.regions.active_radius * body.regions.active_radius {
-        "active"
-    } else {
-        "free"
-    };
-    ObstacleTerms::idle(region)
 }

@@ -8,3 +8,4 @@ pub mod lyapunov;
 pub mod repulsive;
 pub mod side;
 pub mod stabilizing;
+pub mod terms;

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.pages import Picture
+from hrsafety.reproduce.built.wheels_tables import COMMANDS, ROBOTS, sine_runs
 from hrsafety.reproduce.figures import captioned
-from hrsafety.reproduce.wheels_tables import COMMANDS, ROBOTS, sine_runs
 
 __all__ = ["make"]
 

@@ -7,7 +7,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety import plotting
 from hrsafety.pages import Picture
-from hrsafety.reproduce import camera_tables
+from hrsafety.reproduce.built import camera_tables
 from hrsafety.reproduce.figures import captioned
 
 __all__ = ["make"]
