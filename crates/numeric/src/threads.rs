@@ -6,6 +6,7 @@
 
 use std::cell::Cell;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
@@ -156,10 +157,23 @@ fn installed<T: Send>(
     work: impl FnOnce() -> Result<T> + Send,
 ) -> Result<T> {
     let leased = Leased::take(threads)?;
-    match &leased.0 {
-        Some(team) => team.pool.install(work),
-        None => work(),
-    }
+    let Some(team) = &leased.0 else { return work() };
+    let (mut work, mut result) = (Some(work), None);
+    install(&team.pool, &mut || {
+        result = work.take().map(|work| work());
+    });
+    result.unwrap_or(Err(Failure::Interrupted))
+}
+
+/// Does work on the threads of a pool. Compiled once, not once for each batch, as is [`spread_out`]:
+/// what a pool does with work is long.
+fn install(pool: &rayon::ThreadPool, work: &mut (dyn FnMut() + Send)) {
+    pool.install(work);
+}
+
+/// Does `work(0)`, `work(1)`, ... on the threads that share the work here.
+fn spread_out(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
 }
 
 /// Values of `of(0)`, `of(1)`, ... in this order.
@@ -179,11 +193,29 @@ pub fn try_map<T: Send, E: Send>(
     count: usize,
     of: impl Fn(usize) -> std::result::Result<T, E> + Sync + Send,
 ) -> std::result::Result<Vec<T>, E> {
-    if spread() {
-        (0..count).into_par_iter().map(of).collect()
-    } else {
-        (0..count).map(of).collect()
+    if !spread() {
+        return (0..count).map(of).collect();
     }
+    let failed = AtomicBool::new(false);
+    let found: Vec<Mutex<Option<_>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    spread_out(count, &|index| {
+        if failed.load(Ordering::Relaxed) {
+            return;
+        }
+        let value = of(index);
+        if value.is_err() {
+            failed.store(true, Ordering::Relaxed);
+        }
+        // Nobody else takes this lock: a thread that panics ends the whole batch.
+        if let Ok(mut place) = found[index].lock() {
+            *place = Some(value);
+        }
+    });
+    // After a failure some values are missing, behind an error or before it; the error is returned.
+    let values = found
+        .into_iter()
+        .filter_map(|place| place.into_inner().ok().flatten());
+    values.collect()
 }
 
 /// Does something with each of some items.
@@ -194,11 +226,18 @@ pub fn try_each<I: Send, E: Send>(
     items: Vec<I>,
     work: impl Fn(I) -> std::result::Result<(), E> + Sync + Send,
 ) -> std::result::Result<(), E> {
-    if spread() {
-        items.into_par_iter().try_for_each(work)
-    } else {
-        items.into_iter().try_for_each(work)
+    if !spread() {
+        return items.into_iter().try_for_each(work);
     }
+    let items: Vec<Mutex<Option<I>>> = items
+        .into_iter()
+        .map(|item| Mutex::new(Some(item)))
+        .collect();
+    try_map(items.len(), |index| {
+        let item = items[index].lock().ok().and_then(|mut place| place.take());
+        item.map_or(Ok(()), &work)
+    })
+    .map(drop)
 }
 
 /// Does something with each whole piece of a slice, and its index.
