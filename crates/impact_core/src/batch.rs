@@ -55,12 +55,10 @@ impl FieldSet {
 pub enum Width {
     /// One.
     One,
-    /// Four.
+    /// Four, with the instructions that every processor of its family has.
     Four,
-    /// Eight.
+    /// Eight, or four on a processor that has no instructions for them.
     Eight,
-    /// Sixteen.
-    Sixteen,
 }
 
 impl Width {
@@ -72,8 +70,8 @@ impl Width {
         match lanes {
             1 => Ok(Self::One),
             4 => Ok(Self::Four),
-            8 => Ok(Self::Eight),
-            16 => Ok(Self::Sixteen),
+            // Sixteen are two times eight: more than eight would not stay in registers.
+            8 | 16 => Ok(Self::Eight),
             other => {
                 let given = Given::Count(other as u64);
                 Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))

@@ -144,9 +144,9 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
         (1, Width::One),
         (2, Width::One),
         (2, Width::Four),
+        (1, Width::Four),
         (1, Width::Eight),
         (2, Width::Eight),
-        (1, Width::Sixteen),
     ] {
         let options = BatchOptions {
             threads: Some(threads),

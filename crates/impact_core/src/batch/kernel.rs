@@ -17,16 +17,15 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
         }
         return;
     }
-    let width = options.width.unwrap_or(Width::Eight);
-    if width == Width::One {
-        by_width::<_, f64>(Scalar, columns, options, block);
-        return;
-    }
-    pulp::Arch::new().dispatch(SideBySide {
+    let processor = match options.width {
+        Some(Width::One) => return by_width::<_, f64>(Scalar, columns, options, block),
+        Some(Width::Four) => pulp::Arch::Scalar,
+        Some(Width::Eight) | None => pulp::Arch::new(),
+    };
+    processor.dispatch(SideBySide {
         columns,
         options,
         block,
-        width,
     });
 }
 
@@ -36,7 +35,6 @@ struct SideBySide<'a, 'b> {
     columns: &'a Columns<'a>,
     options: &'a BatchOptions,
     block: &'a mut Block<'b>,
-    width: Width,
 }
 
 impl WithSimd for SideBySide<'_, '_> {
@@ -48,13 +46,12 @@ impl WithSimd for SideBySide<'_, '_> {
             columns,
             options,
             block,
-            width,
         } = self;
-        match width {
-            Width::One => by_width::<_, f64>(simd, columns, options, block),
-            Width::Four => by_width::<_, Lanes<4>>(simd, columns, options, block),
-            Width::Eight => by_width::<_, Lanes<8>>(simd, columns, options, block),
-            Width::Sixteen => by_width::<_, Lanes<16>>(simd, columns, options, block),
+        // A number of every row takes two vectors of the processor; with more, registers run out.
+        if S::IS_SCALAR {
+            by_width::<_, Lanes<4>>(simd, columns, options, block);
+        } else {
+            by_width::<_, Lanes<8>>(simd, columns, options, block);
         }
     }
 }
