@@ -249,7 +249,9 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         stop: block.stop,
     });
     runs.check_force(command.force, time)?;
-    runs.command = command;
+    if C::EVERY_STEP {
+        runs.command = command;
+    }
     runs.acceleration = runs.scenario.robot.acceleration(command.force);
     runs.push = runs.acceleration * R::splat(clock.step);
     runs.count_sample();

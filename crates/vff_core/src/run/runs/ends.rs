@@ -90,9 +90,9 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 
     #[inline(always)]
     pub fn check_finite(&self, time: W::Number) -> Result<()> {
-        let limit = R::splat(f64::INFINITY);
-        let finite = |vector: Vector2<R>| vector.x.abs().lt(limit) & vector.y.abs().lt(limit);
-        self.check(finite(self.position) & finite(self.velocity), time)
+        // Nothing times a finite number is nothing, and no number times any other.
+        let nothing = (self.position + self.velocity * R::zero()) * R::zero();
+        self.check((nothing.x + nothing.y).le(R::zero()), time)
     }
 
     /// A force whose magnitude overflows has no direction left.
