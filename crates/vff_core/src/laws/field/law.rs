@@ -9,7 +9,7 @@ use crate::laws::field::lyapunov;
 use crate::laws::field::repulsive::Repulsion;
 use crate::laws::field::side::{self, Detour, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
-use crate::laws::field::terms::FieldTerms;
+use crate::laws::field::terms::{FieldTerms, ObstacleTerms};
 use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation};
 use crate::world::geometry::{Approach, Body, Offset, RobotState};
 use crate::world::scenario::{PlacedObstacle, Scenario};
@@ -127,31 +127,31 @@ impl<R: Real> Near<R> {
 
 /// Forces and geometry of one obstacle in one evaluation.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slot<R: Real> {
-    pub(super) index: usize,
+struct Slot<R: Real> {
+    index: usize,
     approach: Approach<R>,
-    pub(super) side: R,
+    side: R,
     detour: Detour<R>,
     turning: Turning<R>,
     repulsion: Repulsion<R>,
-    pub(super) repulsive: Vector2<R>,
-    pub(super) detouring: Vector2<R>,
+    repulsive: Vector2<R>,
+    detouring: Vector2<R>,
 }
 
 /// The law at work on robots side by side. `RECORD`: the Lyapunov function is wanted too.
 #[derive(Clone, Debug)]
 pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
-    pub(super) gains: GainLanes<R>,
+    gains: GainLanes<R>,
     stabilizing: Stabilizing,
     rules: SideRules,
-    pub(super) goal: Vector2<R>,
+    goal: Vector2<R>,
     mass: f64,
     max_acceleration: f64,
     control_period: f64,
     /// Side of each obstacle at the sample before, 0 outside its active region.
     latched: Vec<R>,
-    pub(super) slots: Vec<Slot<R>>,
-    pub(super) dissipation: Dissipation<R>,
+    slots: Vec<Slot<R>>,
+    dissipation: Dissipation<R>,
 }
 
 impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
@@ -404,5 +404,37 @@ impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, REC
 
     fn aim(&mut self, goal: [f64; 2]) {
         self.goal = Vector2::splat(goal);
+    }
+}
+
+impl ForceFieldLaw<f64, true> {
+    /// Every term of one evaluation.
+    pub fn terms(&mut self, situation: &Situation<'_, f64>) -> FieldTerms {
+        let command = self.command(situation);
+        let robot = &situation.robot;
+        let mut terms = FieldTerms::without_force(situation.bodies, robot.position);
+        terms.stabilizing = command.stabilizing.lane(0);
+        terms.total = command.force.lane(0);
+        if terms.are_critical() {
+            return terms;
+        }
+        terms.omega = self.dissipation.omega;
+        terms.attractive =
+            attractive_force(&self.gains, self.goal - robot.position, robot.velocity).lane(0);
+        for slot in &self.slots {
+            terms.obstacles[slot.index] = ObstacleTerms {
+                repulsive: slot.repulsive.lane(0),
+                detour: slot.detouring.lane(0),
+                region: "active",
+                side: if slot.side > 0.0 { 1 } else { -1 },
+            };
+        }
+        let direction = self.dissipation.direction(&self.gains, robot.velocity);
+        // dV2/dt = -b |v_L|^2 - v_L.F_L + Omega (5.5.6).
+        let derivative = -self.gains.ratio * direction.dot(&direction)
+            - direction.dot(&command.stabilizing)
+            + self.dissipation.omega;
+        terms.lyapunov = Some((command.lyapunov, derivative));
+        terms
     }
 }

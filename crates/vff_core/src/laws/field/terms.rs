@@ -1,9 +1,6 @@
 //! Every term of the force at one state.
 
-use crate::lanes::{Planar, Vector2};
-use crate::laws::field::attractive::attractive_force;
-use crate::laws::field::law::ForceFieldLaw;
-use crate::laws::{Law, Situation};
+use crate::lanes::Vector2;
 use crate::world::geometry::Body;
 
 /// Terms of one obstacle at one state.
@@ -30,6 +27,21 @@ impl ObstacleTerms {
             side: 0,
         }
     }
+
+    /// An obstacle that does not act at a place.
+    pub(super) fn without_force(body: &Body, position: Vector2<f64>) -> Self {
+        let squared = body.offset(position).distance_squared;
+        let region = if !body.state.present {
+            "absent"
+        } else if squared <= body.regions.critical_radius * body.regions.critical_radius {
+            "critical"
+        } else if squared < body.regions.active_radius * body.regions.active_radius {
+            "active"
+        } else {
+            "free"
+        };
+        Self::idle(region)
+    }
 }
 
 /// Every term at one state.
@@ -49,62 +61,23 @@ pub struct FieldTerms {
     pub lyapunov: Option<(f64, f64)>,
 }
 
-impl ForceFieldLaw<f64, true> {
-    /// Every term of one evaluation.
-    pub fn terms(&mut self, situation: &Situation<'_, f64>) -> FieldTerms {
-        let command = self.command(situation);
-        let robot = &situation.robot;
-        let mut terms = FieldTerms {
+impl FieldTerms {
+    /// No force, before any is added.
+    pub(super) fn without_force(bodies: &[Body], position: Vector2<f64>) -> Self {
+        let idle = |body| ObstacleTerms::without_force(body, position);
+        Self {
             attractive: [0.0; 2],
-            obstacles: situation
-                .bodies
-                .iter()
-                .map(|body| idle(body, robot.position))
-                .collect(),
-            stabilizing: command.stabilizing.lane(0),
-            total: command.force.lane(0),
-            omega: self.dissipation.omega,
+            obstacles: bodies.iter().map(idle).collect(),
+            stabilizing: [0.0; 2],
+            total: [0.0; 2],
+            omega: 0.0,
             lyapunov: None,
-        };
-        if terms
-            .obstacles
-            .iter()
-            .any(|obstacle| obstacle.region == "critical")
-        {
-            terms.omega = 0.0;
-            return terms;
         }
-        terms.attractive =
-            attractive_force(&self.gains, self.goal - robot.position, robot.velocity).lane(0);
-        for slot in &self.slots {
-            terms.obstacles[slot.index] = ObstacleTerms {
-                repulsive: slot.repulsive.lane(0),
-                detour: slot.detouring.lane(0),
-                region: "active",
-                side: if slot.side > 0.0 { 1 } else { -1 },
-            };
-        }
-        let direction = self.dissipation.direction(&self.gains, robot.velocity);
-        // dV2/dt = -b |v_L|^2 - v_L.F_L + Omega (5.5.6).
-        let derivative = -self.gains.ratio * direction.dot(&direction)
-            - direction.dot(&command.stabilizing)
-            + self.dissipation.omega;
-        terms.lyapunov = Some((command.lyapunov, derivative));
-        terms
     }
-}
 
-/// An obstacle without force.
-fn idle(body: &Body, position: Vector2<f64>) -> ObstacleTerms {
-    let squared = body.offset(position).distance_squared;
-    let region = if !body.state.present {
-        "absent"
-    } else if squared <= body.regions.critical_radius * body.regions.critical_radius {
-        "critical"
-    } else if squared < body.regions.active_radius * body.regions.active_radius {
-        "active"
-    } else {
-        "free"
-    };
-    ObstacleTerms::idle(region)
+    /// Whether the place is in a critical region.
+    pub(super) fn are_critical(&self) -> bool {
+        let mut obstacles = self.obstacles.iter();
+        obstacles.any(|obstacle| obstacle.region == "critical")
+    }
 }
