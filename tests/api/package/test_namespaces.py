@@ -161,7 +161,7 @@ def test_a_run_loads_what_it_needs() -> None:
 
 
 def test_modules_and_names_below_are_found_before_anything_is_loaded() -> None:
-    for asked in ("outcomes.OUTCOMES", "Camera", "run_table", "InvalidParameterError", "gains.metrics.METRICS"):
+    for asked in ("outcomes.OUTCOMES", "Camera", "tables", "InvalidParameterError", "gains.metrics.METRICS"):
         assert "hrsafety.navigation" in loaded_by(f"import hrsafety.navigation as nav; nav.{asked}")
 
 
