@@ -188,6 +188,21 @@ def test_an_edge_or_a_law_without_data_is_not_kept(judged: Any) -> None:
     assert report["verdicts"][0]["verdict"] != "within_limits"
 
 
+def test_doubts_stand_beside_every_covering_thickness_map_and_chance(judged: Any) -> None:
+    ball = re.sub(r"material = .*", 'material = { law = "linear", E = 4e4 }', SMALL).replace("0.25", "0.6")
+    ball = ball.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.02').replace("thickness = 0.02", "thickness = 0.05")
+    ball = ball.replace("[robot]", "[uncertain]\nrobot_mass = { lognormal = 0.1 }\n[robot]", 1)
+    report, page = judged(ball)
+    deep = "the covering is compressed by more than half of a radius"
+    bare, covered = report["results"][0]["rows"]
+    assert bare["reasons"] == bare["least_thickness_reasons"] == []
+    assert covered["least_thickness_status"] == "found"
+    for reasons in (covered["reasons"], covered["least_thickness_reasons"], report["probability"][0]["reasons"]):
+        assert any(reason.startswith(deep) for reason in reasons)
+    assert any(deep in reason for reason in report["map"]["reasons"])
+    assert deep in page.partition("Of the map of allowed speeds:")[2]
+
+
 def test_a_robot_that_cannot_yield(judged: Any) -> None:
     base = SMALL.replace(
         "mass = 16.35", 'base = "differential"\nmass = 20.0\ninertia = 0.8\npoint = [0, 0]\nnormal = [0, 1]'
