@@ -331,9 +331,10 @@ def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | N
         return None
     rules: dict[str, Any] = dict(cell.separation)
     farthest, most = rules.pop("farthest"), rules.pop("max_speed")
-    # A contact that is not permitted, or of which nothing is known, allows none at all.
+    # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
+    # fast has an allowed speed, if every limit behind it was checked.
     speeds = [each.verdict["allowed_speed"] for each in judged]
-    unknown = any(each.verdict["verdict"] in ("not_permitted", "not_checked") for each in judged)
+    unknown = any(each.verdict["reasons"] for each in judged)
     least = None if unknown or any(each is None for each in speeds) else min(speeds)
     return standards.speed_over_distance(
         np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=least, max_speed=most, **rules

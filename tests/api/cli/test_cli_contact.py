@@ -188,9 +188,24 @@ def test_an_edge_or_a_law_without_data_is_not_kept(judged: Any) -> None:
     assert report["verdicts"][0]["verdict"] != "within_limits"
 
 
+def test_a_contact_that_is_not_wholly_checked_gives_no_speed_over_distance(judged: Any) -> None:
+    bare = SMALL.replace('covering = "pad"\n', "").replace("contact_area = 1e-4\n", "")
+    bare = bare.split("[[contacts]]")[0] + '[[contacts]]\nregion = "hand_finger"\ncontact = "quasi_static"\n'
+    stop = "[separation]\nmax_speed = 1.5\nreaction_time = 0.1\ndeceleration = 3.0\n"
+    for speed, word in (("0.05", "not_checked"), ("0.9", "exceeds")):
+        report, page = judged(bare.replace("speed = 0.25", f"speed = {speed}") + stop)
+        assert report["verdict"] == word
+        # The force allows some speed, but nobody knows whether the pressure does.
+        assert report["verdicts"][0]["allowed_speed"] > 0.1
+        assert report["speed_over_distance"]["contact"] == "not_permitted"
+        assert report["speed_over_distance"]["speed"][0] == 0.0
+        assert "the robot must stand before it" in page
+
+
 def test_doubts_stand_beside_every_covering_thickness_map_and_chance(judged: Any) -> None:
     ball = re.sub(r"material = .*", 'material = { law = "linear", E = 4e4 }', SMALL).replace("0.25", "0.6")
-    ball = ball.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.02').replace("thickness = 0.02", "thickness = 0.05")
+    ball = ball.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.02')
+    ball = ball.replace("thickness = 0.02", "thickness = 0.05")
     ball = ball.replace("[robot]", "[uncertain]\nrobot_mass = { lognormal = 0.1 }\n[robot]", 1)
     report, page = judged(ball)
     deep = "the covering is compressed by more than half of a radius"
