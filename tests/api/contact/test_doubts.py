@@ -284,6 +284,14 @@ def test_who_appears_is_present_at_once() -> None:
     assert "absent" not in on_top.verdict
 
 
+def test_who_stands_still_from_the_touch_on_came_with_the_speed_before_it() -> None:
+    # 1 m/s until the touch at the third instant: a speed of 0.5 m/s there would be within limits.
+    found = margins([(0.52, 0.0), (0.42, 0.0), (0.32, 0.0), (0.32, 0.0), (0.32, 0.0)], [limit(force=400.0)])
+    assert found.touching.ravel().tolist() == [False, False, True, True, True]
+    assert found.closing_speed.ravel() == pytest.approx([1.1, 1.1, 1.1, 0.1, 0.1])
+    assert found.verdict.ravel().tolist() == ["exceeds"] * 3 + ["within_limits"] * 2
+
+
 def test_margins_carry_units_and_regions() -> None:
     found = margins(STANDING, [limit(), limit(region="hand", spring_constant=75e3, force=50.0, body_mass=math.inf)])
     assert found.region == "hand"
