@@ -229,6 +229,16 @@ def test_a_robot_that_cannot_yield(judged: Any) -> None:
     assert ">unbounded</data> kg" in page
 
 
+def test_the_pose_behind_the_mass_of_an_arm_is_named(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    arm = f'urdf = "{(EXAMPLES / "cell_arm.urdf").as_posix()}"\n'
+    judged(SMALL.replace("mass = 16.35", arm + "poses = [{ elbow = 1.5 }]"))
+    assert "worst pose     turn 0, shoulder 0, elbow 1.5, " in capsys.readouterr().out
+    report, _ = judged(SMALL.replace("mass = 16.35", arm + "samples = 20"))
+    shown = capsys.readouterr().out
+    assert f"elbow {report['robot']['pose'][2]['value']:.4g}, " in shown
+    assert "of 20 drawn between the limits of the joints; poses in [robot] names those that occur" in shown
+
+
 def test_the_robot_has_its_own_share_of_the_speed(judged: Any) -> None:
     still = judged(SMALL)[0]["verdicts"][0]
     met = judged("human_speed = 0.2\n" + SMALL)[0]["verdicts"][0]
