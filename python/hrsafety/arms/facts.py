@@ -19,6 +19,7 @@ class Facts(Parameters):
     __slots__ = ()
 
     _facts: dict[str, Any]
+    armature: tuple[tuple[str, float], ...]
 
     @property
     def name(self) -> str:
@@ -84,8 +85,10 @@ class Facts(Parameters):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why masses may not be what they seem."""
         found = []
-        if not self._facts["has_armature"]:
-            found.append(ResultWarning("no_motor_inertia", "armature", NO_MOTOR_INERTIA))
+        without = self._without_motors()
+        if without:
+            named = "" if without == self.free_joints else f" for {', '.join(without)}"
+            found.append(ResultWarning("no_motor_inertia", "armature", NO_MOTOR_INERTIA.format(named)))
         for link in self.suspicious_links:
             message = f"link {link!r} has a radius of gyration below 2 mm: its inertia is hardly real"
             found.append(ResultWarning("suspicious_link", f"link[{link!r}]", message))
@@ -93,3 +96,10 @@ class Facts(Parameters):
             message = f"link {link!r} has a shape but no inertial: without what it weighs masses are too low"
             found.append(ResultWarning("link_without_mass", f"link[{link!r}]", message))
         return tuple(found)
+
+    def _without_motors(self) -> tuple[str, ...]:
+        """Return the joints of which nothing is known about the motor; a 0 beside other numbers is known."""
+        if not self._facts["has_armature"]:
+            return self.free_joints or self.joint_names
+        named = {name for name, _ in self.armature}
+        return tuple(name for name in self.free_joints if name not in named)

@@ -13,7 +13,7 @@ from hrsafety.plausibility import ResultWarning
 
 __all__ = ["NO_MOTOR_INERTIA", "RULES", "Extremes", "PointMasses", "mass_by_rule"]
 
-NO_MOTOR_INERTIA = "no motor inertia given: effective masses are lower bounds, on the unsafe side"
+NO_MOTOR_INERTIA = "no motor inertia given{}: effective masses are lower bounds, on the unsafe side"
 RULES = ("larger", "iso", "directional")
 
 

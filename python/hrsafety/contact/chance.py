@@ -10,8 +10,16 @@ from hrsafety._arguments import callback, checked_seed, count, number, positive,
 from hrsafety._display import displayed
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
-from hrsafety.contact.rows import TOLERANCE, applying, contact_row, in_order, limits_of, row_name, spring_of
-from hrsafety.contact.speed import missing_limits
+from hrsafety.contact.rows import (
+    TOLERANCE,
+    applying,
+    contact_row,
+    in_order,
+    limits_of,
+    missing_limits,
+    row_name,
+    spring_of,
+)
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["Exceedance", "probability"]

@@ -162,7 +162,8 @@ class ContactMargins(Table):
         In s.
     closing_speed, robot_share : ndarray, shape (n, m)
         Speed at which robot and person close in along the line between them, and what of it is the
-        robot's, in m/s; NaN while the person is absent.
+        robot's, in m/s; NaN while the person is absent. Of the person's speeds before and after an instant the
+        one that closes in faster counts.
     margin : ndarray, shape (n, m)
         Allowed less closing speed in m/s; NaN where nothing limits it.
     verdict : ndarray of str, shape (n, m)
@@ -267,7 +268,7 @@ def contact_margins(
     with np.errstate(invalid="ignore", divide="ignore"):
         normal = away / distance[:, :, None]
     share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
-    closing = share - np.einsum("nmk,nmk->nm", _velocities(trajectory.time, trajectory.obstacle_position), normal)
+    closing = share + _approach(trajectory.time, trajectory.obstacle_position, normal)
     limits = [_limit_at(trajectory, base, covering, each, normal, reach, area) for each in regions]
     limit = np.min([each.speed for each in limits], axis=0)
     known = np.all([each.known for each in limits], axis=0)
@@ -300,16 +301,17 @@ def _within_reach(regions: Sequence[Any], cover_height: float | None) -> list[An
     return [each for each in regions if height >= LOWEST.get(each.region, 0.0)]
 
 
-def _velocities(time: Array, position: Array) -> Array:
-    """Return velocities of obstacles; beside an absence of one from the side where it is there."""
+def _approach(time: Array, position: Array, normal: Array) -> Array:
+    """Return speeds of obstacles against a normal, the larger one of those before and after each instant.
+
+    Who stands still from a touch on came with the speed before it, and a mean of both would be half of that.
+    """
     if len(time) < 2:
-        return np.full_like(position, np.nan)
-    found = np.gradient(position, time, axis=0)
+        return np.full(normal.shape[:2], np.nan)
     steps = np.diff(position, axis=0) / np.diff(time)[:, None, None]
     unknown = np.full_like(position[:1], np.nan)
-    for side in (np.concatenate([steps, unknown]), np.concatenate([unknown, steps])):
-        found = np.where(np.isnan(found), side, found)
-    return found
+    before, after = np.concatenate([unknown, steps]), np.concatenate([steps, unknown])
+    return np.asarray(np.fmax(*(-np.einsum("nmk,nmk->nm", each, normal) for each in (before, after))))
 
 
 class _Limits(NamedTuple):

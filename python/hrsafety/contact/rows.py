@@ -22,6 +22,7 @@ __all__ = [
     "contact_row",
     "in_order",
     "limits_of",
+    "missing_limits",
     "row_name",
     "spring_of",
 ]
@@ -66,6 +67,15 @@ def limits_of(given: object) -> dict[str, float]:
         f"{name}_limit": math.nan if value is None else positive(f"limits.{name}", value)
         for name, value in found.items()
     }
+
+
+def missing_limits(values: Mapping[str, float], *, bare: bool) -> tuple[str, ...]:
+    """Return the limits that are not checked: none is given, or no area of a bare contact."""
+    return tuple(
+        name
+        for name in ("force", "pressure")
+        if math.isnan(values[f"{name}_limit"]) or (name == "pressure" and bare and math.isnan(values["area"]))
+    )
 
 
 def _mass(name: str, value: object) -> float:

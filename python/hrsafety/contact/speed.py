@@ -16,7 +16,7 @@ from hrsafety._records import dataclass
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.many import many
-from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, spring_of
+from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
 from hrsafety.tables import Columns, Table
 
@@ -32,6 +32,8 @@ __all__ = [
 
 _GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
 _FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
+_THINNEST = 1e-4
+"""Thinnest covering that is looked at, in m."""
 
 
 @displayed
@@ -187,15 +189,6 @@ def allowed_speed(
     )
 
 
-def missing_limits(values: Mapping[str, float], *, bare: bool) -> tuple[str, ...]:
-    """Return the limits that are not checked: none is given, or no area of a bare contact."""
-    return tuple(
-        name
-        for name in ("force", "pressure")
-        if math.isnan(values[f"{name}_limit"]) or (name == "pressure" and bare and math.isnan(values["area"]))
-    )
-
-
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class AllowedSpeeds(Table):
     """Allowed closing speeds as arrays of the broadcast shape, NaN where there is none.
@@ -326,11 +319,13 @@ class LeastThickness:
     Attributes
     ----------
     thickness : float or None
-        In m; 0 if bare is enough, ``None`` if not even 1 m suffices.
+        In m; 0 if bare is enough, ``None`` if not even 1 m suffices. Coverings of 0.1 mm and more are looked at.
     status : {"found", "bare_is_enough", "none_up_to_1_m"}
-        What was found. The strain counts: a thin pad may be slower than none.
+        What was found: bare is enough where it keeps the limits, and so does a covering of 0.1 mm. The strain counts: a
+        thin pad may be slower than none.
     not_checked : tuple of str
-        Limits that were not checked; they never count as kept.
+        Limits that were not checked; they never count as kept. The pressure of a bare contact needs the area of a flat
+        covering.
     warnings : tuple of ResultWarning
         As in `AllowedSpeed`.
     """
@@ -398,6 +393,16 @@ def thickness(
     values |= limits_of(limits)
     value, status = _hrsafety.contact_thickness(shared, in_order(values))
     missing = missing_limits(values, bare=pad is None)
+    if status == "bare_is_enough" and pad is not None:
+        bare, alone = contact_row(
+            robot_mass=robot_mass, body_mass=body_mass, region=region, covering=None, tolerance=TOLERANCE, area=pad.area
+        )
+        alone |= limits_of(limits)
+        if shared["region"] == "rigid" or _hrsafety.contact_speed(bare, in_order(alone))["speed"] < speed:
+            # What keeps the limits is the thinnest covering that is looked at, not the lack of one.
+            value, status = _THINNEST, "found"
+        else:
+            missing = missing_limits(alone, bare=True)
     doubted = values | {"thickness": value if value > 0.0 else math.nan}
     depth = math.nan
     if value > 0.0:

@@ -200,9 +200,14 @@ def _checked(rows: Rows) -> Iterator[LimitRow]:
         raise InvalidParameterError("file", f"have at most {MOST_ROWS} rows", len(rows))
     places: dict[tuple[str, str | None, str], str] = {}
     bodies: dict[tuple[str, str], tuple[float, str]] = {}
+    spelled: dict[tuple[str, str], str] = {}
     for place, given in rows:
         row = _row(place, given)
         key = (row.region, row.area, row.contact)
+        for kind, name in (("region", row.region), ("area", row.area or "")):
+            other = spelled.setdefault((kind, name.casefold()), name)
+            if other != name:
+                raise InvalidParameterError(f"{place}: {kind}", f"be spelled as above ({other!r})", name)
         if key in places:
             raise InvalidParameterError(place, f"not say again what {places[key]} says", Shown(_named(row)))
         places[key] = place

@@ -133,6 +133,18 @@ def test_motor_inertia_is_given_by_name_in_order_or_for_all() -> None:
     names = {name: 0.2 for name in ARM.joint_names}
     given = [arms.Arm.example(armature=each) for each in (names, [0.2] * 6, 0.2)]
     assert given[0] == given[1] == given[2]
+    assert given[0].warnings == ()
+
+
+def test_motors_of_some_joints_do_not_hide_that_others_have_none() -> None:
+    known = {name: 0.2 for name in ARM.joint_names[1:]}
+    (warning,) = arms.Arm.example(armature=known).warnings
+    assert warning.code == "no_motor_inertia"
+    assert f"no motor inertia given for {ARM.joint_names[0]}: effective masses are lower bounds" in warning.message
+    assert arms.Arm.example(armature=known | {ARM.joint_names[0]: 0.0}).warnings == ()  # a joint without a motor
+    assert arms.Arm.example(armature=known, locked=ARM.joint_names[:1]).warnings == ()
+    nothing = {name: 0.0 for name in ARM.joint_names}
+    assert [each.code for each in arms.Arm.example(armature=nothing).warnings] == ["no_motor_inertia"]
 
 
 @pytest.mark.parametrize(

@@ -189,6 +189,36 @@ def test_an_edge_or_a_law_without_data_is_not_kept(judged: Any) -> None:
     assert report["verdicts"][0]["verdict"] != "within_limits"
 
 
+def test_a_contact_that_is_not_wholly_checked_gives_no_speed_over_distance(judged: Any) -> None:
+    bare = SMALL.replace('covering = "pad"\n', "").replace("contact_area = 1e-4\n", "")
+    bare = bare.split("[[contacts]]")[0] + '[[contacts]]\nregion = "hand_finger"\ncontact = "quasi_static"\n'
+    stop = "[separation]\nmax_speed = 1.5\nreaction_time = 0.1\ndeceleration = 3.0\n"
+    for speed, word in (("0.05", "not_checked"), ("0.9", "exceeds")):
+        report, page = judged(bare.replace("speed = 0.25", f"speed = {speed}") + stop)
+        assert report["verdict"] == word
+        # The force allows some speed, but nobody knows whether the pressure does.
+        assert report["verdicts"][0]["allowed_speed"] > 0.1
+        assert report["speed_over_distance"]["contact"] == "not_permitted"
+        assert report["speed_over_distance"]["speed"][0] == 0.0
+        assert "the robot must stand before it" in page
+
+
+def test_doubts_stand_beside_every_covering_thickness_map_and_chance(judged: Any) -> None:
+    ball = re.sub(r"material = .*", 'material = { law = "linear", E = 4e4 }', SMALL).replace("0.25", "0.6")
+    ball = ball.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.02')
+    ball = ball.replace("thickness = 0.02", "thickness = 0.05")
+    ball = ball.replace("[robot]", "[uncertain]\nrobot_mass = { lognormal = 0.1 }\n[robot]", 1)
+    report, page = judged(ball)
+    deep = "the covering is compressed by more than half of a radius"
+    bare, covered = report["results"][0]["rows"]
+    assert bare["reasons"] == bare["least_thickness_reasons"] == []
+    assert covered["least_thickness_status"] == "found"
+    for reasons in (covered["reasons"], covered["least_thickness_reasons"], report["probability"][0]["reasons"]):
+        assert any(reason.startswith(deep) for reason in reasons)
+    assert any(deep in reason for reason in report["map"]["reasons"])
+    assert deep in page.partition("Of the map of allowed speeds:")[2]
+
+
 def test_a_robot_that_cannot_yield(judged: Any) -> None:
     base = SMALL.replace(
         "mass = 16.35", 'base = "differential"\nmass = 20.0\ninertia = 0.8\npoint = [0, 0]\nnormal = [0, 1]'
@@ -198,6 +228,16 @@ def test_a_robot_that_cannot_yield(judged: Any) -> None:
     clamped = report["verdicts"][0]
     assert (clamped["allowed_speed"], clamped["verdict"], clamped["status"]) == (0.0, "exceeds", "unbounded_mass")
     assert ">unbounded</data> kg" in page
+
+
+def test_the_pose_behind_the_mass_of_an_arm_is_named(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    arm = f'urdf = "{(EXAMPLES / "cell_arm.urdf").as_posix()}"\n'
+    judged(SMALL.replace("mass = 16.35", arm + "poses = [{ elbow = 1.5 }]"))
+    assert "worst pose     turn 0, shoulder 0, elbow 1.5, " in capsys.readouterr().out
+    report, _ = judged(SMALL.replace("mass = 16.35", arm + "samples = 20"))
+    shown = capsys.readouterr().out
+    assert f"elbow {report['robot']['pose'][2]['value']:.4g}, " in shown
+    assert "of 20 drawn between the limits of the joints; poses in [robot] names those that occur" in shown
 
 
 def test_the_robot_has_its_own_share_of_the_speed(judged: Any) -> None:

@@ -177,6 +177,7 @@ def test_unbalanced_sobol_design_is_told_on_terminal_and_page(
         (FAST + "[design]\nsize = 4\n", "design.size must not be given for a grid"),
         (FAST + "[design]\nkind = 'sobol'\nsize = 0\n", "design.size must be an integer from 1 to"),
         (FAST + "[run]\nstep = 0.01\n", "run must be given with scenarios only"),
+        (FAST + "[foam]\ndamping = 50.0\n", "foam.stiffness must be given, got nothing; numbers of a foam"),
         (CROSSING + "[impact]\n", "impact must not be given with scenarios"),
         (CROSSING.replace('"c2"', '"c9"'), "scenarios[1] must be a scenario file or one of"),
         (CROSSING + "[run]\nstep = -1.0\n", "step must be finite and positive"),

@@ -233,6 +233,24 @@ def margins(places: Any, regions: list[SimpleNamespace], **options: Any) -> cont
     return contact.contact_margins(run, regions=regions, robot_radius=0.2, person_radius=0.1, **given)
 
 
+def test_bare_is_enough_only_where_bare_keeps_the_limits() -> None:
+    stiff = {"law": "rusch", "a": 1e6, "p": 0.1, "b": 1e3, "q": 2.0}
+    case: dict[str, Any] = {"robot_mass": 2.0, "body_mass": None, "region": 25e3, "limits": {"force": 20.0}}
+    flat = {"material": stiff, "area": 2e-5, "bottom": (0.9, 1e3)}
+    bare = contact.allowed_speed(**case)
+    slow, fast = (contact.thickness(**case, covering=flat, speed=share * bare.speed) for share in (0.9, 1.05))
+    assert (slow.thickness, slow.status, slow.not_checked) == (0.0, "bare_is_enough", ("pressure",))
+    assert (fast.thickness, fast.status) == (1e-4, "found")
+    rigid = contact.thickness(**case | {"region": None}, covering=flat, speed=0.9 * bare.speed)
+    assert rigid.status == "found"
+    # The pressure of a bare contact is known with an area only.
+    case["limits"] = {"force": 20.0, "pressure": 1e7}
+    ball = {"material": stiff, "shape": "sphere", "radius": 0.1, "bottom": (0.9, 1e3)}
+    found = [contact.thickness(**case, covering=pad, speed=0.01) for pad in (flat, ball)]
+    assert [each.status for each in found] == ["bare_is_enough"] * 2
+    assert [each.not_checked for each in found] == [(), ("pressure",)]
+
+
 STANDING = [(2.0, 0.0)] * 4
 
 
@@ -282,6 +300,14 @@ def test_who_appears_is_present_at_once() -> None:
     assert margins([(2.0, 0.0)], [limit()]).verdict.tolist() == [["not_checked"]]
     on_top = margins([(0.0, 0.0), (0.01, 0.0), (0.5, 0.0)], [limit()])
     assert "absent" not in on_top.verdict
+
+
+def test_who_stands_still_from_the_touch_on_came_with_the_speed_before_it() -> None:
+    # 1 m/s until the touch at the third instant: a speed of 0.5 m/s there would be within limits.
+    found = margins([(0.52, 0.0), (0.42, 0.0), (0.32, 0.0), (0.32, 0.0), (0.32, 0.0)], [limit(force=400.0)])
+    assert found.touching.ravel().tolist() == [False, False, True, True, True]
+    assert found.closing_speed.ravel() == pytest.approx([1.1, 1.1, 1.1, 0.1, 0.1])
+    assert found.verdict.ravel().tolist() == ["exceeds"] * 3 + ["within_limits"] * 2
 
 
 def test_margins_carry_units_and_regions() -> None:

@@ -212,6 +212,11 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
     other = "chest,sternum,transient,,60,26,,own tests,"
     with pytest.raises(InvalidParameterError, match=r"line 3: spring_constant must be the same in all rows of chest"):
         own(tmp_path, ROWS[0], other)
+    # Read as a region of its own, this row would limit nothing of the chest.
+    stricter = "Chest,,quasi_static,50,,,,own tests,"
+    refused = r"line 3: region must be spelled as above \('chest'\), got 'Chest'"
+    with pytest.raises(InvalidParameterError, match=refused):
+        own(tmp_path, ROWS[0], stricter)
     with pytest.raises(InvalidParameterError, match=r"file must have rows"):
         own(tmp_path)
 

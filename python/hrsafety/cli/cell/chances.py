@@ -8,6 +8,7 @@ from typing import Any
 
 from hrsafety import contact
 from hrsafety.cli.cell.file import Cell, Planned
+from hrsafety.cli.cell.judgement import reasons_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios import keys as kind
 
@@ -107,6 +108,7 @@ def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None
         "quantiles": list(found.quantiles),
         "draws": found.draws,
         "uncertain": sorted(uncertain),
+        "reasons": reasons_of(found.warnings),
     }
 
 

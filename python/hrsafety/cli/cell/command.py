@@ -91,9 +91,18 @@ def _summary(path: str, report: Mapping[str, Any]) -> Iterator[str]:
         directional = robot["directional_mass"]
         shown = directional if isinstance(directional, str) else f"{directional:.3f} kg"
         yield f"masses         effective {shown}, ISO/TS 15066 {robot['iso_mass']:.3f} kg"
+        pose = ", ".join(f"{each['joint']} {each['value']:.4g}" for each in robot["pose"])
+        yield f"worst pose     {pose} (rad or m), of {robot['poses']:,}{_drawn(report)}"
     yield f"limits         {limits['title']}, edition {limits['edition']}"
     yield f"verdict        {VERDICT_WORDS[report['verdict']]}"
     yield f"               {cell_report.CONFIRM}"
+
+
+def _drawn(report: Mapping[str, Any]) -> str:
+    """Return what poses are that the file does not name: among them are some that hardly yield."""
+    if "samples" not in report["inputs"]["robot"]:
+        return ""
+    return " drawn between the limits of the joints; poses in [robot] names those that occur"
 
 
 def _table(report: Mapping[str, Any]) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from hrsafety import contact
 from hrsafety.cli.cell.file import Cell, Planned
+from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["FASTEST", "Judged", "common", "governing", "judged_of", "known", "strain"]
+__all__ = ["FASTEST", "Judged", "common", "governing", "judged_of", "known", "reasons_of", "strain"]
 
 UNCHECKED = frozenset(
     {
@@ -34,6 +35,11 @@ class Judged(NamedTuple):
     def chosen(self) -> contact.AllowedSpeed | None:
         """The allowed speed with the planned covering."""
         return self.bare if self.planned.covering is None else self.covered.get(self.planned.covering)
+
+
+def reasons_of(found: Iterable[ResultWarning]) -> list[str]:
+    """Return why limits do not count as kept."""
+    return [each.message for each in found if each.code in UNCHECKED]
 
 
 def common(cell: Cell, planned: Planned) -> dict[str, Any]:
@@ -87,7 +93,7 @@ def _verdict(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None)
     elif allowed is None:
         reasons.append("the limit set has no spring constant or no mass of the region")
     else:
-        reasons += [each.message for each in allowed.warnings if each.code in UNCHECKED]
+        reasons += reasons_of(allowed.warnings)
     most = None
     if allowed is not None:
         most = FASTEST if allowed.status == "unlimited_up_to_20" else allowed.speed

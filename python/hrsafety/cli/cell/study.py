@@ -14,7 +14,7 @@ from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.cli.cell.chances import chance_of
 from hrsafety.cli.cell.file import Cell, Planned
-from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, strain
+from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, reasons_of, strain
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.verdicts import strictest
@@ -31,10 +31,12 @@ MAPPED = {"linear": "modulus", "gibson_ashby": "plateau", "rusch": "b", "avalle"
 
 _RESULT = (
     *("covering", "allowed_closing_speed", "governs", "status", "speed_force", "speed_pressure", "speed_strain"),
-    *("further_crossings", "not_checked", "peak_force", "peak_pressure", "peak_strain", "bottomed", "end"),
+    *("further_crossings", "peak_force", "peak_pressure", "peak_strain", "bottomed", "end"),
     *("least_thickness", "least_thickness_status"),
 )
 """Fields of a result; null where there is none."""
+_LISTS = ("not_checked", "reasons", "least_thickness_reasons")
+"""Fields of a result that are lists."""
 
 
 class Curve(NamedTuple):
@@ -215,6 +217,7 @@ def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
         **{f"speed_{name}": value for name, value in allowed.speeds.items()},
         "further_crossings": list(allowed.further),
         "not_checked": list(allowed.not_checked),
+        "reasons": reasons_of(allowed.warnings),
     }
 
 
@@ -224,7 +227,7 @@ def _result(cell: Cell, judged: Judged, impacts: Mapping[str, Mapping[str, conta
     rows = []
     for covering in (None, *cell.coverings):
         allowed = judged.bare if covering is None else judged.covered.get(covering)
-        row: dict[str, Any] = dict.fromkeys(_RESULT) | {"covering": covering, "not_checked": []}
+        row: dict[str, Any] = dict.fromkeys(_RESULT) | {"covering": covering} | {name: [] for name in _LISTS}
         if allowed is not None:
             row |= _allowed_fields(allowed)
         impact = impacts.get(planned.limit.region, {}).get(_label(planned, covering))
@@ -258,7 +261,11 @@ def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
     found = contact.thickness(
         **common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=strain(cell, covering)
     )
-    return {"least_thickness": found.thickness, "least_thickness_status": found.status}
+    return {
+        "least_thickness": found.thickness,
+        "least_thickness_status": found.status,
+        "least_thickness_reasons": reasons_of(found.warnings),
+    }
 
 
 def _curve_fields(
@@ -315,6 +322,7 @@ def _map(cell: Cell, judged: Judged) -> dict[str, Any] | None:
         "strength": strength,
         "speed": [[None if math.isnan(each) else each for each in row] for row in found.speed.tolist()],
         "planned_closing_speed": judged.verdict["planned_closing_speed"],
+        "reasons": reasons_of(found.warnings),
     }
 
 
@@ -323,9 +331,10 @@ def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | N
         return None
     rules: dict[str, Any] = dict(cell.separation)
     farthest, most = rules.pop("farthest"), rules.pop("max_speed")
-    # A contact that is not permitted, or of which nothing is known, allows none at all.
+    # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
+    # fast has an allowed speed, if every limit behind it was checked.
     speeds = [each.verdict["allowed_speed"] for each in judged]
-    unknown = any(each.verdict["verdict"] in ("not_permitted", "not_checked") for each in judged)
+    unknown = any(each.verdict["reasons"] for each in judged)
     least = None if unknown or any(each is None for each in speeds) else min(speeds)
     return standards.speed_over_distance(
         np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=least, max_speed=most, **rules

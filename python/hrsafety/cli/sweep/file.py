@@ -210,7 +210,11 @@ def _impact(fields: dict[str, Any]) -> sweep.ImpactStudy:
     if "manipulator" in fields:
         options["manipulator"] = foam_file.manipulator_of(fields["manipulator"])
     if "foam" in fields:
-        foam = checked("foam", fields["foam"], _FOAM, required=("stiffness", "damping"))
+        foam = checked("foam", fields["foam"], _FOAM)
+        for name in ("stiffness", "damping"):
+            if name not in foam:
+                remedy = "numbers of a foam by themselves go below [impact]: foam_stiffness, foam_damping, thickness"
+                raise kind.missing(f"foam.{name}", f"{remedy}, linear_range")
         with located("foam"):
             options["foam"] = impact.Foam(**foam)
     if "head" in fields:
