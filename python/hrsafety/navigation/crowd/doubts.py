@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
-from hrsafety.navigation.laws.safe_navigation import SafeNavigation
-from hrsafety.navigation.shield_warnings import Motion, Mover, of_surroundings
+from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.shield_warnings import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_robots"]
@@ -30,24 +30,28 @@ def of_robots(
     Returns
     -------
     tuple of ResultWarning
-        With the code ``"shield_assumes_less"``.
+        With the codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
     found: list[ResultWarning] = []
     for index, robot in enumerate(robots):
-        law = robot.law
-        if not isinstance(law, SafeNavigation) or law.shield is None:
+        shield, knows_map = shield_of(robot.law)
+        if shield is None:
             continue
+        found += of_order(robot.law, f"robots[{index}].law")
         others = [each for each in _speeds(people, sources, robots) if each[0] != f"robots[{index}]"]
         fastest = max(others, key=lambda each: each[1], default=None)
+        motion = Motion(robot.robot, step if robot.control_period is None else robot.control_period, step)
         found += of_surroundings(
-            law.shield,
+            shield,
             # Everybody decides anew at each step, for any velocity up to the largest speed.
             () if fastest is None else (Mover(*fastest, jump=2.0 * fastest[1]),),
             measurement=robot.measurement,
-            motion=Motion(robot.robot, step if robot.control_period is None else robot.control_period, step),
-            walls=walls,
+            motion=motion,
+            walls=walls or knows_map,
             owner=f"robots[{index}].law.shield",
         )
+        sizes = [size for who, size in _radii(people, sources, robots) if who != f"robots[{index}]"]
+        found += _of_range(f"robots[{index}]", robot, motion, shield, max(sizes, default=0.0))
     return tuple(found)
 
 
@@ -64,9 +68,37 @@ def _speeds(
         yield f"robots[{index}]", robot.robot.max_speed
 
 
+def _radii(
+    people: Iterable[Person], sources: Iterable[Source], robots: Iterable[CrowdRobot]
+) -> Iterator[tuple[str, float]]:
+    """Yield who is in a world, and the radius in m."""
+    yield from ((f"people[{index}]", person.radius) for index, person in enumerate(people))
+    yield from ((f"sources[{index}]", source.radius) for index, source in enumerate(sources))
+    yield from ((f"robots[{index}]", robot.robot.radius) for index, robot in enumerate(robots))
+
+
+def _of_range(owner: str, robot: CrowdRobot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
+    """Warn of a range within which somebody may stand whom the robot does not see, and cannot stop for."""
+    if shield.person_speed is None or radius == 0.0:
+        return
+    plan = motion.plan_duration
+    touch = robot.robot.radius + radius + shield.margin + shield.position_error
+    least = touch + shield.person_speed * (shield.latency + plan) + robot.robot.max_speed * plan
+    if robot.sensing_range < least:
+        yield ResultWarning(
+            SEES_LESS,
+            f"{owner}.sensing_range",
+            f"sensing_range of {owner} is {robot.sensing_range:.4g} m, but its shield reckons with people up to "
+            f"{least:.4g} m away until the robot stands: who is farther than the range is not there for it; give at "
+            f"least sensing_range={math.ceil(least * 1e3) / 1e3:g}",
+        )
+
+
 def _largest_speed(owner: Person | Source) -> float:
     desired = FASTEST_DRAWN if owner.desired_speed is None else owner.desired_speed
-    return desired * owner.model.max_speed_ratio if desired else 0.0
+    # Where a model has no largest speed, forces move those who do not want to go as well.
+    ratio = owner.model.max_speed_ratio
+    return desired * ratio if desired or math.isfinite(ratio) else math.inf
 
 
 def _recorded_speed(person: Person) -> float | None:
