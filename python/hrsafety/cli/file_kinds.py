@@ -12,6 +12,7 @@ from hrsafety._records import dataclass
 from hrsafety.cli import cell_file, foam_file, optimize_file, output, sweep_file
 from hrsafety.cli.parsers import STARTERS
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation import run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios import files
 
@@ -46,7 +47,8 @@ class FileKind:
 
 
 def _scenario(path: str) -> Warnings:
-    return output.warnings_of(scenarios.load(path).scenario)
+    scenario, law = scenarios.load(path)
+    return tuple(dict.fromkeys((*scenario.warnings, *run_warnings.of_run(scenario, law))))
 
 
 def _foam(path: str) -> Warnings:
