@@ -34,6 +34,22 @@ def test_enough_is_no_doubt() -> None:
 
 
 @pytest.mark.parametrize(
+    ("person", "robot", "subject"),
+    [
+        ({"desired_speed": 1300.0}, {}, "people[0].desired_speed"),
+        ({"recording": ([0.0, 0.4], [(4000.0, 1000.0), (3500.0, 1000.0)])}, {}, "people[0].recording"),
+        ({"radius": 25.0}, {}, "people[0].radius"),
+        ({}, {"measurement": nav.Measurement(latency=40.0)}, "robots[0].latency"),
+        ({}, {"robot": nav.HolonomicRobot(max_speed=700.0)}, "robots[0].robot_max_speed"),
+    ],
+)
+def test_numbers_in_other_units_are_told(person: dict[str, Any], robot: dict[str, Any], subject: str) -> None:
+    place = world(nav.VirtualForceField(), {"start": (40.0, 40.0)} | person, **robot)
+    assert [(each.code, each.subject) for each in place.warnings] == [("implausible", subject)]
+    assert nav.crowd.simulate_crowds([place])[0].warnings == place.warnings
+
+
+@pytest.mark.parametrize(
     ("person", "least"),
     [
         ({"desired_speed": 1.2}, "person_speed=1.2"),

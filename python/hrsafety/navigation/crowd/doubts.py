@@ -5,12 +5,59 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+import numpy as np
+
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.shield_warnings import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, gathered, implausible
 
-__all__ = ["of_robots"]
+__all__ = ["of_numbers", "of_robots"]
+
+
+def of_numbers(
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], time_limit: float
+) -> tuple[ResultWarning, ...]:
+    """Return a warning about numbers of a world outside the ranges of their quantities, if there are any.
+
+    Parameters
+    ----------
+    people, sources, robots : sequence of Person, Source, CrowdRobot
+        Who is in the world.
+    time_limit : float
+        In s.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        The first with the number of the others; the code is ``"implausible"``.
+    """
+    found = [("world", implausible({"time_limit": time_limit}))]
+    for index, person in enumerate(people):
+        values: dict[str, object] = {"start": person.start, **_body(person), "recording": _recorded_speed(person)}
+        found.append((f"people[{index}]", implausible(values, _QUANTITIES)))
+    found += [(f"sources[{index}]", implausible(_body(each), _QUANTITIES)) for index, each in enumerate(sources)]
+    for index, robot in enumerate(robots):
+        values = {"start": robot.start, "goal": robot.goal}
+        values |= {f"robot_{name}": getattr(robot.robot, name) for name in _OF_ROBOTS}
+        if robot.measurement is not None:
+            values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}
+        found.append((f"robots[{index}]", implausible(values, _QUANTITIES)))
+    return gathered(found, "bodies")
+
+
+_OF_ROBOTS = ("mass", "radius", "max_speed", "max_acceleration")
+_QUANTITIES = {
+    "start": "floor_position",
+    "goal": "floor_position",
+    "radius": "person_radius",
+    "desired_speed": "person_speed",
+    "recording": "person_speed",
+}
+
+
+def _body(owner: Person | Source) -> dict[str, object]:
+    return {"radius": owner.radius, "desired_speed": owner.desired_speed}
 
 
 def of_robots(
@@ -105,6 +152,5 @@ def _recorded_speed(person: Person) -> float | None:
     """Return the largest speed of a person who follows a recording, else ``None``."""
     if person.recording is None:
         return None
-    time, places = person.recording
-    steps = zip(time, time[1:], places, places[1:], strict=False)
-    return max((math.dist(first, second) / (late - soon) for soon, late, first, second in steps), default=0.0)
+    time, places = np.array(person.recording[0]), np.array(person.recording[1])
+    return float((np.hypot(*np.diff(places, axis=0).T) / np.diff(time)).max(initial=0.0))
