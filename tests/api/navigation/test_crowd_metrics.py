@@ -269,3 +269,23 @@ def test_doubts_of_a_world_reach_its_metrics() -> None:
 
 def test_warnings_of_an_episode_are_warnings() -> None:
     assert refused(warnings=["doubtful"]) == "warnings[0]"
+
+
+@pytest.mark.parametrize(
+    ("given", "subject"),
+    [
+        ({"position": 1e3 * PATH, "people": 1e3 * PEOPLE, "goal": (6e3, 0.0)}, "speed of the robot"),
+        ({"people": 100.0 * PEOPLE}, "speed of the people"),
+        ({"step": 500.0}, "step"),
+        ({"robot_radius": 300.0}, "robot_radius"),
+        ({"person_radius": 25.0}, "person_radius"),
+    ],
+)
+def test_positions_in_other_units_are_told(given: dict[str, Any], subject: str) -> None:
+    episode = nav.metrics.Episode(**({"position": PATH, "people": PEOPLE, **RULES} | given))
+    found = nav.metrics.evaluate(episode).warnings
+    assert found[0].code == "implausible"
+    assert found[0].subject == subject
+    table = nav.metrics.evaluate_many([nav.metrics.Episode(position=PATH, people=PEOPLE, **RULES), episode])
+    assert f"episodes[1].{subject}" in {each.subject for each in table.warnings}
+    assert nav.metrics.evaluate(PATH, PEOPLE, **RULES).warnings == ()

@@ -16,7 +16,7 @@ from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plausibility import ResultWarning, gathered
+from hrsafety.plausibility import ResultWarning, gathered, implausible
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -194,7 +194,29 @@ def evaluate(
     found = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
     doubts = doubts_between(episode, *(values[name] for name in _ENDS))
-    return EpisodeMetrics(values, (*episode.warnings, *doubts))
+    return EpisodeMetrics(values, (*episode.warnings, *_implausible(episode, values["max_speed"]), *doubts))
+
+
+def _implausible(episode: Episode, max_speed: float) -> tuple[ResultWarning, ...]:
+    """Return doubts about units, unless what the episode comes from has some; ``max_speed`` is the metric."""
+    if any(doubt.code == "implausible" for doubt in episode.warnings):
+        return ()
+    people = np.asarray(episode.people, dtype=np.float64)
+    values: dict[str, object] = {"step": episode.step, "robot_radius": episode.robot_radius}
+    values |= {"person_radius": episode.person_radius, "speed of the robot": max_speed}
+    if people.size and len(people) > 1:
+        # From the first to the last instant, for who is there at both.
+        way = np.hypot(*(people[-1] - people[0]).T)
+        values["speed of the people"] = way / ((len(people) - 1) * episode.step)
+    return implausible(values, _QUANTITIES)
+
+
+_QUANTITIES = {
+    "step": "control_period",
+    "person_radius": "person_radius",
+    "speed of the robot": "person_speed",
+    "speed of the people": "person_speed",
+}
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -253,8 +275,10 @@ def evaluate_many(
     given = sequence("episodes", "be a sequence of episodes", episodes)
     names = [f"episodes[{index}]" for index in range(len(given))]
     scored = [_scored(name, each) for name, each in zip(names, given, strict=True)]
-    named = ((name, each.warnings) for name, each in zip(names, scored, strict=True))
-    return table_of(scored, gathered(named, "episodes"), names=names, threads=threads, progress=progress)
+    table = table_of(scored, names=names, threads=threads, progress=progress)
+    speeds = table.max_speed.tolist()
+    own = ((*each.warnings, *_implausible(each, speed)) for each, speed in zip(scored, speeds, strict=True))
+    return MetricTable(table._values, (*gathered(zip(names, own, strict=True), "episodes"), *table.warnings))
 
 
 _ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
