@@ -16,6 +16,7 @@ from hrsafety.cli.optimize import file as optimize_file
 from hrsafety.cli.parsers import STARTERS
 from hrsafety.cli.sweep import file as sweep_file
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios import files
 
@@ -50,7 +51,8 @@ class FileKind:
 
 
 def _scenario(path: str) -> Warnings:
-    return output.warnings_of(scenarios.load(path).scenario)
+    scenario, law = scenarios.load(path)
+    return tuple(dict.fromkeys((*scenario.warnings, *run_warnings.of_run(scenario, law))))
 
 
 def _foam(path: str) -> Warnings:

@@ -19,6 +19,10 @@ __all__ = ["Recording"]
 
 Array = npt.NDArray[np.float64]
 
+# Without a row for longer than this, and than so many median steps, somebody is not seen; the first in s.
+LONG_GAP = 2.0
+GAP_RATIO = 10.0
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Recording:
@@ -86,7 +90,7 @@ class Recording:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Doubts about units: speeds that people hardly walk at, in the median of all steps or in a single one.
+        """Doubts about units and ids: speeds that people hardly walk at, and people who are away for long.
 
         Examples
         --------
@@ -98,7 +102,12 @@ class Recording:
         order = np.lexsort((self.time_s, self.person))
         same = np.diff(self.person[order]) == 0
         steps = np.hypot(*np.diff(self.position[order], axis=0)[same].T)
-        speed = steps / np.diff(self.time_s[order])[same]
+        spans = np.diff(self.time_s[order])[same]
+        rows = order[:-1][same]
+        return (*self._speed_doubts(steps / spans, rows), *self._gaps(spans, rows))
+
+    def _speed_doubts(self, speed: Array, rows: npt.NDArray[np.int64]) -> tuple[ResultWarning, ...]:
+        """Return doubts about the speeds of the steps that begin in rows."""
         walking = speed[speed > 0.0]
         if len(walking) == 0:
             return ()
@@ -107,9 +116,25 @@ class Recording:
         if found:
             return found
         fastest = int(np.argmax(speed))
-        row = order[:-1][same][fastest]
+        row = rows[fastest]
         name = f"speed of person {self.person[row]} after {self.time_s[row]:g} s"
         return implausible({name: float(speed[fastest])}, {name: "running_speed"})
+
+    def _gaps(self, spans: Array, rows: npt.NDArray[np.int64]) -> tuple[ResultWarning, ...]:
+        """Return a doubt about steps, which begin in rows, that take much longer than others."""
+        if len(spans) == 0:
+            return ()
+        long = np.flatnonzero(spans > max(LONG_GAP, GAP_RATIO * float(np.median(spans))))
+        if len(long) == 0:
+            return ()
+        worst = long[np.argmax(spans[long])]
+        row = rows[worst]
+        more = f" ({len(long) - 1} more gaps)" if len(long) > 1 else ""
+        message = (
+            f"person {self.person[row]} is not seen for {spans[worst]:g} s after {self.time_s[row]:g} s and taken to "
+            f"go straight on in between{more}: give who was away, or another person, an id of its own"
+        )
+        return (ResultWarning("gap_in_track", "person", message),)
 
     def people(self) -> npt.NDArray[np.int64]:
         """Return the ids of all people, sorted."""

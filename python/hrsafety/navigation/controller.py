@@ -23,7 +23,7 @@ from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.warnings.shields import of_controller
+from hrsafety.navigation.warnings.shields import of_controller, of_order, shield_of
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Command", "Controller", "Sighting"]
@@ -138,7 +138,8 @@ class Controller:
         if shield is None:
             return ()
         lidar, speed = self._lidar is not None, self._person_speed
-        return tuple(of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar))
+        found = of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar)
+        return (*of_order(self._law), *found)
 
     def _made(self, start: Pair) -> _hrsafety.Controller:
         scenario = Scenario(start=start, **self._rules)
@@ -346,7 +347,7 @@ def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:
 
 def _shield(law: AnyLaw) -> Shield | None:
     """Return the shield of a law, if it has one."""
-    return law.shield if isinstance(law, SafeNavigation) else None
+    return shield_of(law)[0]
 
 
 def _latency(law: AnyLaw) -> float:

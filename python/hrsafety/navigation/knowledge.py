@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
+from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
@@ -123,9 +125,23 @@ def echo_regions(scenario: Scenario, sonar: RobotSensor) -> EchoRegions:
 
 
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
-    """Warn of sensors that do not reach as far as the regions that they must see, or see nothing nearby."""
+    """Warn of sensors that do not reach as far as the regions that they must see, or see nothing nearby.
+
+    Or whose regions are sized for slower people than there are.
+    """
+    speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
     for index, sensor in enumerate(built.sensors):
         regions = echo_regions(scenario, sensor)
+        fastest = max(range(len(speeds)), key=speeds.__getitem__, default=None)
+        sees = not isinstance(sensor, Lidar) or sensor.sees_obstacles
+        if fastest is not None and sees and speeds[fastest] > sensor.max_speed + ROUNDING:
+            yield ResultWarning(
+                BELOW_SAFE,
+                f"sensors[{index}].max_speed",
+                f"regions of what sensors[{index}] reads are sized for {sensor.max_speed:g} m/s, but "
+                f"obstacles[{fastest}] moves at up to {speeds[fastest]:.4g} m/s: the robot may brake too late; give "
+                f"max_speed={math.ceil(speeds[fastest] * 1e4 - 1e-4) / 1e4:g}",
+            )
         if regions.active_radius > regions.reach:
             yield ResultWarning(
                 REGION_BEYOND_RANGE,

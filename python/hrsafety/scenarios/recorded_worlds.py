@@ -92,7 +92,8 @@ def with_recording(
     reacting = round(part * len(seen))
     everybody = [
         _reacting(time, position, of, radius, awareness)
-        if index < reacting
+        # Who is in view at one instant only goes nowhere.
+        if index < reacting and time[-1] > max(0.0, time[0])
         else Person(start=tuple(position[0].tolist()), recording=(time, position), radius=radius)
         for index, (time, position) in enumerate(seen)
     ]

@@ -13,7 +13,7 @@ from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark, entry
 from hrsafety.benchmarks.barn import barn_score
 from hrsafety.benchmarks.protocol import Case
-from hrsafety.benchmarks.results import Row, read_rows
+from hrsafety.benchmarks.results import Row, read_rows, row_text
 from hrsafety.benchmarks.runs import _file
 from hrsafety.benchmarks.suites import SUITES
 from hrsafety.cli import main
@@ -213,3 +213,20 @@ def test_suites_of_people_that_react_give_a_row_for_each_case(suite: str) -> Non
     assert [row.case for row in rows] == [0, 1]
     assert {row.outcome for row in rows} <= {"arrived", "collided", "timed_out"}
     assert all(row.at_fault <= row.contacts for row in rows)
+
+
+def test_rows_of_worlds_that_diverged_are_read_again(tmp_path: Path) -> None:
+    row = Row(
+        case=3,
+        outcome="diverged",
+        arrival_time=9.0,
+        end_time=1.0,
+        contacts=0,
+        at_fault=0,
+        apart=0,
+        clearance=1.0,
+        score=0.0,
+    )
+    file = tmp_path / "rows.csv"
+    file.write_text(row_text([row], head=True), encoding="utf-8")
+    assert read_rows(file) == [row]

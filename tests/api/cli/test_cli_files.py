@@ -80,6 +80,14 @@ def test_warnings_count_with_strict(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", "odd.toml", "--strict"]) == exit_codes.WARNED
 
 
+def test_a_shield_that_assumes_less_counts(capsys: pytest.CaptureFixture[str]) -> None:
+    person = '[[obstacles]]\ntype = "human"\nstart = [4.0, 3.0]\nvelocity = [-1.0, 0.0]\n'
+    text = f"start = [0.0, 0.0]\ngoal = [4.0, 0.0]\n{person}[safe.shield]\nperson_speed = 0.5\n"
+    Path("slow.toml").write_text(text, encoding="utf-8")
+    assert main(["validate", "slow.toml", "--strict"]) == exit_codes.WARNED
+    assert "give at least person_speed=1" in capsys.readouterr().err
+
+
 def test_an_arm_is_checked_too(capsys: pytest.CaptureFixture[str]) -> None:
     Path("arm.urdf").write_text(URDF, encoding="utf-8")
     assert main(["validate", "arm.urdf"]) == 0

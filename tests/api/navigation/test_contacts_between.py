@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks import benchmark
-from hrsafety.navigation.metrics.between import CONTACT_BETWEEN, touched_between
+from hrsafety.navigation.metrics.between import CONTACT_BETWEEN, touched_between, walls_between
 
 STEP = 0.25
 
@@ -81,3 +83,53 @@ def test_tables_and_suites_tell_of_it() -> None:
     result = benchmark("circle_crossing", ["orca"], cases=32)
     assert [each.code for each in result.warnings] == [CONTACT_BETWEEN]
     assert "orca 1 of 32" in str(result.warnings[0])
+
+
+def walled(seed: int) -> nav.metrics.Episode:
+    """Return a robot that goes by large steps among a polyline, a thin disc and a thin rectangle."""
+    rng = np.random.default_rng(seed)
+    walls = [
+        rng.uniform(-3.0, 3.0, (3, 2)),
+        nav.Disc(center=tuple(rng.uniform(-3.0, 3.0, 2).tolist()), radius=0.05),
+        nav.Rectangle(
+            center=tuple(rng.uniform(-3.0, 3.0, 2).tolist()), length=0.3, width=0.1, heading=rng.uniform(-3, 3)
+        ),
+    ]
+    own = np.cumsum(rng.normal(0.0, 0.6, (15, 2)), axis=0)
+    return nav.metrics.Episode(position=own, walls=walls, step=1.0, goal=(50.0, 0.0), robot_radius=0.15)
+
+
+def steps_through(given: nav.metrics.Episode) -> int:
+    """Return the steps with a wall at one of 2,000 places in between, and at neither end."""
+    rules = {"walls": given.walls, "step": 1.0, "goal": (50.0, 0.0), "robot_radius": 0.15}
+
+    def least(places: np.ndarray) -> float:
+        return float(nav.metrics.evaluate(places, **rules).wall_clearance)
+
+    steps = itertools.pairwise(np.asarray(given.position))
+    return sum(least(np.linspace(a, b, 2001)) < 0.0 <= least(np.array([a, b])) for a, b in steps)
+
+
+def test_walls_within_steps_are_found_as_by_small_steps() -> None:
+    found = []
+    for seed in range(40):
+        scores = nav.metrics.evaluate(walled(seed))
+        found.append(walls_between(walled(seed), scores.arrival_time, scores.wall_clearance).people)
+        assert found[-1] == steps_through(walled(seed))
+        assert (CONTACT_BETWEEN in [each.code for each in scores.warnings]) == (found[-1] > 0)
+    assert 0 < sum(map(bool, found)) < len(found)
+
+
+def test_a_contact_that_no_kept_row_of_a_run_shows_is_told() -> None:
+    disc = nav.Disc(center=(2.0, 0.2), radius=0.1, active_radius=0.5, critical_radius=0.35)
+    person = nav.Human(start=(2.0, 1.9), velocity=(0.0, -0.6), radius=0.3, active_radius=1.2, critical_radius=0.7)
+    for obstacle in (disc, person):
+        scene = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0), obstacles=[obstacle], time_limit=20.0)
+        runs = [
+            nav.simulate(scene, lambda seen: 5.0 * (np.array(seen.goal) - seen.position), every=k) for k in (1, 2000)
+        ]
+        assert np.isfinite([run.contact_time[0] for run in runs]).all()
+        every, few = map(nav.metrics.evaluate, runs)
+        assert not every.success
+        assert [each.subject for each in few.warnings if each.code == CONTACT_BETWEEN][:1] == ["every"]
+        assert "obstacles[0] at" in str(next(each for each in few.warnings if each.subject == "every"))

@@ -217,6 +217,14 @@ def test_recorded_people_react_by_a_share() -> None:
     assert least[2] > 0.3
 
 
+def test_who_is_recorded_at_one_instant_only_does_not_react() -> None:
+    places = [[0, 0], [0.5, 0], [5, 5], [1, 0]]
+    walk = Recording(time_s=[0.0, 0.4, 0.4, 0.8], person=[1, 1, 3, 1], position=places)
+    world = scenarios.with_recording(walk, 1.0, time_limit=2.0)
+    assert [person.recording is None for person in world.people] == [True, False]
+    nav.crowd.simulate_crowd(world)
+
+
 def test_mistakes_are_named_with_their_place() -> None:
     def words(make: object) -> str:
         with pytest.raises(InvalidParameterError) as caught:

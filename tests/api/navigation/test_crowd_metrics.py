@@ -243,3 +243,49 @@ def test_what_is_not_scored_of_a_run_is_told() -> None:
     touched = bool(np.isfinite(met.contact_time[0]))
     assert [each.code for each in nav.metrics.evaluate(met).warnings].count("not_scored") == touched
     assert touched
+
+
+def test_doubts_of_what_an_episode_comes_from_reach_its_metrics() -> None:
+    rows = [[0.0, 0.0], [4000.0, 0.0], [500.0, 0.0], [3500.0, 0.0]]
+    millimeters = datasets.Recording(time_s=[0.0, 0.0, 0.4, 0.4], person=[1, 2, 1, 2], position=rows)
+    episode = nav.metrics.Episode.from_recording(millimeters, 1, step=0.4, robot_radius=0.25)
+    assert pickle.loads(pickle.dumps(episode)).warnings == episode.warnings == millimeters.warnings
+    scored = [nav.metrics.evaluate(episode), nav.metrics.evaluate(millimeters, robot=1, step=0.4, robot_radius=0.25)]
+    assert [[each.code for each in found.warnings] for found in scored] == [["implausible"]] * 2
+    table = nav.metrics.evaluate_many([episode, nav.metrics.Episode(position=PATH, **RULES)])
+    assert table[0].warnings == table.warnings
+    assert "episodes[0]: median speed" in str(table.warnings[0])
+
+
+def test_doubts_of_a_world_reach_its_metrics() -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(person_speed=0.1, margin=0.0125))
+    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 0), law=law)
+    person = nav.crowd.Person(start=(4, 1), route=[(0, 1)], desired_speed=1.0)
+    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=1.0))
+    assert len(run.warnings) == 1
+    assert nav.crowd.world_metrics(run).warnings == run.warnings
+    assert nav.metrics.evaluate(nav.crowd.episodes_of(run)[0]).warnings == run.warnings
+
+
+def test_warnings_of_an_episode_are_warnings() -> None:
+    assert refused(warnings=["doubtful"]) == "warnings[0]"
+
+
+@pytest.mark.parametrize(
+    ("given", "subject"),
+    [
+        ({"position": 1e3 * PATH, "people": 1e3 * PEOPLE, "goal": (6e3, 0.0)}, "speed of the robot"),
+        ({"people": 100.0 * PEOPLE}, "speed of the people"),
+        ({"step": 500.0}, "step"),
+        ({"robot_radius": 300.0}, "robot_radius"),
+        ({"person_radius": 25.0}, "person_radius"),
+    ],
+)
+def test_positions_in_other_units_are_told(given: dict[str, Any], subject: str) -> None:
+    episode = nav.metrics.Episode(**({"position": PATH, "people": PEOPLE, **RULES} | given))
+    found = nav.metrics.evaluate(episode).warnings
+    assert found[0].code == "implausible"
+    assert found[0].subject == subject
+    table = nav.metrics.evaluate_many([nav.metrics.Episode(position=PATH, people=PEOPLE, **RULES), episode])
+    assert f"episodes[1].{subject}" in {each.subject for each in table.warnings}
+    assert nav.metrics.evaluate(PATH, PEOPLE, **RULES).warnings == ()

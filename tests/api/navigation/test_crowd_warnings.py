@@ -34,12 +34,30 @@ def test_enough_is_no_doubt() -> None:
 
 
 @pytest.mark.parametrize(
+    ("person", "robot", "subject"),
+    [
+        ({"desired_speed": 1300.0}, {}, "people[0].desired_speed"),
+        ({"recording": ([0.0, 0.4], [(4000.0, 1000.0), (3500.0, 1000.0)])}, {}, "people[0].recording"),
+        ({"radius": 25.0}, {}, "people[0].radius"),
+        ({}, {"measurement": nav.Measurement(latency=40.0)}, "robots[0].latency"),
+        ({}, {"robot": nav.HolonomicRobot(max_speed=700.0)}, "robots[0].robot_max_speed"),
+    ],
+)
+def test_numbers_in_other_units_are_told(person: dict[str, Any], robot: dict[str, Any], subject: str) -> None:
+    place = world(nav.VirtualForceField(), {"start": (40.0, 40.0)} | person, **robot)
+    assert [(each.code, each.subject) for each in place.warnings] == [("implausible", subject)]
+    assert nav.crowd.simulate_crowds([place])[0].warnings == place.warnings
+
+
+@pytest.mark.parametrize(
     ("person", "least"),
     [
         ({"desired_speed": 1.2}, "person_speed=1.2"),
         ({"desired_speed": None}, "person_speed=2.2"),
         ({"model": nav.crowd.Moussaid()}, "person_speed=1.3"),
         ({"model": nav.crowd.SocialForce2000()}, "has no largest speed"),
+        # Forces push people away who do not want to go.
+        ({"model": nav.crowd.SocialForce2000(), "desired_speed": 0.0}, "has no largest speed"),
         ({"recording": ([0.0, 1.0], [(4.0, 1.0), (2.5, 1.0)])}, "person_speed=1.5"),
     ],
 )
@@ -55,6 +73,19 @@ def test_measurements_that_are_worse_are_told() -> None:
     names = [each.rpartition(".")[2] for each in subjects(place)]
     assert names == ["latency", "position_error", "margin"]
     assert "knows its own place" in place.warnings[2].message
+
+
+def test_a_range_within_which_the_robot_cannot_stop_is_told() -> None:
+    place = world(shielded(person_speed=1.0), sensing_range=0.65)
+    assert [(each.code, each.subject) for each in place.warnings] == [("shield_sees_less", "robots[0].sensing_range")]
+    # Radii 0.2 and 0.25, margin 0.0125; a control period and two of braking at 1.0 and 0.7 m/s.
+    assert "give at least sensing_range=0.718" in place.warnings[0].message
+    assert world(shielded(person_speed=1.0), sensing_range=0.718).warnings == ()
+
+
+def test_maps_of_laws_in_worlds_need_a_margin_of_their_own() -> None:
+    law = shielded(person_speed=1.0).replaced(map=nav.StaticMap.from_polylines([[(0.0, -2.0), (4.0, -2.0)]]))
+    assert subjects(world(law)) == ["robots[0].law.shield.wall_margin"]
 
 
 def test_long_motion_steps_need_a_margin() -> None:

@@ -41,7 +41,8 @@ def test_a_shield_that_covers_its_scene_carries_no_warning() -> None:
         (measured(scale=0.0, latency=0.1), Shield(), "shield.latency", "latency=0.1"),
         (measured(scale=0.025), Shield(latency=0.2), "shield.position_error", "position_error=0.03536"),
         (measured(scale=0.025, distribution="gaussian"), Shield(), "shield.position_error", "position_error=0.2"),
-        (measured("robot", scale=0.025), Shield(), "shield.margin", "margin=0.03536"),
+        # Its own place, and half a motion step.
+        (measured("robot", scale=0.025), Shield(), "shield.margin", "margin=0.03836"),
         (
             measured(scale=0.003),
             Shield(position_error=0.01, velocity_error=0.1, person_acceleration=1.0),
@@ -110,6 +111,63 @@ def test_velocities_that_are_known_change_no_faster_than_assumed(
     assert subjects(1.0, 1.0) == set()
     assert subjects(0.9, 1.0) == ({"shield.velocity_error"} if velocity_error else set())
     assert subjects(1.0, 0.9) == ({"shield.person_acceleration"} if person_acceleration else set())
+
+
+def test_turns_and_wrong_velocities_add_up() -> None:
+    turning = nav.Human.from_segments((3.0, 3.0), [(1.0, (0.0, -0.5), (0.0, 0.0)), (1.0, (0.5, -0.5), (0.0, 0.0))])
+    scene = replace(measured(scale=0.003), obstacles=(turning,))
+    for velocity_error, subjects in ((0.6, {"shield.velocity_error"}), (0.6415, set())):
+        shield = Shield(position_error=0.01, velocity_error=velocity_error, person_acceleration=0.0)
+        assert {subject for _, subject in warned(scene, shield)} == subjects
+
+
+def test_all_turns_within_a_plan_count() -> None:
+    turns = [(0.1, (0.0, -0.3 * k), (0.0, 0.0)) for k in range(4)]
+    scene = replace(SCENE, obstacles=(nav.Human.from_segments((3.0, 3.0), turns),))
+    shield = Shield(velocity_error=0.5, person_acceleration=0.0)
+    assert ("shield_assumes_less", "shield.velocity_error") in warned(scene, shield)
+    assert warned(scene, replace(shield, velocity_error=0.6)) == set()
+    # Who brakes for longer plans longer.
+    slow = replace(scene, robot=nav.HolonomicRobot(max_acceleration=1.0))
+    assert ("shield_assumes_less", "shield.velocity_error") in warned(slow, replace(shield, velocity_error=0.6))
+
+
+def test_velocities_from_differences_of_who_accelerates_are_late() -> None:
+    faster = nav.MovingDisc(center=(6.0, 3.0), radius=0.3, velocity=(-0.1, 0.0), acceleration=(-0.3, 0.0))
+    scene = replace(measured(scale=0.0), obstacles=(faster,), time_limit=4.0)
+    shield = Shield(velocity_error=0.005, person_acceleration=0.3)
+    assert warned(scene, shield) == {("shield_assumes_less", "shield.velocity_error")}
+    assert warned(scene, replace(shield, velocity_error=0.009)) == set()
+
+
+def test_no_margin_covers_a_robot_that_measures_itself() -> None:
+    covering = Shield(margin=0.1)
+    scene = measured("robot", scale=0.025)
+    assert warned(scene, covering) == {("shield_assumes_less", "shield.margin")}
+    (told,) = [each.message for each in nav.simulate(scene, SafeNavigation(FIELD, shield=covering)).warnings]
+    assert "own velocity to 1.179 m/s only, which no margin covers" in told
+    assert warned(measured("robot", scale=0.0), covering) == set()
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_walls_and_maps_need_a_margin_of_their_own(known: bool) -> None:
+    wall = nav.Rectangle(center=(3.0, 3.0), length=1.0, width=0.2)
+    plan = nav.StaticMap.from_polylines([[(2.5, 3.0), (3.5, 3.0)]])
+    scene = replace(SCENE, obstacles=(WALKER,) if known else (WALKER, wall), control_period=0.1)
+    law = SafeNavigation(FIELD, map=plan if known else None, shield=Shield(margin=0.1))
+    run = nav.simulate(scene, law, step=0.05)
+    assert [each.subject for each in run.warnings if each.code == "shield_assumes_less"] == ["shield.wall_margin"]
+
+
+def test_a_shield_below_other_parts_is_told() -> None:
+    inner = SafeNavigation(FIELD, shield=Shield(person_speed=1.0))
+    run = nav.simulate(SCENE, SafeNavigation(inner, yielding=nav.Yielding()))
+    assert [each.subject for each in run.warnings] == ["law", "shield.person_speed"]
+    assert [each.subject for each in nav.simulate(SCENE, SafeNavigation(inner, shield=Shield())).warnings] == []
+    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0), law=SafeNavigation(inner, yielding=nav.Yielding()))
+    assert "robots[0].law" in {each.subject for each in nav.crowd.World(robots=[robot]).warnings}
+    controller = nav.Controller(robot.law, SCENE.robot, (5.0, 0.0))
+    assert [each.subject for each in controller.warnings] == ["law", "shield.person_speed"]
 
 
 def test_people_who_decide_may_turn_at_once() -> None:

@@ -155,3 +155,21 @@ def test_the_exact_arc_is_close_to_the_chord_of_the_source() -> None:
     assert np.abs(chord.position[:200] - arc.position[:200]).max() < 1e-2
     with pytest.raises(InvalidParameterError, match="integration"):
         reactive.Follower(integration="circle")  # type: ignore[arg-type]  # what is tested
+
+
+@pytest.mark.parametrize("sensor", [nav.sensing.Lidar, nav.sensing.Ultrasonic])
+def test_regions_of_what_is_read_are_sized_for_the_people_of_the_scene(sensor: Any) -> None:
+    person = nav.Human(start=(4.0, 2.0), velocity=(0.0, -1.2), max_speed=1.2)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=[person], time_limit=1.0)
+
+    def told(**options: Any) -> list[str]:
+        built = nav.robots.AsBuilt(sensors=[sensor(**options)])
+        run = nav.simulate(scene, nav.VirtualForceField(), built=built)
+        return [each.message for each in run.warnings if each.subject == "sensors[0].max_speed"]
+
+    (message,) = told(max_speed=0.5)
+    assert "obstacles[0] moves at up to 1.2 m/s" in message
+    assert message.endswith("give max_speed=1.2")
+    assert told(max_speed=1.2) == []
+    if sensor is nav.sensing.Lidar:
+        assert told(sees_obstacles=False) == []

@@ -295,3 +295,15 @@ def test_the_recorded_scenes_are_read_whole(name: str, rows: int, people: int, d
     assert len(recording.people()) == people
     assert recording.duration == pytest.approx(duration, abs=1e-9)
     assert sum(len(recording.track(int(person))[0]) for person in recording.people()) == rows
+
+
+def test_who_is_away_for_long_under_one_id_is_told() -> None:
+    time = [0.0, 0.4, 0.8, 1.2, 40.0, 40.4]
+    walk = datasets.Recording(time_s=time, person=[7] * 6, position=[(0.5 * k, 0.0) for k in range(6)])
+    assert [each.code for each in walk.warnings] == ["gap_in_track"]
+    assert "person 7 is not seen for 38.8 s after 1.2 s" in str(walk.warnings[0])
+    # Few rows of everybody are no gaps.
+    few = datasets.Recording(time_s=[0.0, 0.4, 20.0], person=[7] * 3, position=[(0, 0), (1, 0), (2, 0)])
+    assert few.warnings == ()
+    apart = datasets.Recording(time_s=time, person=[7, 7, 7, 7, 8, 8], position=[(0.5 * k, 0.0) for k in range(6)])
+    assert apart.warnings == ()

@@ -5,12 +5,59 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
-from hrsafety.navigation.laws.safe_navigation import SafeNavigation
-from hrsafety.navigation.warnings.shields import Motion, Mover, of_surroundings
-from hrsafety.plausibility import ResultWarning
+import numpy as np
 
-__all__ = ["of_robots"]
+from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
+from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
+from hrsafety.plausibility import ResultWarning, gathered, implausible
+
+__all__ = ["of_numbers", "of_robots"]
+
+
+def of_numbers(
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], time_limit: float
+) -> tuple[ResultWarning, ...]:
+    """Return a warning about numbers of a world outside the ranges of their quantities, if there are any.
+
+    Parameters
+    ----------
+    people, sources, robots : sequence of Person, Source, CrowdRobot
+        Who is in the world.
+    time_limit : float
+        In s.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        The first with the number of the others; the code is ``"implausible"``.
+    """
+    found = [("world", implausible({"time_limit": time_limit}))]
+    for index, person in enumerate(people):
+        values: dict[str, object] = {"start": person.start, **_body(person), "recording": _recorded_speed(person)}
+        found.append((f"people[{index}]", implausible(values, _QUANTITIES)))
+    found += [(f"sources[{index}]", implausible(_body(each), _QUANTITIES)) for index, each in enumerate(sources)]
+    for index, robot in enumerate(robots):
+        values = {"start": robot.start, "goal": robot.goal}
+        values |= {f"robot_{name}": getattr(robot.robot, name) for name in _OF_ROBOTS}
+        if robot.measurement is not None:
+            values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}
+        found.append((f"robots[{index}]", implausible(values, _QUANTITIES)))
+    return gathered(found, "bodies")
+
+
+_OF_ROBOTS = ("mass", "radius", "max_speed", "max_acceleration")
+_QUANTITIES = {
+    "start": "floor_position",
+    "goal": "floor_position",
+    "radius": "person_radius",
+    "desired_speed": "person_speed",
+    "recording": "person_speed",
+}
+
+
+def _body(owner: Person | Source) -> dict[str, object]:
+    return {"radius": owner.radius, "desired_speed": owner.desired_speed}
 
 
 def of_robots(
@@ -30,24 +77,28 @@ def of_robots(
     Returns
     -------
     tuple of ResultWarning
-        With the code ``"shield_assumes_less"``.
+        With the codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
     found: list[ResultWarning] = []
     for index, robot in enumerate(robots):
-        law = robot.law
-        if not isinstance(law, SafeNavigation) or law.shield is None:
+        shield, knows_map = shield_of(robot.law)
+        if shield is None:
             continue
+        found += of_order(robot.law, f"robots[{index}].law")
         others = [each for each in _speeds(people, sources, robots) if each[0] != f"robots[{index}]"]
         fastest = max(others, key=lambda each: each[1], default=None)
+        motion = Motion(robot.robot, step if robot.control_period is None else robot.control_period, step)
         found += of_surroundings(
-            law.shield,
+            shield,
             # Everybody decides anew at each step, for any velocity up to the largest speed.
             () if fastest is None else (Mover(*fastest, jump=2.0 * fastest[1]),),
             measurement=robot.measurement,
-            motion=Motion(robot.robot, step if robot.control_period is None else robot.control_period, step),
-            walls=walls,
+            motion=motion,
+            walls=walls or knows_map,
             owner=f"robots[{index}].law.shield",
         )
+        sizes = [size for who, size in _radii(people, sources, robots) if who != f"robots[{index}]"]
+        found += _of_range(f"robots[{index}]", robot, motion, shield, max(sizes, default=0.0))
     return tuple(found)
 
 
@@ -64,15 +115,42 @@ def _speeds(
         yield f"robots[{index}]", robot.robot.max_speed
 
 
+def _radii(
+    people: Iterable[Person], sources: Iterable[Source], robots: Iterable[CrowdRobot]
+) -> Iterator[tuple[str, float]]:
+    """Yield who is in a world, and the radius in m."""
+    yield from ((f"people[{index}]", person.radius) for index, person in enumerate(people))
+    yield from ((f"sources[{index}]", source.radius) for index, source in enumerate(sources))
+    yield from ((f"robots[{index}]", robot.robot.radius) for index, robot in enumerate(robots))
+
+
+def _of_range(owner: str, robot: CrowdRobot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
+    """Warn of a range within which somebody may stand whom the robot does not see, and cannot stop for."""
+    if shield.person_speed is None or radius == 0.0:
+        return
+    plan = motion.plan_duration
+    touch = robot.robot.radius + radius + shield.margin + shield.position_error
+    least = touch + shield.person_speed * (shield.latency + plan) + robot.robot.max_speed * plan
+    if robot.sensing_range < least:
+        yield ResultWarning(
+            SEES_LESS,
+            f"{owner}.sensing_range",
+            f"sensing_range of {owner} is {robot.sensing_range:.4g} m, but its shield reckons with people up to "
+            f"{least:.4g} m away until the robot stands: who is farther than the range is not there for it; give at "
+            f"least sensing_range={math.ceil(least * 1e3) / 1e3:g}",
+        )
+
+
 def _largest_speed(owner: Person | Source) -> float:
     desired = FASTEST_DRAWN if owner.desired_speed is None else owner.desired_speed
-    return desired * owner.model.max_speed_ratio if desired else 0.0
+    # Where a model has no largest speed, forces move those who do not want to go as well.
+    ratio = owner.model.max_speed_ratio
+    return desired * ratio if desired or math.isfinite(ratio) else math.inf
 
 
 def _recorded_speed(person: Person) -> float | None:
     """Return the largest speed of a person who follows a recording, else ``None``."""
     if person.recording is None:
         return None
-    time, places = person.recording
-    steps = zip(time, time[1:], places, places[1:], strict=False)
-    return max((math.dist(first, second) / (late - soon) for soon, late, first, second in steps), default=0.0)
+    time, places = np.array(person.recording[0]), np.array(person.recording[1])
+    return float((np.hypot(*np.diff(places, axis=0).T) / np.diff(time)).max(initial=0.0))

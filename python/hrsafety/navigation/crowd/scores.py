@@ -92,6 +92,7 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
             arrival_tolerance=robot.arrival_tolerance,
             max_speed=robot.robot.max_speed,
             period=world.period,
+            warnings=run.warnings,
             **beside,
         )
         for index, robot in enumerate(world.robots)
@@ -168,7 +169,7 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
     True
     """
     world = run.world
-    return evaluate_world(
+    found = evaluate_world(
         run.position,
         person_goals=_goals(run),
         person_arrival_time=run.arrival_time,
@@ -178,3 +179,4 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
         robot_radius=[robot.robot.radius for robot in world.robots],
         period=world.period,
     )
+    return WorldMetrics(found.to_dict(), run.warnings)

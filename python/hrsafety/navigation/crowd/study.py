@@ -266,7 +266,7 @@ class _Rows:
         table = table_of(episodes, threads=threads)
         ends = table.arrival_time.tolist()
         contacts = [contacts_of(each, time) for each, time in zip(episodes, ends, strict=True)]
-        soonest = table.min_time_to_collision.tolist()
+        least = table.min_time_to_collision.tolist(), table.wall_clearance.tolist()
         owner = [index for index, _ in robots]
         worlds = [world_metrics(run).to_dict() for run in runs]
         values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {name: getattr(table, name) for name in METRICS}
@@ -277,7 +277,7 @@ class _Rows:
             end_time=np.array([runs[index].time[-1] for index in owner]),
             contacts=_with_walls(contacts, table),
             values=values,
-            doubts=[doubts_between(*each) for each in zip(episodes, ends, soonest, strict=True)],
+            doubts=[doubts_between(*each) for each in zip(episodes, ends, *least, strict=True)],
         )
 
 

@@ -11,7 +11,7 @@ from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, 
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
-from hrsafety.navigation.crowd.doubts import of_robots
+from hrsafety.navigation.crowd.doubts import of_numbers, of_robots
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
 
@@ -109,6 +109,7 @@ class World(Parameters):
     time_limit: float = 60.0
     seed: int = 0
     _native: _hrsafety.CrowdWorld = field(init=False, repr=False, compare=False)
+    _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -138,6 +139,9 @@ class World(Parameters):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Bounds of the robots' shields that people, other robots or measurements exceed."""
-        own = tuple(self.people), tuple(self.sources), tuple(self.robots)
-        return of_robots(*own, self.step, walls=len(self.walls) > 0)
+        """Implausible numbers, and bounds of the robots' shields that people, other robots or measurements exceed."""
+        if self._warnings is None:
+            own = tuple(self.people), tuple(self.sources), tuple(self.robots)
+            of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
+            self._set(_warnings=(*of_numbers(*own, self.time_limit), *of_shields))
+        return self._warnings  # type: ignore[return-value]  # just set

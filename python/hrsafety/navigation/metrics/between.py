@@ -1,16 +1,28 @@
-"""Contacts that no instant shows: people who pass through a robot between two of them."""
+"""Contacts that no instant shows: people who pass through a robot between two of them, and walls."""
 
 from __future__ import annotations
 
+import itertools
+import math
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.metrics.episode import Episode
+from hrsafety.navigation.metrics.episode import Episode, Wall
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["CONTACT_BETWEEN", "Between", "doubts_between", "touched_between", "until_arrival", "wrapped"]
+__all__ = [
+    "CONTACT_BETWEEN",
+    "Between",
+    "doubts_between",
+    "touched_between",
+    "until_arrival",
+    "walls_between",
+    "wrapped",
+]
 
 CONTACT_BETWEEN = "contact_between_instants"
 
@@ -87,14 +99,95 @@ def _dots(first: Array, second: Array) -> Array:
     return found
 
 
-def doubts_between(episode: Episode, arrival_time: float, time_to_collision: float) -> tuple[ResultWarning, ...]:
-    """Return a warning if somebody touches the robot between instants only; see `touched_between`."""
-    found = touched_between(episode, arrival_time, time_to_collision)
-    if found.people == 0:
-        return ()
-    who = "1 person touches" if found.people == 1 else f"{found.people} people touch"
-    message = (
-        f"{who} the robot between two instants, by up to {-found.gap:.2g} m on straight lines, and at none of them: "
-        f"contacts are counted at instants {episode.step:g} s apart, a shorter step shows these"
+def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) -> Between:
+    """Return the steps in which a robot touches a wall on a straight line, and at neither end, up to its arrival.
+
+    Parameters
+    ----------
+    episode : Episode
+        The robot and the walls.
+    arrival_time : float
+        When the robot arrived, in s; NaN if it did not.
+    wall_clearance : float
+        The metric ``wall_clearance`` of the episode, in m: no wall is touched within shorter steps than twice that.
+
+    Returns
+    -------
+    Between
+        The number of steps, and how deep.
+    """
+    own, _ = until_arrival(episode, arrival_time)
+    ways = np.diff(own, axis=0)
+    moves = np.hypot(*ways.T) > 2.0 * wall_clearance
+    if not moves.any():
+        return Between(0, np.inf)
+    begin, end = own[:-1][moves], own[1:][moves]
+    ends = np.full((2, len(begin)), np.inf)
+    between = np.full(len(begin), np.inf)
+    for first, last, radius in _edges(episode.walls):
+        ends = np.minimum(ends, [_from_segment(place, first, last) - radius for place in (begin, end)])
+        between = np.minimum(between, _between_segments(begin, end, first, last) - radius)
+    gap = between - episode.robot_radius
+    hidden = (gap < 0.0) & (ends >= episode.robot_radius).all(axis=0)
+    return Between(int(hidden.sum()), float(gap[hidden].min(initial=np.inf)))
+
+
+def _edges(walls: Iterable[Wall]) -> Iterator[tuple[Array, Array, float]]:
+    """Yield ends and radii of the segments that walls are made of, in m."""
+    for wall in walls:
+        if isinstance(wall, Disc):
+            center = np.array(wall.center)
+            yield center, center, wall.radius
+            continue
+        if isinstance(wall, Rectangle):
+            cos, sin = math.cos(wall.heading), math.sin(wall.heading)
+            corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (0.5 * wall.length, 0.5 * wall.width)
+            points = corners @ np.array([(cos, sin), (-sin, cos)]) + wall.center
+        else:
+            points = np.asarray(wall, dtype=np.float64)
+        yield from ((first, last, 0.0) for first, last in itertools.pairwise(points))
+
+
+def _from_segment(places: Array, first: Array, last: Array) -> Array:
+    """Return distances of places (n, 2) from a segment, or of a place from segments (n, 2)."""
+    way = last - first
+    square = (way * way).sum(axis=-1)
+    share = np.clip(((places - first) * way).sum(axis=-1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    away: Array = np.linalg.norm(places - first - share[..., None] * way, axis=-1)
+    return away
+
+
+def _between_segments(begin: Array, end: Array, first: Array, last: Array) -> Array:
+    """Return the distances of segments (n, 2) from another one."""
+
+    def side(one: Array, other: Array, place: Array) -> Array:
+        (x, y), (right, up) = (other - one).T, (place - one).T
+        turn: Array = x * up - y * right
+        return turn
+
+    one, other = np.broadcast_to(first, begin.shape), np.broadcast_to(last, begin.shape)
+    crosses = (side(begin, end, one) * side(begin, end, other) < 0.0) & (
+        side(one, other, begin) * side(one, other, end) < 0.0
     )
-    return (ResultWarning(CONTACT_BETWEEN, "step", message),)
+    ends = [_from_segment(place, first, last) for place in (begin, end)]
+    ends += [_from_segment(place, begin, end) for place in (first, last)]
+    return np.where(crosses, 0.0, np.min(ends, axis=0))
+
+
+def doubts_between(
+    episode: Episode, arrival_time: float, time_to_collision: float, wall_clearance: float
+) -> tuple[ResultWarning, ...]:
+    """Return warnings if a robot is touched, or touches walls, between instants only; see `touched_between`."""
+    found = touched_between(episode, arrival_time, time_to_collision)
+    walls = walls_between(episode, arrival_time, wall_clearance)
+    told = []
+    if found.people:
+        who = "1 person touches" if found.people == 1 else f"{found.people} people touch"
+        told.append(
+            f"{who} the robot between two instants, by up to {-found.gap:.2g} m on straight lines, and at none of them"
+        )
+    if walls.people:
+        steps = "1 step" if walls.people == 1 else f"{walls.people} steps"
+        told.append(f"the robot touches a wall within {steps}, by up to {-walls.gap:.2g} m, and not at their ends")
+    counted = f"contacts are counted at instants {episode.step:g} s apart, a shorter step shows these"
+    return (ResultWarning(CONTACT_BETWEEN, "step", f"{'; '.join(told)}: {counted}"),) if told else ()

@@ -25,9 +25,10 @@ from hrsafety._arguments import (
 )
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.metrics.sources import at_instants, steps_of_run
+from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Episode", "Recorded", "Wall"]
 
@@ -88,6 +89,8 @@ class Episode(Parameters):
         Length of the shortest path to the goal in m; the straight one up to the tolerance when ``None``.
     period : tuple of float
         Lengths in m after which the world repeats along x and y; 0: it does not.
+    warnings : sequence of ResultWarning
+        Why the positions may not mean what they seem to; the metrics carry them.
 
     Raises
     ------
@@ -126,6 +129,7 @@ class Episode(Parameters):
     max_speed: float = 1.0
     shortest_length: float | None = None
     period: Pair = (0.0, 0.0)
+    warnings: Sequence[ResultWarning] = ()
     _native: _hrsafety.CrowdEpisode = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -155,13 +159,16 @@ class Episode(Parameters):
         if len(missing) == 1:
             raise InvalidParameterError(missing[0], "be given where the other arrivals are", Shown("none"))
         walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
+        doubts = sequence("warnings", "be a sequence of warnings", self.warnings)
+        for index, doubt in enumerate(doubts):
+            instance(f"warnings[{index}]", doubt, ResultWarning)
         flat: dict[str, Array | None] = {
             name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None
         }
         flat |= dict.fromkeys(missing)
         native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
-        self._set(**rules, **kept, walls=tuple(walls), _native=native)
+        self._set(**rules, **kept, walls=tuple(walls), warnings=tuple(doubts), _native=native)
 
     @classmethod
     def from_trajectory(cls, trajectory: Trajectory, **options: Any) -> Self:
@@ -197,7 +204,9 @@ class Episode(Parameters):
         >>> nav.metrics.evaluate(episode).arrived
         True
         """
-        return cls(**(steps_of_run(instance("trajectory", trajectory, Trajectory)) | options))
+        found = steps_of_run(instance("trajectory", trajectory, Trajectory))
+        doubts = doubts_of_run(trajectory, walls="walls" not in options, people="people" not in options)
+        return cls(**({**found, "warnings": (*trajectory.warnings, *doubts)} | options))
 
     @classmethod
     def from_recording(cls, recording: Recorded, robot: int | npt.ArrayLike, *, step: float, **options: Any) -> Self:
@@ -238,7 +247,7 @@ class Episode(Parameters):
         0.618
         """
         found = at_instants(recording, robot, positive("step", step))
-        return cls(**({**found, "step": step} | options))
+        return cls(**({**found, "step": step, "warnings": getattr(recording, "warnings", ())} | options))
 
 
 _NOWHERE = np.empty((0, 2))

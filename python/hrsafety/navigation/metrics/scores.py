@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,9 +15,8 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
-from hrsafety.navigation.metrics.sources import doubts_of_run
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plausibility import ResultWarning, gathered
+from hrsafety.plausibility import ResultWarning, gathered, implausible
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -144,8 +143,8 @@ class MetricTable(_Scores, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np
         return len(self._values["arrived"])
 
     def __getitem__(self, index: int) -> EpisodeMetrics:
-        """Return the metrics of one episode."""
-        return EpisodeMetrics({name: values[index].item() for name, values in self._values.items()})
+        """Return the metrics of one episode, with the warnings of the table."""
+        return EpisodeMetrics({name: values[index].item() for name, values in self._values.items()}, self.warnings)
 
     @property
     def success_share(self) -> Share:
@@ -194,15 +193,30 @@ def evaluate(
     episode = _episode(run, people, options)
     found = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
-    doubts = doubts_between(episode, values["arrival_time"], values["min_time_to_collision"])
-    return EpisodeMetrics(values, (*_warnings(run, options), *doubts))
+    doubts = doubts_between(episode, *(values[name] for name in _ENDS))
+    return EpisodeMetrics(values, (*episode.warnings, *_implausible(episode, values["max_speed"]), *doubts))
 
 
-def _warnings(run: object, options: Collection[str] = ()) -> tuple[ResultWarning, ...]:
-    """Return the warnings of a run with those of what is not scored of it; positions have none."""
-    if not isinstance(run, Trajectory):
+def _implausible(episode: Episode, max_speed: float) -> tuple[ResultWarning, ...]:
+    """Return doubts about units, unless what the episode comes from has some; ``max_speed`` is the metric."""
+    if any(doubt.code == "implausible" for doubt in episode.warnings):
         return ()
-    return (*run.warnings, *doubts_of_run(run, walls="walls" not in options, people="people" not in options))
+    people = np.asarray(episode.people, dtype=np.float64)
+    values: dict[str, object] = {"step": episode.step, "robot_radius": episode.robot_radius}
+    values |= {"person_radius": episode.person_radius, "speed of the robot": max_speed}
+    if people.size and len(people) > 1:
+        # From the first to the last instant, for who is there at both.
+        way = np.hypot(*(people[-1] - people[0]).T)
+        values["speed of the people"] = way / ((len(people) - 1) * episode.step)
+    return implausible(values, _QUANTITIES)
+
+
+_QUANTITIES = {
+    "step": "control_period",
+    "person_radius": "person_radius",
+    "speed of the robot": "person_speed",
+    "speed of the people": "person_speed",
+}
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -259,13 +273,20 @@ def evaluate_many(
     ([False, True], [0.5, 1.0])
     """
     given = sequence("episodes", "be a sequence of episodes", episodes)
-    named = ((f"episodes[{index}]", _warnings(each)) for index, each in enumerate(given))
     names = [f"episodes[{index}]" for index in range(len(given))]
-    return table_of(given, gathered(named, "episodes"), names=names, threads=threads, progress=progress)
+    scored = [_scored(name, each) for name, each in zip(names, given, strict=True)]
+    table = table_of(scored, names=names, threads=threads, progress=progress)
+    speeds = table.max_speed.tolist()
+    own = ((*each.warnings, *_implausible(each, speed)) for each, speed in zip(scored, speeds, strict=True))
+    return MetricTable(table._values, (*gathered(zip(names, own, strict=True), "episodes"), *table.warnings))
+
+
+_ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
+"""What is asked for contacts between instants."""
 
 
 def table_of(
-    episodes: Sequence[Episode | Trajectory],
+    episodes: Sequence[Episode],
     warnings: Iterable[ResultWarning] = (),
     *,
     names: Sequence[str] = (),
@@ -276,11 +297,10 @@ def table_of(
 
     With names of the episodes there are warnings of contacts between their instants, too.
     """
-    scored = [_scored(f"episodes[{index}]", each) for index, each in enumerate(episodes)]
-    natives = [each._native for each in scored]
+    natives = [each._native for each in episodes]
     found = _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
-    ends = zip(found["arrival_time"].tolist(), found["min_time_to_collision"].tolist(), strict=True)
-    between = [(name, doubts_between(each, *end)) for name, each, end in zip(names, scored, ends, strict=False)]
+    ends = zip(*(found[name].tolist() for name in _ENDS), strict=True)
+    between = [(name, doubts_between(each, *end)) for name, each, end in zip(names, episodes, ends, strict=False)]
     return MetricTable(found, (*warnings, *gathered(between, "episodes")))
 
 

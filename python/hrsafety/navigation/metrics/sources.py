@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, count, numbers, whole_steps
 from hrsafety._bounds import MOST_PATH_NUMBERS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.free_space import distance
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
@@ -60,6 +61,8 @@ def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[Res
         )
         yield ResultWarning("not_scored", "walls", message)
     scored = (Human, Disc, Rectangle)
+    if walls and people and run.scenario and len(run.time) > 1:
+        yield from _between_rows(run)
     for index, each in enumerate(run.scenario.obstacles if people and run.scenario else ()):
         if not isinstance(each, scored) and math.isfinite(run.contact_time[index]):
             message = (
@@ -67,6 +70,28 @@ def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[Res
                 f"touched it at {run.contact_time[index]:.2f} s"
             )
             yield ResultWarning("not_scored", f"obstacles[{index}]", message)
+
+
+def _between_rows(run: Trajectory) -> Iterator[ResultWarning]:
+    """Yield a warning of contacts of a run that none of its rows shows, as every few steps are kept only."""
+    hidden = []
+    for index, each in enumerate(run.scenario.obstacles):
+        if not isinstance(each, (Human, Disc, Rectangle)) or not math.isfinite(run.contact_time[index]):
+            continue
+        if isinstance(each, Human):
+            away = np.linalg.norm(run.position - run.obstacle_position[:, index], axis=1) - each.radius
+        else:
+            away = np.array([distance(each, place) for place in run.position.tolist()])
+            away -= each.radius if isinstance(each, Disc) else 0.0
+        if not (away < run.scenario.robot.radius).any():
+            hidden.append(f"obstacles[{index}] at {run.contact_time[index]:.4g} s")
+    if hidden:
+        more = f" and {len(hidden) - 3} more" if len(hidden) > 3 else ""
+        message = (
+            f"the run touched {', '.join(hidden[:3])}{more}, which none of its rows shows: contacts are counted at "
+            "rows; keep more of them (every=)"
+        )
+        yield ResultWarning("contact_between_instants", "every", message)
 
 
 def _whole_last_step(time: Array, places: Array, step: float) -> Array:

@@ -27,8 +27,8 @@ class Lidar(RobotSensor):
     A beam reads the exact distance to the nearest thing along it, with Gaussian noise if wanted; ``range_max``
     where nothing is hit, 0 inside of something or nearer than ``range_min``. The points of a scan become the few
     boundary points that a law sees (as `StaticMap.boundary_points`): bodies of radius 0 at rest. **What no beam
-    hits is not known to the law**, and a point has no velocity. A run knows obstacles of its scene
-    only, so contacts with the map are looked for with ``map.clearance(run.position)``.
+    hits is not known to the law**, and a point has no velocity. Contacts with the map count in runs, see
+    ``map_contact_time`` of `Trajectory`.
 
     Parameters
     ----------

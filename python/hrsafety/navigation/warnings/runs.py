@@ -10,7 +10,7 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
-from hrsafety.navigation.warnings.shields import of_shield
+from hrsafety.navigation.warnings.shields import of_order, of_shield, shield_of
 from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["of_run", "of_runs", "of_scenes"]
@@ -43,8 +43,10 @@ def of_run(
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
     of_sensors = () if built is None else warnings_of(scenario, built)
-    shield = law.shield if isinstance(law, SafeNavigation) else None
-    return (*of_scene, *of_sensors, *(() if shield is None else of_shield(scenario, shield, built, motion_step)))
+    shield, walls = shield_of(law)
+    if shield is None:
+        return (*of_scene, *of_sensors)
+    return (*of_scene, *of_sensors, *of_order(law), *of_shield(scenario, shield, built, motion_step, walls=walls))
 
 
 def of_runs(

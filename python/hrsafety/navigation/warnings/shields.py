@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from hrsafety._arguments import Pair
+import numpy as np
+
+from hrsafety._arguments import Array
 from hrsafety._records import dataclass
+from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
@@ -18,7 +21,7 @@ from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.warnings.scenarios import own_speed, pieces
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["ASSUMES_LESS", "Motion", "Mover", "of_shield", "of_surroundings"]
+__all__ = ["ASSUMES_LESS", "SEES_LESS", "Motion", "Mover", "of_order", "of_shield", "of_surroundings", "shield_of"]
 
 ASSUMES_LESS = "shield_assumes_less"
 SEES_LESS = "shield_sees_less"
@@ -49,6 +52,12 @@ class Motion:
         change = min(self.robot.max_acceleration * self.control_period, 2.0 * self.robot.max_speed)
         return 0.5 * change * min(self.step, self.control_period)
 
+    @property
+    def plan_duration(self) -> float:
+        """Longest time in s from a command to rest: a control period, and whole ones of braking."""
+        period = self.control_period
+        return (1.0 + math.ceil(self.robot.max_speed / (self.robot.max_acceleration * period) - 1e-9)) * period
+
 
 @dataclass(frozen=True, slots=True)
 class Mover:
@@ -61,7 +70,7 @@ class Mover:
     speed, acceleration : float
         Largest speed in m/s and acceleration in m/s^2.
     jump : float
-        Largest sudden change of the velocity in m/s.
+        Largest sum of sudden changes of the velocity while a plan lasts, in m/s.
     """
 
     who: str
@@ -70,33 +79,74 @@ class Mover:
     jump: float = 0.0
 
 
-def _mover(who: str, obstacle: Obstacle, until: float) -> Mover:
-    """Return how an obstacle moves before a time limit in s."""
+def _mover(who: str, obstacle: Obstacle, until: float, ahead: float) -> Mover:
+    """Return how an obstacle moves before a time limit, and how it turns while a plan of so many seconds lasts."""
     speed = own_speed(obstacle, until)
     if not isinstance(obstacle, Mobile):
         return Mover(who, speed)
     if obstacle.path is not None:
-        steps = [
-            ((x2 - x1) / (late - soon), (y2 - y1) / (late - soon))
-            for soon, late, (x1, y1), (x2, y2) in _pairs(*obstacle.path)
-        ]
-        return Mover(who, speed, 0.0, _jump(steps[:-1], steps[1:]))
+        times, places = obstacle.path
+        ways = np.diff(np.array(places), axis=0) / np.diff(np.array(times))[:, None]
+        return Mover(who, speed, 0.0, _jump(np.diff(ways, axis=0), np.array(times[1:-1]), ahead))
     parts = list(pieces(obstacle, until))
-    jump = _jump([last for _, last, _ in parts[:-1]], [first for first, _, _ in parts[1:]])
+    ends = np.array([(first, last) for first, last, _ in parts])
+    begins = np.cumsum([duration for duration, _, _ in (obstacle.segments or ())[:-1]])
+    jump = _jump(ends[1:, 0] - ends[:-1, 1], begins, ahead)
     # Who stops does so at once.
     return Mover(who, speed, max(gained for _, _, gained in parts), jump if obstacle.stop is None else speed)
 
 
-def _pairs(time: Sequence[float], places: Sequence[Pair]) -> Iterator[tuple[float, float, Pair, Pair]]:
-    return zip(time, time[1:], places, places[1:], strict=False)
+def _jump(changes: Array, instants: Array, ahead: float) -> float:
+    """Return the largest sum of successive changes of a velocity (n, 2) that begin and end within a time in s."""
+    summed = np.vstack([np.zeros((1, 2)), np.cumsum(changes, axis=0)])
+    largest = 0.0
+    for count in range(1, len(changes) + 1):
+        within = instants[count - 1 :] - instants[: len(instants) - count + 1] <= ahead
+        if not within.any():
+            break
+        largest = max(largest, float(np.hypot(*(summed[count:] - summed[:-count])[within].T).max()))
+    return largest
 
 
-def _jump(before: Iterable[Pair], after: Iterable[Pair]) -> float:
-    return max((math.dist(one, other) for one, other in zip(before, after, strict=True)), default=0.0)
+def shield_of(law: object) -> tuple[Shield | None, bool]:
+    """Return the outermost shield of a law, and whether the law knows a map."""
+    shield, walls = None, False
+    while isinstance(law, SafeNavigation):
+        shield, walls = shield or law.shield, walls or law.map is not None
+        law = law.law
+    return shield, walls
+
+
+def of_order(law: object, owner: str = "law") -> Iterator[ResultWarning]:
+    """Warn of a shield below parts that command what it has not verified.
+
+    Parameters
+    ----------
+    law : law
+        What drives the robot.
+    owner : str
+        How the warning calls it.
+
+    Yields
+    ------
+    ResultWarning
+        With the code ``"shield_assumes_less"``.
+    """
+    if isinstance(law, SafeNavigation) and law.shield is None and shield_of(law)[0] is not None:
+        message = (
+            "the shield stands below other parts, which may command velocities that it has not verified: nothing is "
+            "proved; give all parts to one SafeNavigation"
+        )
+        yield ResultWarning(ASSUMES_LESS, owner, message)
 
 
 def of_shield(
-    scenario: Scenario, shield: Shield, built: AsBuilt | None = None, motion_step: float = 0.01
+    scenario: Scenario,
+    shield: Shield,
+    built: AsBuilt | None = None,
+    motion_step: float = 0.01,
+    *,
+    walls: bool = False,
 ) -> Iterator[ResultWarning]:
     """Warn of bounds that a scene exceeds: people who are faster, positions that are later or less exact.
 
@@ -110,20 +160,25 @@ def of_shield(
         Sensors of the robot; without them the obstacles are known as the scenario says.
     motion_step : float
         Of the run, in s.
+    walls : bool
+        Whether the law knows a map.
 
     Yields
     ------
     ResultWarning
         Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
+    motion = Motion(scenario.robot, scenario.control_period, motion_step)
+    # A measured velocity is that of a whole control period before.
+    ahead = shield.latency + motion.plan_duration + (0.0 if scenario.measurement is None else motion.control_period)
     named = ((f"obstacles[{index}]", obstacle) for index, obstacle in enumerate(scenario.obstacles))
-    others = [_mover(who, obstacle, scenario.time_limit) for who, obstacle in named]
+    others = [_mover(who, obstacle, scenario.time_limit, ahead) for who, obstacle in named]
     yield from of_surroundings(
         shield,
         others,
         measurement=scenario.measurement,
-        motion=Motion(scenario.robot, scenario.control_period, motion_step),
-        walls=any(isinstance(obstacle, Rectangle) for obstacle in scenario.obstacles),
+        motion=motion,
+        walls=walls or any(isinstance(obstacle, Rectangle) for obstacle in scenario.obstacles),
     )
     if built is not None and built.wheels is not None:
         yield ResultWarning(
@@ -213,11 +268,7 @@ def of_surroundings(
     ResultWarning
         With the code ``"shield_assumes_less"``.
     """
-    needed = list(_of_motions(shield, others))
-    needed += _of_measurement(shield, measurement, motion)
-    error = motion.execution_error
-    why = f"with motion steps of {motion.step:g} s the robot is up to {error:.4g} m off the motion that is planned"
-    needed += [(name, getattr(shield, name), error, why) for name in ("margin", "wall_margin")[: 1 + walls]]
+    needed = [*_of_motions(shield, others, measurement, motion), *_of_measurement(shield, measurement)]
     for name, assumed, least, why in needed:
         if assumed < least * (1.0 - ROUNDING):
             mended = f"give at least {name}={least:.4g}" if math.isfinite(least) else "no number covers that"
@@ -226,16 +277,27 @@ def of_surroundings(
                 f"{owner}.{name}",
                 f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; {mended}",
             )
+    yield from _of_own_motion(shield, measurement, motion, walls=walls, owner=owner)
 
 
-def _of_motions(shield: Shield, others: Iterable[Mover]) -> Iterator[tuple[str, float, float, str]]:
+def _of_motions(
+    shield: Shield, others: Iterable[Mover], measured: Measurement | None, motion: Motion
+) -> Iterator[tuple[str, float, float, str]]:
     """Yield name, assumed value, the least one that covers a motion, and what asks for it."""
+    differs = 0.0
+    if measured is not None and measured.of in ("both", "obstacles"):
+        # Backward differences of two wrong positions.
+        differs = 2.0 * measured._native.error_bound() / motion.control_period
     for each in others:
         if shield.person_speed is not None:
             yield "person_speed", shield.person_speed, each.speed, f"{each.who} {_moves(each.speed)}"
         if shield.velocity_error is not None:
-            why = f"{each.who} changes its velocity by up to {each.jump:.4g} m/s at once"
-            yield "velocity_error", shield.velocity_error, each.jump, why
+            # That of a control period is as old as half of it.
+            wrong = differs + (0.0 if measured is None else 0.5 * each.acceleration * motion.control_period)
+            told = [f"{each.who} changes its velocity by up to {each.jump:.4g} m/s at once"] if each.jump else []
+            if wrong:
+                told.append(f"its velocity from differences of positions is wrong by up to {wrong:.4g} m/s")
+            yield "velocity_error", shield.velocity_error, each.jump + wrong, " and ".join(told)
         if shield.person_acceleration is not None:
             why = f"{each.who} accelerates by {each.acceleration:.4g} m/s^2"
             yield "person_acceleration", shield.person_acceleration, each.acceleration, why
@@ -245,21 +307,42 @@ def _moves(speed: float) -> str:
     return f"moves at up to {speed:.4g} m/s" if math.isfinite(speed) else "has no largest speed"
 
 
-def _of_measurement(
-    shield: Shield, measured: Measurement | None, motion: Motion
-) -> Iterator[tuple[str, float, float, str]]:
-    """Yield name, assumed value, the least one that covers a measurement, and what asks for it."""
-    if measured is None:
+def _of_measurement(shield: Shield, measured: Measurement | None) -> Iterator[tuple[str, float, float, str]]:
+    """Yield name, assumed value, the least one that covers a measurement of others, and what asks for it."""
+    if measured is None or measured.of == "robot":
         return
     bound, latency = measured._native.error_bound(), measured.latency
-    if measured.of in ("both", "obstacles"):
-        yield "latency", shield.latency, latency, f"positions are measured {latency:.4g} s late"
-        yield "position_error", shield.position_error, bound, f"positions are wrong by up to {bound:.4g} m"
-        if shield.velocity_error is not None:
-            # Backward differences of two wrong positions.
-            error = 2.0 * bound / motion.control_period
-            why = f"velocities from differences of positions are wrong by up to {error:.4g} m/s"
-            yield "velocity_error", shield.velocity_error, error, why
-    if measured.of in ("both", "robot"):
-        own = bound + latency * motion.robot.max_speed
-        yield "margin", shield.margin, own, f"the robot knows its own place to {own:.4g} m only"
+    yield "latency", shield.latency, latency, f"positions are measured {latency:.4g} s late"
+    yield "position_error", shield.position_error, bound, f"positions are wrong by up to {bound:.4g} m"
+
+
+def _of_own_motion(
+    shield: Shield, measured: Measurement | None, motion: Motion, *, walls: bool, owner: str
+) -> Iterator[ResultWarning]:
+    """Warn of margins below the deviation of the robot from its plan, and of a robot that measures itself."""
+    least = motion.execution_error
+    told = [f"with motion steps of {motion.step:g} s the robot is up to {least:.4g} m off the motion that is planned"]
+    unproved = ""
+    if measured is not None and measured.of in ("both", "robot"):
+        bound = measured._native.error_bound()
+        own = bound + measured.latency * motion.robot.max_speed
+        told = [*(told if least else ()), f"the robot knows its own place to {own:.4g} m only"]
+        least += own
+        wrong = 2.0 * bound / motion.control_period + measured.latency * motion.robot.max_acceleration
+        if own:
+            wrong = min(wrong, 2.0 * motion.robot.max_speed + 2.0 * bound / motion.control_period)
+            unproved = (
+                f"the robot knows its own velocity to {wrong:.4g} m/s only, which no margin covers: nothing is proved"
+            )
+    for name in ("margin", "wall_margin")[: 1 + walls]:
+        assumed = getattr(shield, name)
+        message = []
+        if assumed < least * (1.0 - ROUNDING):
+            message.append(
+                f"{name} of the shield is {assumed:.4g}, but {' and '.join(told)}: it may let the robot move into "
+                f"somebody; give at least {name}={least:.4g}"
+            )
+        if unproved and (name == "margin" or message):
+            message.append(unproved)
+        if message:
+            yield ResultWarning(ASSUMES_LESS, f"{owner}.{name}", "; ".join(message))
