@@ -10,10 +10,10 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_warnings import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
-from hrsafety.navigation.shield_warnings import of_order, of_shield, shield_of
+from hrsafety.navigation.shield_warnings import ASSUMES_LESS, of_order, of_shield, shield_of
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["of_run", "of_runs", "of_scenes"]
+__all__ = ["of_commands", "of_run", "of_runs", "of_scenes"]
 
 
 def of_run(
@@ -52,6 +52,16 @@ def of_run(
 
 def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:
     return late_cameras(scenario, built) if by_regions else iter(())
+
+
+def of_commands(law: Law, periods: int) -> Iterator[ResultWarning]:
+    """Warn of control periods in which commands from outside took the place of a law with a shield."""
+    if periods and shield_of(law)[0] is not None:
+        message = (
+            f"in {periods} control periods the robot was commanded from outside, past the shield of its law: nothing "
+            "is proved for this run; give commands to a law in Python within the shield"
+        )
+        yield ResultWarning(ASSUMES_LESS, "command", message)
 
 
 def of_runs(
