@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from hrsafety._arguments import instance
+from hrsafety.navigation.free_space import stands
+from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
-from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
+from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
@@ -158,3 +160,34 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
                 f"but the robot has a radius of {scenario.robot.radius:.4g} m: it may touch what the law takes to be "
                 f"off; give a range_min of at most the radius",
             )
+
+
+def late_cameras(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
+    """Warn of critical regions that are too small for the delays of cameras, in which a robot brakes too late."""
+    seen, own = (_delay(vision) for vision in (built.obstacle_vision, built.robot_vision))
+    if seen == own == 0.0:
+        return
+    measurement, robot = scenario.measurement, scenario.robot
+    error = own * robot.max_speed + (0.0 if measurement is None else measurement._native.error_bound())
+    latency = max(seen, 0.0 if measurement is None else measurement.latency)
+    for index, obstacle in enumerate(scenario.obstacles):
+        radius, given = obstacle.critical_radius, obstacle.as_given()
+        # Who stands is known without a delay, but for that of the robot itself.
+        late = 0.0 if stands(obstacle) else latency
+        safe = region_radii(robot, given, scenario.control_period, latency=late, position_error=error)
+        if radius is not None and radius < safe.critical_radius - ROUNDING:
+            told = " and ".join(
+                f"{name} of {delay:g} s" for name, delay in (("obstacle_vision", seen), ("robot_vision", own)) if delay
+            )
+            yield ResultWarning(
+                BELOW_SAFE,
+                f"obstacles[{index}].critical_radius",
+                f"critical_radius of obstacles[{index}] ({type(obstacle).__name__}) is {radius:.4g} m, below the "
+                f"{safe.critical_radius:.4g} m in which the robot can stop with the delay of {told} (region_radii with "
+                "latency and position_error); give regions for it",
+            )
+
+
+def _delay(vision: Vision | None) -> float:
+    """Return how old positions are that a camera tells; one that moves them on to the present has none."""
+    return 0.0 if vision is None or vision.compensated else vision.delay

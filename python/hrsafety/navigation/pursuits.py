@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Literal, cast
 
@@ -19,7 +19,7 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.warnings import runs as run_warnings
+from hrsafety.navigation.warnings.shields import ASSUMES_LESS, shield_of
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
@@ -247,8 +247,21 @@ def falsify(
         **found,
         episodes=runs,
         worst=worst,
-        warnings=run_warnings.of_run(pursued, drives, robot, step),
+        warnings=(*run_warnings.of_run(pursued, drives, robot, step), *_of_turns(drives, fastest)),
     )
+
+
+def _of_turns(law: object, speed: float) -> Iterator[ResultWarning]:
+    """Warn of a shield that knows velocities to less than a person changes his, who turns at once."""
+    shield, _ = shield_of(law)
+    if shield is not None and shield.velocity_error is not None and shield.velocity_error < 2.0 * speed:
+        yield ResultWarning(
+            ASSUMES_LESS,
+            "shield.velocity_error",
+            f"velocity_error of the shield is {shield.velocity_error:.4g}, but the person turns by up to "
+            f"{2.0 * speed:.4g} m/s at once: a fault says nothing about the shield; give at least "
+            f"velocity_error={2.0 * speed:.4g}",
+        )
 
 
 def _least(least: float) -> float:

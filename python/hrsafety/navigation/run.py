@@ -72,7 +72,7 @@ class Run:
     [-0.5, 0.2]
     """
 
-    __slots__ = ("_built", "_goal", "_how", "_law", "_native", "_robot", "_scenario", "_step")
+    __slots__ = ("_built", "_commanded", "_goal", "_how", "_law", "_native", "_robot", "_scenario", "_step")
 
     def __init__(
         self,
@@ -95,6 +95,7 @@ class Run:
         self._robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
         self._goal = fixed(scene.goal)
         self._step = number("step", step)
+        self._commanded = 0
         self._native = _hrsafety.Run(
             native,
             None if self._law is None else self._law._native,
@@ -132,7 +133,12 @@ class Run:
         fields = self._native.recorded(motors=self._built)
         law = _COMMANDS if self._law is None else self._law
         return Trajectory(
-            scenario=self._scenario, law=law, built=self._how if self._built else None, motion_step=self._step, **fields
+            scenario=self._scenario,
+            law=law,
+            built=self._how if self._built else None,
+            motion_step=self._step,
+            commanded_periods=self._commanded,
+            **fields,
         )
 
     @property
@@ -190,6 +196,7 @@ class Run:
             force=None if command is None else finite_pair("command", command),
             velocity=None if velocity is None else finite_pair("velocity", velocity),
         )
+        self._commanded += command is not None or velocity is not None
         return self.observe()
 
     def __repr__(self) -> str:

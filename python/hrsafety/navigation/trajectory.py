@@ -107,6 +107,8 @@ class Trajectory(Table):
         How the robot is built.
     motion_step : float
         Motion step of the run in s.
+    commanded_periods : int
+        Control periods in which a command from outside took the place of the law; 0 but for a `Run`.
     speed, turn_rate : ndarray of shape (n,), or None
         Forward speed in m/s and turn rate in rad/s over the step that ends at the row; of a run after a
         reference, as all that follows.
@@ -152,6 +154,7 @@ class Trajectory(Table):
     map_contact_speed: float = math.nan
     map_clearance: float = math.inf
     motion_step: float = 0.01
+    commanded_periods: int = 0
     stabilizing: Array | Any = None
     lyapunov: Array | Any = None
     wheel_speed: Array | None = None
@@ -238,11 +241,13 @@ class Trajectory(Table):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the run may not mean what it seems to.
 
-        The warnings of its scenario that matter for its law, and of sensors that see less than they must.
+        The warnings of its scenario that matter for its law, of sensors that see less than they must, and of
+        commands that a shield has not verified.
         """
         if self.scenario is None:
             return ()
-        return run_warnings.of_run(self.scenario, self.law, self.built, self.motion_step)
+        found = run_warnings.of_run(self.scenario, self.law, self.built, self.motion_step)
+        return (*run_warnings.of_commands(self.law, self.commanded_periods), *found)
 
     @property
     def sensing(self) -> Sensing:

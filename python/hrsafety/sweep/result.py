@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -100,9 +101,11 @@ class SweepResult:
 
     @property
     def provenance(self) -> dict[str, Any]:
-        """Where the numbers come from: version, settings with seed, fingerprint, time, environment."""
+        """Version, settings with seed, fingerprint, time, environment, warnings, and how many chunks there are."""
         manifest = dict(self._store.manifest)
-        return {"version": manifest["settings"]["version"], **manifest}
+        parts = {"finished": len(self.finished), "of": self.chunk_count}
+        doubts = [asdict(each) for each in self.warnings]
+        return {"version": manifest["settings"]["version"], **manifest, "warnings": doubts, "chunks": parts}
 
     @property
     def folder(self) -> Path | None:

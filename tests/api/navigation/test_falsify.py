@@ -127,3 +127,15 @@ def test_cma_es_finds_a_fault() -> None:
 def test_bad_calls(changes: dict[str, object], name: str) -> None:
     with pytest.raises(InvalidParameterError, match=name):
         falsify(SCENE, ORCA, **changes)
+
+
+def test_a_person_who_turns_faster_than_a_shield_assumes_is_told() -> None:
+    scene = nav.Scenario(start=(0, 0), goal=(6, 0), time_limit=12.0)
+
+    def subjects(velocity_error: float) -> list[str]:
+        shield = nav.Shield(velocity_error=velocity_error, person_acceleration=0.0)
+        law = nav.SafeNavigation(nav.VirtualForceField(), shield=shield)
+        return [each.subject for each in nav.falsify(scene, law, episodes=2).warnings]
+
+    assert subjects(0.5) == ["shield.velocity_error"]
+    assert subjects(3.2) == []

@@ -159,6 +159,21 @@ def test_walls_and_maps_need_a_margin_of_their_own(known: bool) -> None:
     assert [each.subject for each in run.warnings if each.code == "shield_assumes_less"] == ["shield.wall_margin"]
 
 
+def test_commands_past_a_shield_are_told() -> None:
+    run = nav.Run(SCENE, SafeNavigation(FIELD, shield=Shield()))
+    run.step()
+    assert run.trajectory.warnings == ()
+    run.step(velocity=(0.7, 0.0))
+    run.step((1.0, 0.0))
+    assert run.trajectory.commanded_periods == 2
+    (found,) = run.trajectory.warnings
+    assert (found.code, found.subject) == ("shield_assumes_less", "command")
+    assert "in 2 control periods" in found.message
+    free = nav.Run(SCENE)
+    free.step((1.0, 0.0))
+    assert free.trajectory.warnings == ()
+
+
 def test_a_shield_below_other_parts_is_told() -> None:
     inner = SafeNavigation(FIELD, shield=Shield(person_speed=1.0))
     run = nav.simulate(SCENE, SafeNavigation(inner, yielding=nav.Yielding()))

@@ -236,3 +236,22 @@ def test_nothing_is_known_of_an_empty_path() -> None:
     assert seen.exposed.shape == (0,)
     assert seen.position.shape == (0, 2)
     assert nav.sensing.track_positions([], np.empty((0, 2)), nav.sensing.Kalman()).velocity.shape == (0, 2)
+
+
+def test_regions_too_small_for_the_delay_of_a_camera_are_told() -> None:
+    person = nav.Human(start=(4.0, 1.0), velocity=(-1.0, 0.0))
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(5.0, 0.0), obstacles=[person], time_limit=1.0)
+
+    def told(place: nav.Scenario, law: Any = None, **options: Any) -> list[str]:
+        built = nav.robots.AsBuilt(**{name: nav.sensing.Vision(**given) for name, given in options.items()})
+        run = nav.simulate(place, law or nav.VirtualForceField(), built=built)
+        return [each.message for each in run.warnings if each.code == "region_below_safe"]
+
+    assert told(scene, obstacle_vision={}) == []
+    (message,) = told(scene, obstacle_vision={"delay": 0.5}, robot_vision={"delay": 0.1})
+    # 0.7965 m for exact positions, 1 m/s and 0.7 m/s times the delays.
+    assert "below the 1.366 m" in message
+    assert told(scene, obstacle_vision={"delay": 0.5, "compensated": True}) == []
+    assert told(scene, nav.OptimalReciprocalCollisionAvoidance(), obstacle_vision={"delay": 0.5}) == []
+    sized = replace(person, critical_radius=1.2965, active_radius=3.0)
+    assert told(replace(scene, obstacles=(sized,)), obstacle_vision={"delay": 0.5}) == []

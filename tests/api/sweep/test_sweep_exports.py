@@ -97,9 +97,17 @@ def test_part_of_a_sweep_can_be_read(tmp_path: Path) -> None:
     assert len(part) == 6
     np.testing.assert_allclose(part["y"], 2.0 * np.linspace(0.0, 0.5, 6), rtol=1e-14)
     assert "3 of 6 chunks" in repr(part)
+    # Files of it say so, too.
+    assert part.provenance["chunks"] == {"finished": 3, "of": 6}
     pytest.importorskip("xarray", reason="needs the extra sweep")
     with pytest.raises(sweep.SweepError, match="not complete"):
         part.to_xarray()
+
+
+def test_warnings_of_a_design_are_part_of_the_provenance() -> None:
+    study = sweep.FunctionStudy(function=sweep_functions.fails_beyond, results=["y"], parameters={"limit": 2.0})
+    found = sweep.run(sweep.Sobol([sweep.Axis(name="x", low=0.0, high=1.0)], 6), study)
+    assert [each["code"] for each in found.provenance["warnings"]] == ["unbalanced"]
 
 
 def test_npz_holds_columns_units_and_provenance(result: sweep.SweepResult, tmp_path: Path) -> None:

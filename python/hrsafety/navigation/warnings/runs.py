@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from hrsafety.navigation.knowledge import warnings_of
+from hrsafety.navigation.knowledge import late_cameras, warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
-from hrsafety.navigation.warnings.shields import of_order, of_shield, shield_of
+from hrsafety.navigation.warnings.shields import ASSUMES_LESS, of_order, of_shield, shield_of
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["of_run", "of_runs", "of_scenes"]
+__all__ = ["of_commands", "of_run", "of_runs", "of_scenes"]
 
 
 def of_run(
@@ -39,14 +39,29 @@ def of_run(
         The warnings.
     """
     brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
-    about_regions = () if isinstance(brakes, VirtualForceField) else (BELOW_SAFE, IN_CRITICAL_REGION)
+    by_regions = isinstance(brakes, VirtualForceField)
+    about_regions = () if by_regions else (BELOW_SAFE, IN_CRITICAL_REGION)
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
-    of_sensors = () if built is None else warnings_of(scenario, built)
+    of_sensors = () if built is None else (*warnings_of(scenario, built), *_late(scenario, built, by_regions))
     shield, walls = shield_of(law)
     if shield is None:
         return (*of_scene, *of_sensors)
     return (*of_scene, *of_sensors, *of_order(law), *of_shield(scenario, shield, built, motion_step, walls=walls))
+
+
+def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:
+    return late_cameras(scenario, built) if by_regions else iter(())
+
+
+def of_commands(law: Law, periods: int) -> Iterator[ResultWarning]:
+    """Warn of control periods in which commands from outside took the place of a law with a shield."""
+    if periods and shield_of(law)[0] is not None:
+        message = (
+            f"in {periods} control periods the robot was commanded from outside, past the shield of its law: nothing "
+            "is proved for this run; give commands to a law in Python within the shield"
+        )
+        yield ResultWarning(ASSUMES_LESS, "command", message)
 
 
 def of_runs(

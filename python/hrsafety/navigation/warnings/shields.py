@@ -79,10 +79,13 @@ class Mover:
     jump: float = 0.0
 
 
-def _mover(who: str, obstacle: Obstacle, until: float, ahead: float) -> Mover:
-    """Return how an obstacle moves before a time limit, and how it turns while a plan of so many seconds lasts."""
+def _mover(who: str, obstacle: Obstacle, until: float, ahead: float | None) -> Mover:
+    """Return how an obstacle moves before a time limit, and how it turns while a plan of so many seconds lasts.
+
+    ``None`` where only its speed counts.
+    """
     speed = own_speed(obstacle, until)
-    if not isinstance(obstacle, Mobile):
+    if ahead is None or not isinstance(obstacle, Mobile):
         return Mover(who, speed)
     if obstacle.path is not None:
         times, places = obstacle.path
@@ -169,8 +172,10 @@ def of_shield(
         Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
     motion = Motion(scenario.robot, scenario.control_period, motion_step)
-    # A measured velocity is that of a whole control period before.
-    ahead = shield.latency + motion.plan_duration + (0.0 if scenario.measurement is None else motion.control_period)
+    ahead = None
+    if shield.velocity_error is not None:
+        # A measured velocity is that of a whole control period before.
+        ahead = shield.latency + motion.plan_duration + (0.0 if scenario.measurement is None else motion.control_period)
     named = ((f"obstacles[{index}]", obstacle) for index, obstacle in enumerate(scenario.obstacles))
     others = [_mover(who, obstacle, scenario.time_limit, ahead) for who, obstacle in named]
     yield from of_surroundings(

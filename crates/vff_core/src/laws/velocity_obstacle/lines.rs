@@ -24,9 +24,10 @@ pub(super) struct Reachable {
 
 impl Reachable {
     pub fn holds(&self, velocity: Vector) -> bool {
-        let beyond =
-            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() > limit * (1.0 + ON_THE_LIMIT);
-        !beyond(velocity, self.max_speed) && !beyond(velocity - self.velocity, self.change)
+        // Nothing that is not a number.
+        let within =
+            |vector: Vector, limit: f64| vector.dot(&vector).sqrt() <= limit * (1.0 + ON_THE_LIMIT);
+        within(velocity, self.max_speed) && within(velocity - self.velocity, self.change)
     }
 
     pub fn circles(&self) -> [(Vector, f64); 2] {
@@ -149,7 +150,8 @@ pub(super) fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
     let (speed, change) = (reachable.max_speed, reachable.change);
     let share = 0.5 * (1.0 + (speed * speed - change * change) / square);
     let across = speed * speed / square - share * share;
-    if across < 0.0 {
+    // The square of a speed of less than 1e-150 m/s is nearly nothing, and what is divided by it no number.
+    if !(0.0..f64::INFINITY).contains(&across) {
         return [None, None];
     }
     let half = across.sqrt();

@@ -133,3 +133,22 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
     }
     assert!(found > 160 && nothing > 20, "{found} {nothing}");
 }
+
+#[test]
+fn speeds_whose_squares_are_nearly_nothing_give_numbers() {
+    for exponent in (100..=308).chain([320, 323]) {
+        for scale in [1.0, 2.2, 4.7, 8.8] {
+            let speed: f64 = format!("{scale}e-{exponent}").parse().unwrap();
+            let reachable = lines::Reachable {
+                velocity: Vector2::new(speed, -0.1 * speed),
+                change: 0.025,
+                max_speed: 0.7,
+            };
+            for met in lines::where_circles_meet(&reachable).into_iter().flatten() {
+                assert!(met.lane(0).iter().all(|part| part.is_finite()), "{speed}");
+            }
+            let nothing = Vector2::new(f64::NAN, 0.0);
+            assert!(!reachable.holds(nothing));
+        }
+    }
+}
