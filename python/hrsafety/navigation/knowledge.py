@@ -14,6 +14,7 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
+from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]

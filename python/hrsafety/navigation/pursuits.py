@@ -19,6 +19,7 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, shield_of
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
