@@ -10,14 +10,15 @@ mod tests;
 
 use std::cell::Cell;
 
-use best::{Best, Place, Promising};
-use cover::Covers;
+use best::{Best, Place, Room};
 use lines::{Line, Reachable, where_circles_meet};
 
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
-use crate::laws::planning::outline::{Legs, Outline};
+use crate::laws::planning::outline::{Legs, Outline, touches};
+use crate::world::geometry::Body;
+use crate::world::obstacle::Shape;
 use crate::world::scenario::Scenario;
 
 type Vector = Vector2<f64>;
@@ -69,12 +70,22 @@ impl Default for VelocityObstacle {
     }
 }
 
-/// Velocities that one obstacle forbids.
+/// Velocities that one obstacle forbids, as seen where the robot turns into its new velocity.
 #[derive(Clone, Copy, Debug)]
 struct Cone {
-    /// As seen where the robot turns into its new velocity.
-    outline: Outline,
+    /// Velocity of the obstacle in m/s.
+    tip: Vector,
     legs: Option<Legs>,
+    base: ConeBase,
+}
+
+/// Outline of an obstacle: that of a disc is small, and most are discs.
+#[derive(Clone, Copy, Debug)]
+enum ConeBase {
+    /// Center relative to the robot, and radius, in m.
+    Disc(Vector, f64),
+    /// Place among the outlines with edges.
+    Edges(usize),
 }
 
 /// The planner at work in one scenario.
@@ -86,6 +97,8 @@ pub struct VelocityObstaclePlanner {
     max_speed: f64,
     max_acceleration: f64,
     cones: Vec<Cone>,
+    /// Outlines that are no discs.
+    edged: Vec<Outline>,
     /// As they are seen now, those that are so near that the way to a new velocity may touch them.
     close: Vec<Outline>,
     lines: Vec<Line>,
@@ -93,6 +106,7 @@ pub struct VelocityObstaclePlanner {
     chosen: Place,
     /// The cone that forbade the last velocity.
     blocking: Cell<usize>,
+    room: Room,
 }
 
 impl VelocityObstaclePlanner {
@@ -107,10 +121,12 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
+            edged: Vec::new(),
             close: Vec::new(),
             lines: Vec::new(),
             chosen: (0, 0),
             blocking: Cell::new(0),
+            room: Room::default(),
         }
     }
 
@@ -138,25 +154,50 @@ impl VelocityObstaclePlanner {
     }
 
     fn look(&mut self, situation: &Situation<'_, f64>, margin: f64) {
-        let robot = &situation.robot;
         let farthest = self.farthest(situation);
         self.cones.clear();
+        self.edged.clear();
         self.close.clear();
+        // The robot changes its velocity over a control period: as if it went on at the old
+        // one for a part of it and had the new one from there.
+        let before = (1.0 - self.settings.ramp) * situation.interval;
         for body in situation.bodies {
-            if !body.state.present {
-                continue;
+            if body.state.present {
+                self.look_at(body, situation, (margin, farthest, before));
             }
-            let now = Outline::new(body, robot.position, self.robot_radius, margin);
-            // The robot changes its velocity over a control period: as if it went on at the old
-            // one for a part of it and had the new one from there.
-            let before = (1.0 - self.settings.ramp) * situation.interval;
-            let outline = now.seen_after((robot.velocity - now.velocity) * before);
-            if !free::is_far(&now, farthest, situation.interval) {
-                self.close.push(now);
-            }
-            let legs = outline.legs();
-            self.cones.push(Cone { outline, legs });
         }
+    }
+
+    #[inline]
+    fn look_at(
+        &mut self,
+        body: &Body,
+        situation: &Situation<'_, f64>,
+        (margin, farthest, before): (f64, f64, f64),
+    ) {
+        let robot = &situation.robot;
+        let tip = Vector::splat(body.state.velocity);
+        let way = (robot.velocity - tip) * before;
+        let Shape::Disc { radius } = body.shape else {
+            let now = Outline::new(body, robot.position, self.robot_radius, margin);
+            let later = now.seen_after(way);
+            self.close.push(now);
+            self.cones.push(Cone {
+                tip,
+                legs: later.legs(),
+                base: ConeBase::Edges(self.edged.len()),
+            });
+            return self.edged.push(later);
+        };
+        let center = Vector::splat(body.state.position) - robot.position;
+        let radius = (self.robot_radius + margin) + radius;
+        if !free::is_far((center, radius), tip, (farthest, situation.interval)) {
+            self.close.push(Outline::disc(center, radius, tip));
+        }
+        let center = center - way;
+        let legs = (!touches(center, radius)).then(|| Legs::of_disc(center, radius));
+        let base = ConeBase::Disc(center, radius);
+        self.cones.push(Cone { tip, legs, base });
     }
 
     /// Draws every line on which a rule of selection can have its optimum.
@@ -165,7 +206,7 @@ impl VelocityObstaclePlanner {
         lines.clear();
         for cone in &self.cones {
             if let Some(legs) = cone.legs {
-                let from = cone.outline.velocity;
+                let from = cone.tip;
                 lines.extend([legs.left, legs.right].map(|along| Line { from, along }));
             }
         }
@@ -240,7 +281,8 @@ impl VelocityObstaclePlanner {
         let aim = self.direction_to_goal(situation);
         self.draw_lines(aim);
         let wanted = self.wanted(situation, aim);
-        let mut best = Best::new(self, situation, (reachable, aim));
+        let room = std::mem::take(&mut self.room);
+        let mut best = Best::new(self, situation, (reachable, aim), room);
         for (number, velocity) in self
             .first_candidates(situation, aim)
             .into_iter()
@@ -257,34 +299,10 @@ impl VelocityObstaclePlanner {
             best.offer(self.chosen, velocity);
         }
         best.narrow();
-        let mut covers = best.covers();
-        let mut open: Vec<Promising> = Vec::new();
-        for line in &best.promising(&self.lines) {
-            if best.is_better_than(line.promise) {
-                break;
-            }
-            if self.is_covered(&best, &mut covers, line) {
-                continue;
-            }
-            let own = line.line.own(wanted, &reachable);
-            for (number, velocity) in own.into_iter().enumerate() {
-                if let Some(velocity) = velocity {
-                    best.offer((1 + line.index, number), velocity);
-                }
-            }
-            for other in &open {
-                let (later, earlier) = if line.index > other.index {
-                    (line, other)
-                } else {
-                    (other, line)
-                };
-                if let Some(velocity) = later.line.crossing(&earlier.line) {
-                    best.offer((1 + later.index, best::OWN + earlier.index), velocity);
-                }
-            }
-            open.push(*line);
-        }
-        let (place, velocity) = best.chosen()?;
+        best.look_along_lines(wanted);
+        let (chosen, room) = best.ended();
+        self.room = room;
+        let (place, velocity) = chosen?;
         self.chosen = place;
         Some(velocity)
     }
@@ -301,13 +319,6 @@ impl VelocityObstaclePlanner {
             None => line.own(wanted, reachable)[number],
             Some(other) => line.crossing(self.lines.get(other)?),
         }
-    }
-
-    /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
-    fn is_covered(&self, best: &Best<'_>, covers: &mut Covers, line: &Promising) -> bool {
-        let horizon = self.settings.horizon;
-        let part = best.better_part(line);
-        part.is_some_and(|ends| covers.cover(&self.cones, ends, horizon))
     }
 
     /// The reachable velocity with the latest contact, for want of a free one.
@@ -335,7 +346,7 @@ impl VelocityObstaclePlanner {
             // One contact that is not later than the latest known one is enough.
             let mut time = f64::INFINITY;
             for cone in &self.cones {
-                time = time.min(cone.time_to_contact(velocity));
+                time = time.min(cone.time_to_contact(velocity, &self.edged));
                 if time <= best.0 {
                     break;
                 }

@@ -137,7 +137,7 @@ impl Outline {
     #[must_use]
     pub fn touches(&self) -> bool {
         let (point, inside) = self.nearest(Vector::zeros());
-        inside || point.dot(&point) <= self.radius * self.radius
+        inside || touches(point, self.radius)
     }
 
     /// Rays that just touch it; none from inside.
@@ -243,8 +243,14 @@ impl Legs {
     }
 }
 
+/// Whether a point at the origin touches a disc or is inside.
+#[inline]
+pub(in crate::laws) fn touches(center: Vector, radius: f64) -> bool {
+    center.dot(&center) <= radius * radius
+}
+
 /// Time at which a point that starts at the origin enters a disc that it is not in.
-fn entry(center: Vector, radius: f64, velocity: Vector) -> f64 {
+pub(in crate::laws) fn entry(center: Vector, radius: f64, velocity: Vector) -> f64 {
     let approach = center.dot(&velocity);
     let square = velocity.dot(&velocity);
     let gap = center.dot(&center) - radius * radius;

@@ -3,6 +3,7 @@
 use super::cover::Covers;
 use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
+use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
 pub(super) const OWN: usize = 5;
@@ -10,8 +11,12 @@ pub(super) const OWN: usize = 5;
 /// A promise is worth this much more than it says, relative to it: well above all roundings.
 const SLACK: f64 = 1e-6;
 
+/// Lines that are looked at side by side.
+const GROUP: usize = 4;
+type Group = Lanes<GROUP>;
+
 /// A line that anything reachable lies on.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Promising {
     /// What its velocities are worth at most.
     pub promise: f64,
@@ -36,10 +41,24 @@ pub(super) struct Best<'a> {
     /// What it is worth by the first number: whatever promises less is not looked at.
     least: f64,
     found: Option<((f64, f64), Place, Vector)>,
-    /// The cones that may forbid any velocity that may be worth enough, once they have been sorted out.
-    near: Option<Vec<usize>>,
+    /// Whether the cones that may forbid any velocity that may be worth enough have been sorted out.
+    narrow: bool,
+    room: Room,
+}
+
+/// Room for what is sorted out, kept from one control period to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Room {
+    /// The cones that may forbid any velocity that may be worth enough.
+    near: Vec<usize>,
     /// The lines on which there may be any.
     lines: Vec<usize>,
+    covers: Covers,
+    promising: Vec<Promising>,
+    /// Promises and places of those, the most promising first.
+    order: Vec<(f64, usize)>,
+    /// Those that no single obstacle forbids.
+    open: Vec<Promising>,
 }
 
 impl<'a> Best<'a> {
@@ -47,6 +66,7 @@ impl<'a> Best<'a> {
         planner: &'a VelocityObstaclePlanner,
         situation: &'a Situation<'a, f64>,
         (reachable, aim): (Reachable, Vector),
+        room: Room,
     ) -> Self {
         Self {
             planner,
@@ -55,14 +75,15 @@ impl<'a> Best<'a> {
             aim,
             least: f64::NEG_INFINITY,
             found: None,
-            near: None,
-            lines: Vec::new(),
+            narrow: false,
+            room,
         }
     }
 
-    /// The best velocity and its place.
-    pub fn chosen(&self) -> Option<(Place, Vector)> {
-        self.found.map(|(_, place, velocity)| (place, velocity))
+    /// The best velocity and its place, and the room.
+    pub fn ended(self) -> (Option<(Place, Vector)>, Room) {
+        let chosen = self.found.map(|(_, place, velocity)| (place, velocity));
+        (chosen, self.room)
     }
 
     /// Takes a velocity if it is reachable, better than the one before, and free. Most are far out
@@ -92,9 +113,10 @@ impl<'a> Best<'a> {
 
     fn is_free(&self, velocity: Vector) -> bool {
         let (planner, situation) = (self.planner, self.situation);
-        match &self.near {
-            None => planner.free(situation, velocity),
-            Some(near) => planner.free_of(near.iter().copied(), situation, velocity),
+        if self.narrow {
+            planner.free_of(self.room.near.iter().copied(), situation, velocity)
+        } else {
+            planner.free(situation, velocity)
         }
     }
 
@@ -102,15 +124,17 @@ impl<'a> Best<'a> {
     /// legs on which there is nothing of that kind.
     pub fn narrow(&mut self) {
         let cap = self.cap();
-        let Self { near, lines, .. } = self;
-        let near = near.insert(Vec::new());
+        self.narrow = true;
+        let Room { near, lines, .. } = &mut self.room;
+        near.clear();
+        lines.clear();
         let mut line = 0;
         for (index, cone) in self.planner.cones.iter().enumerate() {
             let Some(legs) = &cone.legs else {
                 near.push(index);
                 continue;
             };
-            let offset = cap.center - cone.outline.velocity;
+            let offset = cap.center - cone.tip;
             let reach = cap.reach(offset);
             let across = [legs.left, legs.right].map(|leg| leg.perp(&offset));
             // Also where a number is not one.
@@ -125,13 +149,6 @@ impl<'a> Best<'a> {
             }
         }
         lines.extend(line..self.planner.lines.len());
-    }
-
-    /// The cones of discs that may forbid whole lines.
-    pub fn covers(&self) -> Covers {
-        let near = self.near.as_deref();
-        let chosen = near.filter(|_| self.planner.settings.selection == Selection::ToGoal);
-        Covers::of(&self.planner.cones, chosen.unwrap_or_default())
     }
 
     /// The smallest disc that is known to hold everything reachable that may be worth enough.
@@ -162,28 +179,127 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Lines that anything reachable lies on which may be worth enough, the most promising first.
-    pub fn promising(&self, lines: &[Line]) -> Vec<Promising> {
-        let promise = |&index: &usize| {
-            let line = &lines[index];
-            let ends = self.reachable.chord(line)?;
-            let promise = self.promise(ends);
-            (!self.is_better_than(promise)).then_some(Promising {
-                promise,
-                index,
-                line: *line,
-                ends,
-            })
-        };
-        let found: Vec<Promising> = self.lines.iter().filter_map(promise).collect();
+    /// Offers what is on lines by themselves and where they cross, the most promising lines first.
+    pub fn look_along_lines(&mut self, wanted: Vector) {
+        self.sort_out_lines();
+        self.room.open.clear();
+        let least = self.least;
+        for place in 0..self.room.order.len() {
+            let line = self.room.promising[self.room.order[place].1];
+            if self.is_better_than(line.promise) {
+                break;
+            }
+            if self.least > least && self.is_covered(&line) {
+                continue;
+            }
+            let own = line.line.own(wanted, &self.reachable);
+            for (number, velocity) in own.into_iter().enumerate() {
+                if let Some(velocity) = velocity {
+                    self.offer((1 + line.index, number), velocity);
+                }
+            }
+            for other in 0..self.room.open.len() {
+                let other = self.room.open[other];
+                let (later, earlier) = if line.index > other.index {
+                    (&line, &other)
+                } else {
+                    (&other, &line)
+                };
+                if let Some(velocity) = later.line.crossing(&earlier.line) {
+                    self.offer((1 + later.index, OWN + earlier.index), velocity);
+                }
+            }
+            self.room.open.push(line);
+        }
+    }
+
+    /// Lines that anything reachable lies on which may be worth enough and is not forbidden by a single
+    /// obstacle, the most promising first.
+    fn sort_out_lines(&mut self) {
+        let planner = self.planner;
+        self.room.promising.clear();
+        if planner.settings.selection == Selection::ToGoal {
+            self.room.covers.take(&planner.cones, &self.room.near);
+        }
+        pulp::Arch::new().dispatch(LineSorting(self));
         // The lines follow each other by their places, so that equal promises are told apart by the order.
-        let mut order: Vec<(f64, usize)> = found
-            .iter()
-            .enumerate()
-            .map(|(place, line)| (line.promise, place))
-            .collect();
+        let Room {
+            promising, order, ..
+        } = &mut self.room;
+        let promises = promising.iter().enumerate();
+        order.clear();
+        order.extend(promises.map(|(place, line)| (line.promise, place)));
         order.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
-        order.into_iter().map(|(_, place)| found[place]).collect()
+    }
+
+    /// The lines of a group, that from some place on among those that may hold anything.
+    #[inline(always)]
+    fn sort_out_group(&mut self, first: usize) {
+        let count = GROUP.min(self.room.lines.len() - first);
+        let indices = |lane: usize| self.room.lines[first + lane.min(count - 1)];
+        let lines = &self.planner.lines;
+        let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&lines[indices(lane)]));
+        let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
+        let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
+        let (some, ends) = self.reachable.chords(from, along);
+        let to_goal = self.planner.settings.selection == Selection::ToGoal;
+        let (promises, parts) = if to_goal {
+            self.promises(ends)
+        } else {
+            (Group::splat(f64::INFINITY), ends)
+        };
+        let kept = some & !promises.lt(Group::splat(self.least));
+        for lane in (0..count).filter(|lane| kept.lane(*lane)) {
+            let of_lane = |ends: [Vector2<Group>; 2]| ends.map(|end| Vector::from(end.lane(lane)));
+            let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
+            let found = Promising {
+                promise: if to_goal {
+                    promises.lane(lane)
+                } else {
+                    self.promise(ends)
+                },
+                index,
+                line: self.planner.lines[index],
+                ends,
+            };
+            let covered = to_goal && self.covers(index, of_lane(parts));
+            if !covered && !self.is_better_than(found.promise) {
+                self.room.promising.push(found);
+            }
+        }
+    }
+
+    /// What the velocities between ends are worth at most where worth is the component toward the goal,
+    /// and the ends of the parts that may be worth as much as what was found, generously.
+    #[inline(always)]
+    fn promises(&self, ends: [Vector2<Group>; 2]) -> (Group, [Vector2<Group>; 2]) {
+        let (aim, number) = (Vector2::splat([self.aim.x, self.aim.y]), Group::splat);
+        let [first, second] = ends.map(|end: Vector2<Group>| end.dot(&aim));
+        let exact = first.max(second);
+        let promises = exact + number(SLACK) * (number(1.0) + exact.abs());
+        let least = number(self.least - SLACK * (1.0 + self.least.abs()));
+        let way = ends[1] - ends[0];
+        let share = (least - first) / (second - first);
+        let cut = ends[0] + way * share;
+        let rises = first.lt(least) & least.lt(second);
+        let falls = second.lt(least) & least.lt(first);
+        let parts = [
+            Vector2::select(rises, cut, ends[0]),
+            Vector2::select(falls, cut, ends[1]),
+        ];
+        (promises, parts)
+    }
+
+    /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
+    fn is_covered(&mut self, line: &Promising) -> bool {
+        let part = self.better_part(line);
+        part.is_some_and(|ends| self.covers(line.index, ends))
+    }
+
+    /// Whether one obstacle forbids a part of a line.
+    fn covers(&mut self, line: usize, ends: [Vector; 2]) -> bool {
+        let (cones, horizon) = (&self.planner.cones, self.planner.settings.horizon);
+        self.room.covers.cover(cones, (line, ends), horizon)
     }
 
     /// What the velocities between two are worth at most.
@@ -202,7 +318,7 @@ impl<'a> Best<'a> {
 
     /// Ends of the part of a line that may be worth as much as what was found, generously; `None` where
     /// worth is no component of the velocity.
-    pub fn better_part(&self, line: &Promising) -> Option<[Vector; 2]> {
+    fn better_part(&self, line: &Promising) -> Option<[Vector; 2]> {
         if self.planner.settings.selection != Selection::ToGoal {
             return None;
         }
@@ -221,8 +337,22 @@ impl<'a> Best<'a> {
     }
 
     /// Whether what was found is worth more than a promise.
-    pub fn is_better_than(&self, promise: f64) -> bool {
+    fn is_better_than(&self, promise: f64) -> bool {
         self.found.is_some_and(|(known, ..)| known.0 > promise)
+    }
+}
+
+/// Sorts out the lines, compiled for the instructions of the processor; its bits are the same for all.
+struct LineSorting<'b, 'a>(&'b mut Best<'a>);
+
+impl pulp::NullaryFnOnce for LineSorting<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for first in (0..self.0.room.lines.len()).step_by(GROUP) {
+            self.0.sort_out_group(first);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Parts of lines that one obstacle forbids all by itself.
 
-use super::{Cone, Vector};
+use super::{Cone, ConeBase, Vector};
 
 /// How far within a cone a velocity is at least, relative to 1 m/s and the magnitudes: well above all
 /// roundings.
@@ -29,43 +29,62 @@ struct Cover {
 /// Cones of the nearest discs that are not touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Covers {
+    /// Squares of distances in m^2, with places among all cones.
+    nearest: Vec<(f64, usize)>,
     discs: Vec<Cover>,
+    /// Which cone forbade each line last; it mostly does so again.
+    known: Vec<usize>,
 }
 
 impl Covers {
-    /// Of some cones.
-    pub fn of(cones: &[Cone], chosen: &[usize]) -> Self {
-        let distance = |index: &usize| {
-            let center = cones[*index].outline.center()?;
-            Some((center.dot(&center), *index))
+    /// Forgets all, and takes some cones.
+    pub fn take(&mut self, cones: &[Cone], chosen: &[usize]) {
+        let distance = |index: &usize| match cones[*index].base {
+            ConeBase::Disc(center, _) => Some((center.dot(&center), *index)),
+            ConeBase::Edges(_) => None,
         };
-        let mut discs: Vec<(f64, usize)> = chosen.iter().filter_map(distance).collect();
-        if discs.len() > MOST {
-            discs.select_nth_unstable_by(MOST, |one, other| one.0.total_cmp(&other.0));
-            discs.truncate(MOST);
+        let nearest = &mut self.nearest;
+        nearest.clear();
+        nearest.extend(chosen.iter().filter_map(distance));
+        if nearest.len() > MOST {
+            nearest.select_nth_unstable_by(MOST, |one, other| one.0.total_cmp(&other.0));
+            nearest.truncate(MOST);
         }
         let cover = |&(_, index): &(f64, usize)| Cover::of(&cones[index], index);
-        Self {
-            discs: discs.iter().filter_map(cover).collect(),
-        }
+        self.discs.clear();
+        self.discs.extend(nearest.iter().filter_map(cover));
     }
 
-    /// Whether one of the discs forbids everything between two velocities, and what is as near to that
-    /// as roundings are: what a disc forbids is convex.
-    pub fn cover(&mut self, cones: &[Cone], ends: [Vector; 2], horizon: f64) -> bool {
+    /// Whether a disc forbids everything between two velocities of a line, and what is as near to that as
+    /// roundings are: what a disc forbids is convex.
+    pub fn cover(
+        &mut self,
+        cones: &[Cone],
+        (line, ends): (usize, [Vector; 2]),
+        horizon: f64,
+    ) -> bool {
         let size = ends.map(|end| end.x.abs() + end.y.abs());
         let size = size[0].max(size[1]);
         let forbids = |disc: &Cover| {
             disc.holds(ends, size)
                 && (horizon == f64::INFINITY || {
-                    let soon =
-                        |end: &Vector| cones[disc.index].time_to_contact(*end) <= SOON * horizon;
+                    let cone = &cones[disc.index];
+                    let soon = |end: &Vector| cone.time_to_contact(*end, &[]) <= SOON * horizon;
                     ends.iter().all(soon)
                 })
         };
+        let known = self.known.get(line);
+        let known = known.and_then(|index| Cover::of(cones.get(*index)?, *index));
+        if known.is_some_and(|disc| forbids(&disc)) {
+            return true;
+        }
         let Some(found) = self.discs.iter().position(forbids) else {
             return false;
         };
+        if self.known.len() <= line {
+            self.known.resize(line + 1, usize::MAX);
+        }
+        self.known[line] = self.discs[found].index;
         // It mostly forbids the next line, too.
         self.discs.swap(0, found);
         true
@@ -73,8 +92,13 @@ impl Covers {
 }
 
 impl Cover {
+    /// `None` where it is touched, or is no disc.
+    #[inline]
     fn of(cone: &Cone, index: usize) -> Option<Self> {
-        let (legs, tip) = (cone.legs?, cone.outline.velocity);
+        if matches!(cone.base, ConeBase::Edges(_)) {
+            return None;
+        }
+        let (legs, tip) = (cone.legs?, cone.tip);
         Some(Self {
             left: legs.left,
             right: legs.right,

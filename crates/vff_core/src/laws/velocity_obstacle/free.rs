@@ -1,9 +1,9 @@
 //! Whether a velocity is free: no contact within the horizon, and none on the way to it.
 
-use super::{Cone, Vector, VelocityObstaclePlanner};
+use super::{Cone, ConeBase, Vector, VelocityObstaclePlanner};
 use crate::lanes::Planar;
 use crate::laws::Situation;
-use crate::laws::planning::outline::Outline;
+use crate::laws::planning::outline::{Outline, entry};
 
 /// Instants of a control period at which the way to a new velocity is checked.
 const INSTANTS: u32 = 6;
@@ -11,31 +11,44 @@ const INSTANTS: u32 = 6;
 /// Room for rounding in bounds, relative and in m: well above all roundings.
 const ROOM: f64 = 1e-6;
 
-/// Whether an obstacle is farther away than it and the robot, which goes no farther than given, come in
+/// Whether a disc, given by center and radius, is farther away than it and the robot, which goes no farther than given, come in
 /// a period: without a root, and where in doubt it is not.
-pub(super) fn is_far(now: &Outline, farthest: f64, period: f64) -> bool {
-    let Some(center) = now.center() else {
-        return false;
-    };
-    let [x, y] = now.velocity.lane(0);
-    let reach = now.radius + farthest + (x.abs() + y.abs()) * period;
+#[inline]
+pub(super) fn is_far(
+    (center, radius): (Vector, f64),
+    velocity: Vector,
+    (farthest, period): (f64, f64),
+) -> bool {
+    let [x, y] = velocity.lane(0);
+    let reach = radius + farthest + (x.abs() + y.abs()) * period;
     center.dot(&center) > reach * reach * (1.0 + ROOM) + ROOM
 }
 
 impl Cone {
-    pub(super) fn time_to_contact(&self, velocity: Vector) -> f64 {
-        let relative = velocity - self.outline.velocity;
-        match self.legs {
+    pub(super) fn time_to_contact(&self, velocity: Vector, edged: &[Outline]) -> f64 {
+        let relative = velocity - self.tip;
+        if let Some(legs) = &self.legs {
             // Most are far beside, which takes no root.
-            Some(legs) if !legs.may_hold(relative) || !legs.hold(relative) => f64::INFINITY,
-            _ => self.outline.time_to_contact(relative),
+            if !legs.may_hold(relative) || !legs.hold(relative) {
+                return f64::INFINITY;
+            }
+        }
+        match self.base {
+            ConeBase::Disc(center, radius) if self.legs.is_some() => {
+                entry(center, radius, relative)
+            }
+            ConeBase::Disc(center, radius) => {
+                Outline::disc(center, radius, self.tip).time_to_contact(relative)
+            }
+            ConeBase::Edges(place) => edged[place].time_to_contact(relative),
         }
     }
 }
 
 impl VelocityObstaclePlanner {
     pub(super) fn time_to_contact(&self, velocity: Vector) -> f64 {
-        let times = self.cones.iter().map(|cone| cone.time_to_contact(velocity));
+        let times = self.cones.iter();
+        let times = times.map(|cone| cone.time_to_contact(velocity, &self.edged));
         times.fold(f64::INFINITY, f64::min)
     }
 
@@ -60,7 +73,7 @@ impl VelocityObstaclePlanner {
         velocity: Vector,
     ) -> bool {
         let late = |cone: &Cone| {
-            let time = cone.time_to_contact(velocity);
+            let time = cone.time_to_contact(velocity, &self.edged);
             time == f64::INFINITY || time > self.settings.horizon
         };
         // What forbids a velocity mostly forbids its neighbors.

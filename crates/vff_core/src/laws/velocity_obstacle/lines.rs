@@ -1,7 +1,7 @@
 //! Lines of velocities on which a rule of selection can have its optimum: legs of cones and
 //! directions to the goal, with what is reachable on each.
 
-use crate::lanes::{Planar, Vector2};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 
@@ -46,22 +46,33 @@ impl Reachable {
 
     /// Ends of the part of a line that is reachable, generously; `None` without one.
     pub fn chord(&self, line: &Line) -> Option<[Vector; 2]> {
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        let (some, ends) = self.chords(line.from, line.along);
+        some.then_some(ends)
+    }
+
+    /// The same for lines side by side, each from a velocity along a direction of length 1: which of them
+    /// have such a part, and its ends.
+    #[inline(always)]
+    pub fn chords<R: Real>(
+        &self,
+        from: Vector2<R>,
+        along: Vector2<R>,
+    ) -> (R::Mask, [Vector2<R>; 2]) {
+        let (mut low, mut high) = (R::splat(f64::NEG_INFINITY), R::splat(f64::INFINITY));
+        let mut beside = R::Mask::none();
         for (center, radius) in self.circles() {
-            let offset = line.from - center;
-            let foot = -offset.dot(&line.along);
-            let across = offset.perp(&line.along);
-            let wide = radius * (1.0 + BESIDE) + BESIDE;
+            let offset = from - Vector2::splat([center.x, center.y]);
+            let foot = -offset.dot(&along);
+            let across = offset.perp(&along);
+            let wide = R::splat(radius * (1.0 + BESIDE) + BESIDE);
             let square = wide * wide - across * across;
-            // Also where a number is not one: such a line is kept.
-            if square < 0.0 {
-                return None;
-            }
+            // A line where a number is not one is kept.
+            beside = beside | square.lt(R::zero());
             let half = square.sqrt();
-            (low, high) = (low.max(foot - half), high.min(foot + half));
+            (low, high) = ((foot - half).max(low), (foot + half).min(high));
         }
-        let at = |share: f64| line.from + line.along * share;
-        (low <= high).then(|| [at(low), at(high)])
+        let ends = [low, high].map(|share| from + along * share);
+        (!beside & low.le(high), ends)
     }
 }
 

@@ -5,6 +5,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::means::Means;
 use super::path::{Passage, Path};
 use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Mask, Planar, Real};
@@ -18,6 +19,9 @@ const FEWEST: usize = 16;
 
 /// Fewest control periods for which it pays to leave an obstacle alone.
 const FEWEST_PERIODS: usize = 8;
+
+/// Fewest dormant obstacles for which it pays to look at the mean velocities of the robot.
+const FEWEST_FOR_MEANS: usize = 32;
 
 /// Most positions of the robot that are kept.
 const LONGEST_PATH: usize = 1 << 14;
@@ -184,7 +188,8 @@ impl Dormant {
         if self.sleeps(index, step, squared.sqrt()) {
             return;
         }
-        self.count(index, runs);
+        self.path.measure();
+        self.count(index, runs, None);
         self.since[index] = AWAKE;
         let slot = scene.told.partition_point(|other| *other < index);
         scene.insert(slot, index, &body);
@@ -225,28 +230,38 @@ impl Dormant {
     /// Counts all steps so far.
     #[inline(never)]
     pub fn count_all<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
+        let asleep = self.since.iter().filter(|since| **since != AWAKE).count();
+        if asleep > 0 {
+            self.path.measure();
+        }
+        let means = (asleep >= FEWEST_FOR_MEANS).then(|| self.path.means());
         for index in 0..self.since.len() {
             if self.since[index] != AWAKE {
-                self.count(index, runs);
+                self.count(index, runs, means.as_ref());
                 self.since[index] = self.path.last() + 1;
             }
         }
     }
 
     /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look
-    /// at each of them would have found.
-    fn count<R: Real>(&mut self, index: usize, runs: &mut Runs<&Scenario, R>) {
+    /// at each of them would have found. The path has been measured.
+    fn count<R: Real>(
+        &mut self,
+        index: usize,
+        runs: &mut Runs<&Scenario, R>,
+        means: Option<&Means>,
+    ) {
         let (first, last) = (self.since[index] - 1, self.path.last());
         if first >= last {
             return;
         }
-        self.path.measure();
         let bound = &self.bounds[index];
         let least = runs.min_distance_squared[index].lane(0);
         let mut passage = Passage {
             path: &self.path,
             placed: &runs.scenario.obstacles[index],
             clock: &self.clock,
+            means: means.filter(|_| first == self.path.first()),
             stride: bound.stride,
             margin: bound.margin,
             nearest: least.sqrt(),

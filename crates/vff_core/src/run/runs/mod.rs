@@ -3,6 +3,7 @@
 mod account;
 mod dormant;
 mod ends;
+mod means;
 mod path;
 mod totals;
 

@@ -1,5 +1,6 @@
 //! The path of one robot, how far it is from straight, and the least distance to an obstacle on it.
 
+use super::means::{Mark, Means};
 use crate::lanes::Vector2;
 use crate::run::options::Clock;
 use crate::run::scene::body_at;
@@ -11,6 +12,9 @@ type Vector = Vector2<f64>;
 
 /// Motion steps of the shortest piece that is known to be nearly straight.
 const SHORTEST: usize = 8;
+
+/// Motion steps between two marks of a path, as a power of two of [`SHORTEST`].
+const MARKED: usize = 2;
 
 /// Places of a robot after motion steps.
 #[derive(Clone, Debug)]
@@ -43,6 +47,11 @@ impl Path {
     /// Number of places.
     pub fn len(&self) -> usize {
         self.places.len()
+    }
+
+    /// Step of the first place.
+    pub fn first(&self) -> usize {
+        self.begin
     }
 
     /// Step of the last place.
@@ -84,8 +93,27 @@ impl Path {
     fn off_straight(&self, first: usize, steps: usize) -> f64 {
         let place = |step: usize| Vector::from(self.places[first + step]);
         let way = (place(steps) - place(0)) * (1.0 / steps as f64);
-        let off = |step: usize| (place(step) - (place(0) + way * step as f64)).norm();
-        (1..steps).map(off).fold(0.0, f64::max)
+        let off = |step: usize| (place(step) - (place(0) + way * step as f64)).norm_squared();
+        (1..steps).map(off).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Mean velocities on all of the path, which has been measured.
+    pub fn means(&self) -> Means {
+        let (size, last) = (SHORTEST << MARKED, self.places.len() - 1);
+        let mark = |steps: usize, bend: f64| Mark {
+            steps,
+            place: self.places[steps].into(),
+            bend,
+        };
+        let single = |steps: usize| mark(steps, 0.0);
+        // Single steps at both ends, and whole pieces between them.
+        let head = size.min(last);
+        let tail = head.max(last.saturating_sub(1) / size * size);
+        let piece = |number: usize| mark(number * size, self.bends[MARKED][number - 1]);
+        let pieces = (head / size + 1..=tail / size).map(piece);
+        let marks = (1..=head).map(single).chain(pieces);
+        let marks = marks.chain((tail + 1..=last).map(single));
+        Means::of(marks, [0, last].map(single))
     }
 
     fn bend_of(&self, level: usize, piece: usize, size: usize) -> f64 {
@@ -127,6 +155,8 @@ pub(super) struct Passage<'a> {
     pub path: &'a Path,
     pub placed: &'a PlacedObstacle,
     pub clock: &'a Clock,
+    /// Of all of the path, where that is what is looked at.
+    pub means: Option<&'a Means>,
     /// Most by which the distance changes in a motion step, and room for rounding, in m.
     pub stride: f64,
     pub margin: f64,
@@ -191,6 +221,11 @@ impl Passage<'_> {
     fn look_straight(&mut self, motion: &Piece, first: usize, last: usize) {
         let end = self.sees(motion, last);
         let (mut step, mut from) = (first, self.sees(motion, first));
+        let way = Vector::from(motion.velocity) * self.clock.step;
+        let at_an_end = |means: &Means| means.nearest_at_an_end([from, end], way, self.margin);
+        if self.means.is_some_and(at_an_end) {
+            return;
+        }
         while step < last {
             let next = step + self.path.piece(step, last);
             let to = if next == last {
