@@ -265,6 +265,18 @@ def test_margins_along_a_run(kind: Any) -> None:
     assert len(found.columns()["margin_m_per_s"]) == found.margin.size
 
 
+def test_a_foam_from_tests_is_linear_as_far_as_it_was_tested() -> None:
+    time, compression = np.arange(0.0, 0.2, 0.001), np.linspace(0.0, 0.004, 9)
+    drop = impact.identification.drop_trajectory(time, height=0.01, mass=1.5, stiffness=24e3, damping_ratio=0.1)
+    fit = impact.identify_foam(24e3 * compression, compression, time, drop, 1.5)
+    assert fit.largest_compression == max(0.004, -drop.min())
+    assert fit.foam(4.4).linear_range == fit.largest_compression
+    assert fit.foam(4.4, linear_range=0.01).linear_range == 0.01
+    assert fit.foam(4.4, thickness=0.003).linear_range == pytest.approx(0.8 * 0.003)
+    pad = contact.Covering.from_foam(fit.foam(4.4), tested_area=5e-3)
+    assert pad.bottom[0] * pad.thickness == pytest.approx(fit.largest_compression)
+
+
 def test_errors_are_some_tolerances_at_most_where_the_motion_turns_beside_a_plateau() -> None:
     covering = contact.Covering(
         material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9),

@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, checked_seed, columns, count, flag, number, vector, word
+from hrsafety._arguments import Array, callback, checked_seed, columns, count, flag, number, positive, vector, word
 from hrsafety._bounds import MOST_RESAMPLES, MOST_SWINGS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.parameters import THICKNESS, Foam
+from hrsafety.impact.parameters import THICKNESS, Foam, default_linear_range
 from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["FoamFit", "StaticFit", "drop_trajectory", "fit_static", "identify_foam"]
@@ -95,6 +95,8 @@ class FoamFit:
         Steps that the drop fit took.
     warnings : tuple of ResultWarning
         Measurements or results that are hardly what was meant.
+    largest_compression : float
+        Largest compression in any of the tests, in m: nothing is known of more.
     """
 
     stiffness: float
@@ -109,6 +111,7 @@ class FoamFit:
     degrees_of_freedom: int
     iterations: int
     warnings: tuple[ResultWarning, ...] = ()
+    largest_compression: float = math.inf
 
     def foam(self, moving_mass: float, *, thickness: float = THICKNESS, linear_range: float | None = None) -> Foam:
         """Return the foam with its damping scaled to a moving mass.
@@ -117,14 +120,19 @@ class FoamFit:
         ----------
         moving_mass : float
             Mass that the foam meets, in kg: the head's in an impact.
-        thickness, linear_range : float
-            As for `Foam`, in m.
+        thickness : float
+            As for `Foam`, in m: that of the source's foam unless yours is given.
+        linear_range : float or None
+            As for `Foam`, in m; when ``None`` no more than `largest_compression`.
 
         Returns
         -------
         Foam
             With C_c = 2 xi sqrt(M K_c).
         """
+        if linear_range is None:
+            usual = default_linear_range(positive("thickness", thickness))
+            linear_range = min(usual, self.largest_compression)
         return Foam.from_damping_ratio(
             stiffness=self.stiffness,
             damping_ratio=self.damping_ratio,
@@ -319,7 +327,8 @@ def identify_foam(
         if not doubts or error.remedy is not None:
             raise
         raise InvalidParameterError(error.argument, error.requirement, error.value, doubts[0].message) from None
-    return FoamFit(**result, warnings=doubts + _foam_warnings(result["stiffness"]))
+    deepest = max(float(compression.max()), *(-float(position.min()) for _, position in drops))
+    return FoamFit(**result, warnings=doubts + _foam_warnings(result["stiffness"]), largest_compression=deepest)
 
 
 def _drops(drop_time: object, drop_position: object) -> list[tuple[Array, Array]]:
