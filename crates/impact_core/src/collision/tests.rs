@@ -432,3 +432,15 @@ fn a_region_that_starts_infinitely_stiff_yields() {
         }
     }
 }
+
+#[test]
+fn a_force_that_starts_infinitely_steep_and_falls_has_a_peak() {
+    // The damper brakes at once, while the force of a power law rises with an infinite slope.
+    let mut covering = coverings()[6].clone();
+    covering.damping = 3e4;
+    let pad = covering.prepared().unwrap();
+    let collision = free(&pad, Region::Rigid, 0.3);
+    let found = moved(&collision, Wanted::default(), &|| false);
+    assert_eq!(found.status, Status::Released);
+    assert!(found.peak_force >= 9e3 && found.peak_force < 9.01e3);
+}
