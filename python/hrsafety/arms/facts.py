@@ -78,7 +78,7 @@ class Facts(Parameters):
 
     @property
     def links_without_mass(self) -> tuple[str, ...]:
-        """Moving links with a shape but no ``inertial``: what they weigh is missing in every mass."""
+        """Moving links with a shape but no ``inertial``, or one of no mass: every mass lacks what they weigh."""
         return tuple(self._facts["links_without_mass"])
 
     @property
@@ -93,7 +93,7 @@ class Facts(Parameters):
             message = f"link {link!r} has a radius of gyration below 2 mm: its inertia is hardly real"
             found.append(ResultWarning("suspicious_link", f"link[{link!r}]", message))
         for link in self.links_without_mass:
-            message = f"link {link!r} has a shape but no inertial: without what it weighs masses are too low"
+            message = f"link {link!r} has a shape but no mass: without what it weighs masses are too low"
             found.append(ResultWarning("link_without_mass", f"link[{link!r}]", message))
         return tuple(found)
 

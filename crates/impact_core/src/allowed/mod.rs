@@ -191,6 +191,11 @@ impl Limits {
                     strain < bound
                 };
                 if fine {
+                    if strain > covering.bottoming.strain {
+                        // So far nobody asked whether the law falls there: a force would be met twice.
+                        let law = covering.material.clone().checked(strain);
+                        law.map_err(|failure| failure.within("covering.material"))?;
+                    }
                     return Ok(());
                 }
                 let rule = format!("be within what the law describes, up to {bound}");

@@ -157,3 +157,20 @@ fn a_point_too_far_away_to_feel_a_base_is_refused() {
     let drive = super::Drive::default();
     assert!(super::differential_mass(4.4, 0.1, drive, far, [1.0, 0.0]).is_err());
 }
+
+#[test]
+fn a_law_that_falls_before_the_strain_that_is_allowed_is_refused() {
+    let falling = serde_json::json!({
+        "material": {"law": "avalle", "A": 5e4, "E": 1e6, "m": 3.0, "B": 1.0, "n": 1.0},
+        "thickness": 0.02, "shape": "flat", "area": 1e-3, "bottom": [0.05, 0.0]
+    });
+    let pad = pad(&falling).unwrap();
+    let limits = |strain| Limits {
+        force: Some(40.0),
+        pressure: None,
+        max_strain: Some(strain),
+    };
+    assert!(limits(0.2).check(Some(&pad)).is_ok());
+    // It pushes with 43.6 N at a strain of 0.25, and with less beyond.
+    assert!(limits(0.9).check(Some(&pad)).is_err());
+}

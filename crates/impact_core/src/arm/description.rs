@@ -20,7 +20,7 @@ pub struct LinkText {
     pub name: String,
     /// Inertia in the frame of the link; none without `inertial`.
     pub body: Body,
-    /// Whether it has a shape to see or to touch, but no `inertial`.
+    /// Whether it has a shape to see or to touch, but no mass.
     pub shape_without_mass: bool,
 }
 
@@ -174,15 +174,15 @@ fn link(node: Node<'_, '_>) -> Result<LinkText> {
     let mut children = node.children();
     let shaped =
         children.any(|child| child.has_tag_name("visual") || child.has_tag_name("collision"));
-    let shape_without_mass = shaped && inertial.is_none();
     let body = match inertial {
         Some(inertial) => body(&inertial).map_err(|failure| about(failure, &name))?,
         None => Body::default(),
     };
     Ok(LinkText {
         name,
+        // An `inertial` of no mass is as good as none.
+        shape_without_mass: shaped && body.mass == 0.0,
         body,
-        shape_without_mass,
     })
 }
 
@@ -306,4 +306,24 @@ fn mimic(joint: &Element<'_, '_>) -> Result<Option<Mimic>> {
         multiplier: mimic.number_or("multiplier", 1.0)?,
         offset: mimic.number_or("offset", 0.0)?,
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Description;
+
+    #[test]
+    fn a_shape_with_an_inertial_of_no_mass_has_no_mass() {
+        let link = |mass: &str| {
+            format!(
+                r#"<robot name="r"><link name="a"><visual/><inertial><mass value="{mass}"/>
+                <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link></robot>"#
+            )
+        };
+        for (mass, without) in [("0", true), ("0.1", false)] {
+            let read = Description::read(&link(mass));
+            let found = read.map(|read| read.links[0].shape_without_mass);
+            assert_eq!(found, Ok(without));
+        }
+    }
 }

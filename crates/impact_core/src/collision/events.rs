@@ -233,7 +233,8 @@ pub fn located<const N: usize>(
 fn cubic_root(first: [f64; 2], last: [f64; 2], length: f64) -> f64 {
     let (a, b) = (first[0], last[0]);
     let (da, db) = (first[1] * length, last[1] * length);
-    let line = a / (a - b);
+    // A value that starts infinite, as the rate of a force may, says nothing of where it is zero.
+    let line = if a == f64::INFINITY { 0.5 } else { a / (a - b) };
     if !(da.is_finite() && db.is_finite()) {
         return line * length;
     }

@@ -223,7 +223,10 @@ impl<'a, const N: usize> Mechanics<'a, N> {
                 } else {
                     steep(yielding, local.deflection_rate)
                 };
-                local.mismatch = if sum > 0.0 && sum.is_finite() {
+                local.mismatch = if yielding.is_infinite() {
+                    // A region that starts infinitely stiff has no first order: it yields by what the force asks.
+                    region.deflection(column.force)
+                } else if sum > 0.0 && sum.is_finite() {
                     (column.force - force) / sum
                 } else {
                     0.0
