@@ -139,15 +139,11 @@ impl AgentLanes {
         forces: impl Fn((usize, usize), &Pair) -> [Vectors; 2],
         sums: &mut Vec<Vectors>,
     ) {
-        sums.extend(
-            self.all
-                .iter()
-                .zip(&self.intentions)
-                .map(|(own, intention)| {
-                    let wanted = own.direction * intention.desired_speed;
-                    Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
-                }),
-        );
+        for (own, intention) in self.all.iter().zip(&self.intentions) {
+            let wanted = own.direction * intention.desired_speed;
+            let time = Each::splat(relaxation_time);
+            sums.push(Planar::<Each>::over(wanted - own.velocity, time));
+        }
         for (one, other) in self.pairs() {
             let Some(pair) = self.pair((one, other), cutoff) else {
                 continue;

@@ -176,11 +176,16 @@ impl Moussaid {
     /// Decides for the people of worlds side by side.
     #[inline(always)]
     pub(super) fn decide_in_lanes(&self, agents: &AgentLanes, decisions: &mut Vec<Vectors>) {
-        let forces = |_, pair: &Pair| {
-            let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
-            [push, -push]
-        };
-        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
+        // A closure that is a function of its own would not get the instructions of the lanes.
+        agents.accelerations(
+            (self.relaxation_time, self.cutoff),
+            #[inline(always)]
+            |_, pair: &Pair| {
+                let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
+                [push, -push]
+            },
+            decisions,
+        );
     }
 }
 

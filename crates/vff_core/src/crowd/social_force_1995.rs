@@ -161,21 +161,25 @@ impl SocialForce1995 {
     ) {
         let cosine = self.view_angle.cos();
         ways.clear();
-        ways.extend(agents.all.iter().map(|agent| {
+        for agent in &agents.all {
             let speed = Planar::<_>::length(agent.velocity);
-            agent.direction * (speed * Real::splat(self.step_time))
-        }));
-        let forces = |(one, other): (usize, usize), pair: &Pair| {
-            let seen = Seen {
-                offset: pair.offset,
-                distance: pair.distance,
-                normal: pair.normal,
-                way: ways[other],
-            };
-            let [first, second] = [one, other].map(|place| agents.all[place].direction);
-            self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
-        };
-        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
+            ways.push(agent.direction * (speed * Real::splat(self.step_time)));
+        }
+        agents.accelerations(
+            (self.relaxation_time, self.cutoff),
+            #[inline(always)]
+            |(one, other): (usize, usize), pair: &Pair| {
+                let seen = Seen {
+                    offset: pair.offset,
+                    distance: pair.distance,
+                    normal: pair.normal,
+                    way: ways[other],
+                };
+                let [first, second] = [one, other].map(|place| agents.all[place].direction);
+                self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
+            },
+            decisions,
+        );
     }
 
     /// Adds the forces of all pairs to the sums of their people.
