@@ -99,7 +99,7 @@ impl ReciprocalPeople {
             };
             let [first, second] = [places.0, places.1].map(|place| agents.all[place].radius);
             let meeting = Meeting {
-                way: -away(pair.offset, pair.distance, pair.normal),
+                way: -away(pair.offset, pair.distance, |_| true),
                 relative: pair.relative,
                 touch: first + second + Real::splat(2.0 * self.margin),
             };
@@ -128,8 +128,9 @@ impl ReciprocalPeople {
         pairs.open(neighbors);
         while pairs.find(neighbors, self.cutoff, awareness) {
             for pair in pairs.side_by_side() {
+                let lower = |lane: usize| pairs.first_is_lower(pair.places, lane);
                 let meeting = Meeting {
-                    way: -away(pair.offset, pair.distance, pair.normal),
+                    way: -away(pair.offset, pair.distance, lower),
                     relative: pair.relative,
                     touch: pairs.touch(&pair) + Each::splat(2.0 * self.margin),
                 };
