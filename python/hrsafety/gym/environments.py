@@ -96,8 +96,8 @@ class Environments:
         raise SimulationError(rule)
 
     def _make_arrays(self) -> None:
-        """Make the arrays that are returned."""
-        self.observations = np.zeros((self.count, self.size), dtype=np.float32)
+        """Make the arrays that are returned; every start and step writes all observations."""
+        self.observations = np.empty((self.count, self.size), dtype=np.float32)
         self.rewards = np.zeros(self.count)
         self.states = np.zeros(self.count, dtype=np.uint8)
         self.started = np.zeros(self.count, dtype=np.bool_)

@@ -165,9 +165,8 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         """
         self._all.step(actions)
         states = self._all.states
-        truncated = states == TIMED_OUT
-        terminated = (states != RUNNING) & ~truncated
-        return self._observations(), self._all.rewards, terminated, truncated, self._step_infos(states != RUNNING)
+        ended, truncated = states != RUNNING, states == TIMED_OUT
+        return self._observations(), self._all.rewards, ended ^ truncated, truncated, self._step_infos(ended)
 
     def _observations(self) -> Any:
         return self._all.shown(self._all.observations, self._all.seen[:, 0])

@@ -65,10 +65,13 @@ pub(super) struct AgentLanes {
 }
 
 impl AgentLanes {
-    /// Makes room for people and robots.
+    /// Makes room for people, who stay, and robots.
     pub fn open(&mut self, people: usize, robots: usize) {
         self.all.resize(people + robots, LaneAgent::nobody());
         self.intentions.resize(people, Intention::none());
+        for intention in &mut self.intentions {
+            intention.walks = LaneMask::none();
+        }
     }
 
     /// Finds where everybody wants to go.
@@ -136,15 +139,11 @@ impl AgentLanes {
         forces: impl Fn((usize, usize), &Pair) -> [Vectors; 2],
         sums: &mut Vec<Vectors>,
     ) {
-        sums.extend(
-            self.all
-                .iter()
-                .zip(&self.intentions)
-                .map(|(own, intention)| {
-                    let wanted = own.direction * intention.desired_speed;
-                    Planar::<Each>::over(wanted - own.velocity, Each::splat(relaxation_time))
-                }),
-        );
+        for (own, intention) in self.all.iter().zip(&self.intentions) {
+            let wanted = own.direction * intention.desired_speed;
+            let time = Each::splat(relaxation_time);
+            sums.push(Planar::<Each>::over(wanted - own.velocity, time));
+        }
         for (one, other) in self.pairs() {
             let Some(pair) = self.pair((one, other), cutoff) else {
                 continue;
@@ -212,14 +211,12 @@ impl Intention {
         }
     }
 
-    /// Says where somebody in a world walks, if it walks.
+    /// Says where somebody in a world walks.
     #[inline(always)]
-    pub fn aim(&mut self, lane: usize, target: Option<Vector2<f64>>) {
-        self.walks = self.walks.without(lane);
-        if let Some(target) = target {
-            set(&mut self.target, lane, target);
-            self.walks.set(lane);
-        }
+    pub fn walk(&mut self, lane: usize, target: Vector2<f64>) {
+        set(&mut self.target, lane, target);
+        // In its place: a copy of the whole mask would wait for the lane that was written before.
+        self.walks.set(lane);
     }
 }
 

@@ -113,8 +113,9 @@ fn seat(agents: &mut AgentLanes, worlds: &[&mut Simulation]) {
             agent.stand(lane, person.position, person.velocity, person.radius);
             intention.desired_speed.set(lane, person.desired_speed);
             intention.awareness.set(lane, person.awareness);
-            let walks = person.presence == Presence::Walking;
-            intention.aim(lane, walks.then_some(person.target));
+            if person.presence == Presence::Walking {
+                intention.walk(lane, person.target);
+            }
         }
         for (agent, body) in machines.iter_mut().zip(world.bodies()) {
             agent.stand(lane, body.position, body.velocity, body.radius);

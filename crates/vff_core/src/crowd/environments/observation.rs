@@ -53,37 +53,75 @@ impl Turn {
 /// Distance and number of a person.
 type Ranked = (f64, usize);
 
+/// Up to so many people are ranked by comparing everybody with everybody, without a branch.
+const FEW: usize = 8;
+
 /// Room for the order of the people.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ranking(Vec<Ranked>);
+pub(super) struct Ranking {
+    /// Those present, by number.
+    present: Vec<Ranked>,
+    /// The nearest of them in their order.
+    nearest: Vec<Ranked>,
+}
 
 impl Ranking {
     /// The nearest people of those present by the distance of their centers, then by number.
     fn nearest(&mut self, simulation: &Simulation, robot: Vector, most: usize) -> &[Ranked] {
         let period = simulation.world().period;
-        self.0.clear();
-        for (number, person) in simulation.people().iter().enumerate() {
-            if !person.is_present() {
-                continue;
-            }
-            let distance = period.wrap(person.position - robot).norm();
-            let place = self.0.partition_point(|other| other.0 <= distance);
-            if place < most {
-                self.0.truncate(most - 1);
-                self.0.insert(place, (distance, number));
+        self.present.clear();
+        let people = simulation.people().iter().enumerate();
+        let present = people.filter(|(_, person)| person.is_present());
+        self.present.extend(
+            present.map(|(number, person)| (period.wrap(person.position - robot).norm(), number)),
+        );
+        // Distances that are no numbers, at the end of a world that diverges, have no ranks.
+        let few = self.present.len() <= FEW && self.present.iter().all(|one| !one.0.is_nan());
+        if few {
+            self.rank();
+        } else {
+            self.insert(most);
+        }
+        &self.nearest[..most.min(self.nearest.len())]
+    }
+
+    /// Puts a few people at the places of their ranks.
+    fn rank(&mut self) {
+        let mut ranks = [0; FEW];
+        for (later, (distance, _)) in self.present.iter().enumerate() {
+            for (earlier, before) in self.present[..later].iter().enumerate() {
+                let first = before.0 <= *distance;
+                ranks[later] += usize::from(first);
+                ranks[earlier] += usize::from(!first);
             }
         }
-        &self.0
+        self.nearest.resize(self.present.len(), (0.0, 0));
+        for (rank, one) in ranks.into_iter().zip(&self.present) {
+            self.nearest[rank] = *one;
+        }
+    }
+
+    /// Inserts one after the other among the nearest before.
+    fn insert(&mut self, most: usize) {
+        self.nearest.clear();
+        for one in &self.present {
+            let place = self.nearest.partition_point(|other| other.0 <= one.0);
+            if place < most {
+                self.nearest.truncate(most - 1);
+                self.nearest.insert(place, *one);
+            }
+        }
     }
 }
 
-/// Writes an observation; `own` goal and greatest speed are those of the robot that is driven.
+/// Writes an observation; `own` goal and greatest speed are those of the robot that is driven. Returns how many
+/// people of it are there.
 pub(super) fn observe(
     settings: &Settings,
     simulation: &Simulation,
     ranking: &mut Ranking,
     into: &mut [f32],
-) {
+) -> usize {
     let world = &settings.world;
     let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
     let state = robot.state();
@@ -98,9 +136,10 @@ pub(super) fn observe(
     }
     head[5] = bounded(simulation.time() / world.time_limit, 0.0, 1.0);
     let (people, rays) = rest.split_at_mut(Settings::PERSON * settings.people);
-    people.fill(0.0);
     let nearest = ranking.nearest(simulation, state.position, settings.people);
-    for (slots, (distance, number)) in people.chunks_exact_mut(Settings::PERSON).zip(nearest) {
+    let (there, nobody) = people.split_at_mut(Settings::PERSON * nearest.len());
+    nobody.fill(0.0);
+    for (slots, (distance, number)) in there.chunks_exact_mut(Settings::PERSON).zip(nearest) {
         let person: &PersonState = &simulation.people()[*number];
         let way = world.period.wrap(person.position - state.position);
         let [x, y] = turn.into_axes(way);
@@ -116,15 +155,7 @@ pub(super) fn observe(
         let range = range(simulation, state.position, turn.out_of_axes(angle));
         *slot = bounded(range, 0.0, RANGE);
     }
-}
-
-/// How many people of an observation are there.
-pub(super) fn seen(settings: &Settings, simulation: &Simulation) -> usize {
-    let present = simulation
-        .people()
-        .iter()
-        .filter(|person| person.is_present());
-    present.take(settings.people).count()
+    nearest.len()
 }
 
 /// A number within its bounds, in single precision.

@@ -2,7 +2,7 @@
 
 use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
-use crate::crowd::environments::observation::{Ranking, observe, seen};
+use crate::crowd::environments::observation::{Ranking, observe};
 use crate::crowd::environments::settings::{Action, Settings};
 use crate::crowd::metrics::RobotMetrics;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
@@ -191,15 +191,9 @@ impl Environment {
         &self.simulation
     }
 
-    /// How many people of an observation are there.
-    #[must_use]
-    pub fn seen(&self, settings: &Settings) -> usize {
-        seen(settings, &self.simulation)
-    }
-
-    /// Writes what the robot sees.
-    pub fn observe(&self, settings: &Settings, shared: &mut Shared, into: &mut [f32]) {
-        observe(settings, &self.simulation, &mut shared.ranking, into);
+    /// Writes what the robot sees; returns how many of the people are there.
+    pub fn observe(&self, settings: &Settings, shared: &mut Shared, into: &mut [f32]) -> usize {
+        observe(settings, &self.simulation, &mut shared.ranking, into)
     }
 
     /// Metrics of the episode up to now, if positions are kept.

@@ -23,8 +23,8 @@ pub(super) struct Row<'a> {
 
 impl Row<'_> {
     pub fn show(&mut self, settings: &Settings, shared: &mut Shared) {
-        self.environment.observe(settings, shared, self.observation);
-        self.seen[0] = count(self.environment.seen(settings));
+        let seen = self.environment.observe(settings, shared, self.observation);
+        self.seen[0] = count(seen);
         *self.state = self.environment.state().code();
     }
 
@@ -57,9 +57,9 @@ impl Row<'_> {
                 *self.metrics = RobotMetrics::into_array(found);
             }
             if settings.autoreset == Autoreset::SameStep {
-                self.environment
-                    .observe(settings, shared, self.final_observation);
-                self.seen[1] = count(self.environment.seen(settings));
+                let last = &mut *self.final_observation;
+                let seen = self.environment.observe(settings, shared, last);
+                self.seen[1] = count(seen);
                 self.environment.reset(settings, None)?;
                 *self.started = true;
             }

@@ -5,7 +5,7 @@
 
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
-use crate::crowd::neighbors::others::{Each, WIDTH};
+use crate::crowd::neighbors::others::{Each, WIDTH, apart};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
@@ -126,7 +126,8 @@ impl ReciprocalPeople {
         let nearest = nearest.of(&near, self.max_neighbors);
         for block in nearest.chunks(WIDTH) {
             let others = near.among(block);
-            let away = away(others.offset, others.distance, others.normal);
+            let lower = |lane: usize| me.number < others.agents[lane].number;
+            let away = away(others.offset, others.distance, lower);
             let touch = Each::splat(me.radius) + others.radius() + Each::splat(2.0 * self.margin);
             let discs = DiscPair {
                 way: Vector2::new(-away.x, -away.y),
@@ -185,18 +186,25 @@ pub(in crate::crowd) fn permitted(own: &Walker, hard: usize, step: f64, room: &m
         .nearest(&room.planes, hard, own.desired_speed, wanted)
 }
 
-/// Offsets, of those at one place tiny ones.
+/// Offsets, of those at one place tiny ones, as [`apart`] has it; of others no normal is needed.
 #[inline(always)]
+<<<<<<< HEAD:crates/vff_core/src/crowd/models/reciprocal_people.rs
 pub(in crate::crowd) fn away<R: Real>(
     offset: Vector2<R>,
     distance: R,
     normal: Vector2<R>,
+=======
+pub(super) fn away<R: Real>(
+    offset: Vector2<R>,
+    distance: R,
+    lower: impl Fn(usize) -> bool,
+>>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/reciprocal_people.rs
 ) -> Vector2<R> {
     let together = distance.lt(R::splat(SHORTEST));
     if !together.any() {
         return offset;
     }
-    Planar::<R>::select(together, normal * R::splat(SHORTEST), offset)
+    Planar::<R>::select(together, apart(lower) * R::splat(SHORTEST), offset)
 }
 
 impl Pedestrian for ReciprocalPeople {

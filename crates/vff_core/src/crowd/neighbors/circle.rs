@@ -24,8 +24,10 @@ const TRIES: usize = 10_000;
 #[must_use]
 pub fn starts(seed: u64, people: usize) -> Vec<[f64; 2]> {
     let mut stream = stream_of(seed, Purpose::Place, 0);
-    let mut taken: Vec<Vector2<f64>> = ENDS.map(Vector2::from).into();
-    let mut found = Vec::with_capacity(people.min(1024));
+    let most = people.min(1024);
+    let mut taken: Vec<Vector2<f64>> = Vec::with_capacity(ENDS.len() + 2 * most);
+    taken.extend(ENDS.map(Vector2::from));
+    let mut found = Vec::with_capacity(most);
     while found.len() < people {
         let Some(place) = (0..TRIES)
             .map(|_| drawn(&mut stream))

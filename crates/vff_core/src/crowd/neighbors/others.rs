@@ -112,9 +112,17 @@ pub(crate) fn parted<R: Real>(
     if !together.any() {
         return (distance, normal);
     }
+    (
+        distance,
+        Planar::<R>::select(together, apart(lower), normal),
+    )
+}
+
+/// Unit vectors that part who are at one place.
+#[inline(always)]
+pub(super) fn apart<R: Real>(lower: impl Fn(usize) -> bool) -> Vector2<R> {
     let side = |lane: usize| if lower(lane) { 1.0 } else { -1.0 };
-    let apart = Vector2::new(R::from_fn(side), R::zero());
-    (distance, Planar::<R>::select(together, apart, normal))
+    Vector2::new(R::from_fn(side), R::zero())
 }
 
 /// A vector of each.

@@ -262,6 +262,13 @@ impl PairQueue {
         Each::from_fn(|lane| radius(first[lane]) + radius(second[lane]))
     }
 
+    /// Whether the first of a pair has the lower number.
+    #[inline(always)]
+    #[must_use]
+    pub fn first_is_lower(&self, [first, second]: [&Places; 2], lane: usize) -> bool {
+        self.numbers[first[lane] as usize] < self.numbers[second[lane] as usize]
+    }
+
     /// Number of somebody at a place.
     #[inline(always)]
     #[must_use]
@@ -282,9 +289,7 @@ impl PairQueue {
         }
         let [x, y, vx, vy] = apart.map(|part| Each::from_fn(|lane| part[lane]));
         let offset = Vector2::new(x, y);
-        let lower =
-            |lane: usize| self.numbers[first[lane] as usize] < self.numbers[second[lane] as usize];
-        let (distance, normal) = parted(offset, lower);
+        let (distance, normal) = parted(offset, |lane| self.first_is_lower(places, lane));
         Pairs {
             places,
             count: WIDTH,
