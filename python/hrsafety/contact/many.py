@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,10 +16,12 @@ from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers
 from hrsafety.contact.rows import NAMES, applying, columns_of
 
-__all__ = ["Many", "many"]
+__all__ = ["Many", "many", "words_at"]
 
 WORDS: dict[str, list[str]] = dict(zip(("collide", "speed", "thickness"), _hrsafety.contact_words(), strict=True))
 """Words of the statuses of collisions, allowed speeds and thicknesses, in the order of their codes."""
+_SHARED_FROM = 200_000
+"""Rows from which threads share the writing of words: fewer take less than starting a thread."""
 _DEPTHS = {"collide": "peak_covering_compression", "speed": "covering_compression"}
 
 
@@ -83,22 +87,41 @@ def many(
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, covering),
+        status=_status(words, codes, covering, threads),
         flags=flags,
         warnings=(*flagged(told | flags), *implausible_numbers(covering, region, given)),
         given=given,
     )
 
 
-def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.NDArray[np.str_]:
+def words_at(words: npt.NDArray[np.str_], codes: npt.NDArray[Any], threads: int | None) -> npt.NDArray[np.str_]:
+    """Return the words at codes; a word takes many times the room of its code, so that threads share the writing."""
+    found = np.empty(codes.shape, dtype=words.dtype)
+    flat, places = found.reshape(-1), codes.reshape(-1)
+    count = min(thread_count(threads) or os.cpu_count() or 1, places.size // _SHARED_FROM + 1)
+
+    def write(piece: int) -> None:
+        part = slice(piece * places.size // count, (piece + 1) * places.size // count)
+        # The last word stands for every code beyond it.
+        np.take(words, places[part], mode="clip", out=flat[part])
+
+    if count == 1:
+        write(0)
+    else:
+        with ThreadPoolExecutor(count) as pool:
+            list(pool.map(write, range(count)))
+    return found
+
+
+def _status(words: list[str], codes: Array, covering: Covering | None, threads: int | None) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
     if covering is not None:
         for place, name in enumerate(covering.material.keys.values()):
             names[names.index(f"material_{place}")] = name
     all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
-    places = np.minimum(codes, len(all_words) - 1)
     # Only as wide as the words that are there: the longest one takes many times the room of its code.
-    there = np.bincount(places.ravel(), minlength=len(all_words)) > 0
-    found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=True)])
-    return np.asarray(found[places])
+    there = np.bincount(codes.ravel(), minlength=256) > 0
+    there[len(all_words) - 1] = there[len(all_words) - 1 :].any()
+    found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=False)])
+    return words_at(found, codes, threads)

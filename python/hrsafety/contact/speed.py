@@ -15,6 +15,8 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.many import many, words_at
+from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, spring_of
 from hrsafety.contact.many import many
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
@@ -300,7 +302,7 @@ def allowed_speeds(
     empty = np.zeros(found.status.shape, dtype=bool)
     numbers: dict[str, Any] = dict(found.numbers)
     flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
-    governs = _GOVERNS[numbers.pop("governs_code").astype(np.intp)]
+    governs = words_at(_GOVERNS, numbers.pop("governs_code"), threads)[()]
     return AllowedSpeeds(
         **numbers,
         governs=governs,
