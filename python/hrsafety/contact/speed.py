@@ -16,8 +16,6 @@ from hrsafety._records import dataclass
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.many import many, words_at
-from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, spring_of
-from hrsafety.contact.many import many
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
 from hrsafety.tables import Columns, Table

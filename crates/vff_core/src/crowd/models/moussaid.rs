@@ -175,19 +175,11 @@ impl Moussaid {
 impl Moussaid {
     /// Decides for the people of worlds side by side.
     #[inline(always)]
-<<<<<<< HEAD:crates/vff_core/src/crowd/models/moussaid.rs
     pub(in crate::crowd) fn decide_in_lanes(
         &self,
         agents: &AgentLanes,
         decisions: &mut Vec<Vectors>,
     ) {
-        let forces = |_, pair: &Pair| {
-            let push = self.push(pair.normal, pair.distance, pair.relative) * pair.weight;
-            [push, -push]
-        };
-        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
-=======
-    pub(super) fn decide_in_lanes(&self, agents: &AgentLanes, decisions: &mut Vec<Vectors>) {
         // A closure that is a function of its own would not get the instructions of the lanes.
         agents.accelerations(
             (self.relaxation_time, self.cutoff),
@@ -198,7 +190,6 @@ impl Moussaid {
             },
             decisions,
         );
->>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/moussaid.rs
     }
 }
 

@@ -98,13 +98,8 @@ impl ReciprocalPeople {
                 continue;
             };
             let [first, second] = [places.0, places.1].map(|place| agents.all[place].radius);
-<<<<<<< HEAD:crates/vff_core/src/crowd/models/reciprocal_pairs.rs
             let discs = DiscPair {
-                way: -away(pair.offset, pair.distance, pair.normal),
-=======
-            let meeting = Meeting {
                 way: -away(pair.offset, pair.distance, |_| true),
->>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/reciprocal_pairs.rs
                 relative: pair.relative,
                 touch: first + second + Real::splat(2.0 * self.margin),
             };
@@ -133,14 +128,9 @@ impl ReciprocalPeople {
         pairs.open(neighbors);
         while pairs.find(neighbors, self.cutoff, awareness) {
             for pair in pairs.side_by_side() {
-<<<<<<< HEAD:crates/vff_core/src/crowd/models/reciprocal_pairs.rs
-                let discs = DiscPair {
-                    way: -away(pair.offset, pair.distance, pair.normal),
-=======
                 let lower = |lane: usize| pairs.first_is_lower(pair.places, lane);
-                let meeting = Meeting {
+                let discs = DiscPair {
                     way: -away(pair.offset, pair.distance, lower),
->>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/reciprocal_pairs.rs
                     relative: pair.relative,
                     touch: pairs.touch(&pair) + Each::splat(2.0 * self.margin),
                 };

@@ -188,17 +188,10 @@ pub(in crate::crowd) fn permitted(own: &Walker, hard: usize, step: f64, room: &m
 
 /// Offsets, of those at one place tiny ones, as [`apart`] has it; of others no normal is needed.
 #[inline(always)]
-<<<<<<< HEAD:crates/vff_core/src/crowd/models/reciprocal_people.rs
 pub(in crate::crowd) fn away<R: Real>(
     offset: Vector2<R>,
     distance: R,
-    normal: Vector2<R>,
-=======
-pub(super) fn away<R: Real>(
-    offset: Vector2<R>,
-    distance: R,
     lower: impl Fn(usize) -> bool,
->>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/reciprocal_people.rs
 ) -> Vector2<R> {
     let together = distance.lt(R::splat(SHORTEST));
     if !together.any() {

@@ -163,28 +163,13 @@ impl SocialForce1995 {
         ways.clear();
         for agent in &agents.all {
             let speed = Planar::<_>::length(agent.velocity);
-<<<<<<< HEAD:crates/vff_core/src/crowd/models/social_force_1995.rs
-            agent.direction * (speed * Real::splat(self.step_time))
-        }));
-        let forces = |(one, other): (usize, usize), pair: &Pair| {
-            let seen = NeighborView {
-                offset: pair.offset,
-                distance: pair.distance,
-                normal: pair.normal,
-                way: ways[other],
-            };
-            let [first, second] = [one, other].map(|place| agents.all[place].direction);
-            self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
-        };
-        agents.accelerations((self.relaxation_time, self.cutoff), forces, decisions);
-=======
             ways.push(agent.direction * (speed * Real::splat(self.step_time)));
         }
         agents.accelerations(
             (self.relaxation_time, self.cutoff),
             #[inline(always)]
             |(one, other): (usize, usize), pair: &Pair| {
-                let seen = Seen {
+                let seen = NeighborView {
                     offset: pair.offset,
                     distance: pair.distance,
                     normal: pair.normal,
@@ -195,7 +180,6 @@ impl SocialForce1995 {
             },
             decisions,
         );
->>>>>>> 59bb43d1129a6f2d3e850e1589be5c23a786bb86:crates/vff_core/src/crowd/social_force_1995.rs
     }
 
     /// Adds the forces of all pairs to the sums of their people.

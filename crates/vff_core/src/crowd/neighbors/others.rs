@@ -120,7 +120,7 @@ pub(crate) fn parted<R: Real>(
 
 /// Unit vectors that part who are at one place.
 #[inline(always)]
-pub(super) fn apart<R: Real>(lower: impl Fn(usize) -> bool) -> Vector2<R> {
+pub(crate) fn apart<R: Real>(lower: impl Fn(usize) -> bool) -> Vector2<R> {
     let side = |lane: usize| if lower(lane) { 1.0 } else { -1.0 };
     Vector2::new(R::from_fn(side), R::zero())
 }
