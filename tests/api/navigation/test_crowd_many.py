@@ -274,8 +274,12 @@ def test_robots_that_touch_each_other_are_in_the_standing() -> None:
         nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(6.0, 0.0)),
         nav.crowd.CrowdRobot(start=(6.0, 0.1), goal=(0.0, 0.1)),
     ]
-    standing = nav.compare(nav.crowd.World(robots=robots), {"blind": Constant(1.0)}).standing("blind")
+    found = nav.compare(nav.crowd.World(robots=robots), {"blind": Constant(1.0)})
+    standing = found.standing("blind")
     assert (standing.success.count, standing.contact.count, standing.robot_contact.count) == (2, 0, 2)
+    told = [warning for warning in found.runs.warnings if warning.code == "robot_contacts"]
+    assert len(told) == 1
+    assert "robots touch each other in 1 of 1 runs" in told[0].message
 
 
 def test_options_of_scenarios_may_be_arrays_and_are_refused_by_name() -> None:

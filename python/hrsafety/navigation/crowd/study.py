@@ -215,7 +215,7 @@ class CrowdStudy:
             contacts_standing=contacts[:, 1],
             contacts_at_fault=contacts[:, 2],
             values=values,
-            warnings=(*self._warnings(), *self._between(parts)),
+            warnings=(*self._warnings(), *self._between(parts), *_of_robots(values["robot_contacts"][robot == 0])),
         )
 
 
@@ -223,6 +223,18 @@ def _doubts(world: World, law: Law) -> tuple[ResultWarning, ...]:
     """Return the doubts about a world whose robots are under a law."""
     robots = [replace(robot, law=law) for robot in world.robots]
     return of_robots(tuple(world.people), tuple(world.sources), robots, world.step, walls=len(world.walls) > 0)
+
+
+def _of_robots(pairs: np.ndarray[Any, np.dtype[Any]]) -> Iterator[ResultWarning]:
+    """Yield the doubt that robots touch each other, which no outcome shows; ``pairs`` of each run."""
+    touched = int((pairs > 0).sum())
+    if touched:
+        yield ResultWarning(
+            "robot_contacts",
+            "runs",
+            f"robots touch each other in {touched} of {len(pairs)} runs, which changes no outcome, success or contact "
+            "of a robot: robot_contacts counts the pairs",
+        )
 
 
 def _numbers_of(world: World) -> float:

@@ -67,7 +67,8 @@ class CrowdTable(
     values : mapping of str to ndarray, shape (n,)
         The metrics by name.
     warnings : tuple of ResultWarning
-        Bounds of shields that people, other robots or measurements exceed: the first of each kind.
+        Bounds of shields that people, other robots or measurements exceed: the first of each kind; contacts that no
+        instant shows, and those between robots.
     """
 
     law_names: tuple[str, ...]
