@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from hrsafety import __version__
 from hrsafety._arguments import callback, checked_seed, count, positive, readable, sequence, thread_count, word
 from hrsafety._atomic import write_file
 from hrsafety.benchmarks.entries import MARGIN, Entry, entry
@@ -160,10 +161,11 @@ def case_of(settings: Mapping[str, object], each: Entry, cases: Sequence[int]) -
 
 
 def _file(place: Path, suite: Suite, each: Entry, settings: Mapping[str, object]) -> Path:
-    """Return where rows are kept; other settings have another file."""
+    """Return where rows are kept; other settings, and another version of the package, have another file."""
     plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
     data = f"-data{_content(suite, settings['data'])}" if isinstance(settings["data"], Path) else ""
-    return place / f"{suite.name}-{plain}-v{settings['person_speed']!r}-seed{settings['seed']}{data}.csv"
+    draws = f"v{settings['person_speed']!r}-seed{settings['seed']}{data}"
+    return place / f"{suite.name}-{plain}-{draws}-hrsafety{__version__}.csv"
 
 
 def _content(suite: Suite, folder: Path) -> str:

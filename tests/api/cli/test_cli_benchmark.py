@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hrsafety import __version__
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark, entry
 from hrsafety.benchmarks.barn import barn_score
@@ -51,7 +52,7 @@ def test_the_draw_of_s5_is_that_of_the_protocol() -> None:
 
 def test_rows_are_kept_and_resumed(tmp_path: Path) -> None:
     first = benchmark("s4", ["orca"], cases=3, out=tmp_path)
-    (file,) = tmp_path.glob("*.csv")
+    (file,) = tmp_path.glob(f"*-hrsafety{__version__}.csv")
     text = file.read_text(encoding="utf-8")
     file.write_text(text[:-20], encoding="utf-8")  # cut off within the last row
     assert len(read_rows(file)) == 2
