@@ -174,3 +174,9 @@ def test_the_rest_works_without_shtab_and_rich(
         monkeypatch.setitem(sys.modules, name, None)
     assert main(["simulate", str(FOAMS.with_name("my_first_crossing.toml"))]) == 0
     assert "passed" in capsys.readouterr().out
+
+
+def test_a_report_of_contacts_shows_how_far_its_map_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    screen = on_screen(monkeypatch)
+    assert main(["contact", str(FOAMS.parent / "contact_arm.toml"), "--out", str(tmp_path)]) == 0
+    assert "map of allowed speeds" in screen.getvalue()

@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from hrsafety.cli import output, terminal
+from hrsafety.cli import output, progress, terminal
 from hrsafety.cli.cell import page as cell_page
 from hrsafety.cli.cell import pictures as cell_pictures
 from hrsafety.cli.cell import report as cell_report
@@ -41,9 +41,9 @@ def report_cell(options: argparse.Namespace) -> None:
     output.planned_folder(options.out)
     output.require_matplotlib("contact")
     require_jinja("contact")
-    with output.located(options.cell):
+    with output.located(options.cell), progress.live() as shown:
         cell = load(options.cell)
-        study = cell_study.studied(cell)
+        study = cell_study.studied(cell, shown)
     command = f"hrsafety contact {Path(options.cell).name}"
     report = cell_report.report_of(cell, study, command=command, date=date)
     page = cell_page.html(report, cell_pictures.drawings(cell, study))

@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.cli.cell.chances import chance_of
 from hrsafety.cli.cell.file import Cell, Planned
 from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, reasons_of, strain
+from hrsafety.cli.progress import Report
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.verdicts import strictest
@@ -72,13 +73,15 @@ class Study:
     warnings: tuple[ResultWarning, ...]
 
 
-def studied(cell: Cell) -> Study:
+def studied(cell: Cell, shown: Report | None = None) -> Study:
     """Return everything that the report shows.
 
     Parameters
     ----------
     cell : Cell
         What was asked.
+    shown : callable or None
+        Told how far the longest part is, the map.
 
     Returns
     -------
@@ -97,7 +100,7 @@ def studied(cell: Cell) -> Study:
         "limits": _limits(cell),
         "results": results,
         "curves": _curve_fields(impacts, curves),
-        "map": None if least is None else _map(cell, least),
+        "map": None if least is None else _map(cell, least, shown),
         "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
         "sensitivity": None if least is None else _sensitivity(cell, least),
         "probability": [_named(each) | chance_of(cell, each.planned, each.chosen) for each in judged],
@@ -296,7 +299,7 @@ def _named(judged: Judged) -> dict[str, Any]:
     }
 
 
-def _map(cell: Cell, judged: Judged) -> dict[str, Any] | None:
+def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | None:
     """Return the allowed speed over thickness and strength of the covering that is planned."""
     if judged.planned.covering is None:
         return None
@@ -313,6 +316,7 @@ def _map(cell: Cell, judged: Judged) -> dict[str, Any] | None:
         limits={"force": limit.force, "pressure": limit.pressure},
         covering=pad,
         max_strain=strain(cell, judged.planned.covering),
+        progress=None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None),
         **{"thickness": thickness[:, np.newaxis], name: strength},
     )
     return {
