@@ -42,6 +42,17 @@ const SINE: [f64; 8] = reciprocal_factorials(1, 2);
 /// To `0.7854^18 / 18!`, below 3e-18.
 const COSINE: [f64; 9] = reciprocal_factorials(0, 2);
 
+/// `2/3`, `2/5` and so on, to `0.1716^22/23`, below 1e-18.
+const LOGARITHM: [f64; 10] = {
+    let mut found = [0.0; 10];
+    let mut index = 0;
+    while index < found.len() {
+        found[index] = 2.0 / (2 * index + 3) as f64;
+        index += 1;
+    }
+    found
+};
+
 /// Even and odd powers apart: half as many steps wait for each other.
 #[inline(always)]
 fn polynomial<R: Real, const N: usize>(coefficients: &[f64; N], x: R) -> R {
@@ -81,6 +92,19 @@ pub fn exp<R: Real>(x: R) -> R {
 pub fn decay<R: Real>(x: R) -> R {
     let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), exponential(x));
     R::select(x.le(R::zero()), found, x)
+}
+
+/// `ln(x)` of a positive number of full precision.
+#[inline(always)]
+pub fn logarithm<R: Real>(x: R) -> R {
+    let [mantissa, exponent] = x.mantissa_and_exponent();
+    let one = R::splat(1.0);
+    // ln m = 2 artanh s, s = (m - 1)/(m + 1).
+    let share = (mantissa - one) / (mantissa + one);
+    let square = share * share;
+    let series = share * square * polynomial(&LOGARITHM, square);
+    let small = series + exponent * R::splat(LN_2[1]);
+    exponent * R::splat(LN_2[0]) + (share + share + small)
 }
 
 /// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
@@ -135,6 +159,22 @@ mod tests {
         assert_eq!(decay(f64::NEG_INFINITY), 0.0);
         assert_eq!(decay(-0.0), 1.0);
         assert!(decay(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn logarithms_agree_with_the_library() {
+        let near_one = (1..4000).map(|index| 1.0 + 0.0003 * f64::from(index - 2000));
+        let far = (-1021..1023).map(|power| 1.37 * 2.0_f64.powi(power));
+        for x in near_one.chain(far) {
+            let [mantissa, exponent] = x.mantissa_and_exponent();
+            assert_eq!(mantissa * exponent.exp2(), x);
+            assert!(mantissa * mantissa > 0.499 && mantissa * mantissa < 2.001);
+            let error = (logarithm(x) - x.ln()).abs();
+            assert!(error <= 5e-16 * x.ln().abs(), "{x}: {error:e}");
+            let lanes = logarithm(Lanes::<4>::splat(x));
+            assert_eq!(lanes.lane(2).to_bits(), logarithm(x).to_bits());
+        }
+        assert_eq!(logarithm(1.0), 0.0);
     }
 
     #[test]

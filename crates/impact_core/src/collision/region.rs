@@ -1,5 +1,7 @@
 //! A region of the body: a spring without mass.
 
+use numeric::lanes::{Real, each};
+
 use crate::covering;
 use crate::error::{Failure, Given, Result, not_negative, positive};
 
@@ -50,57 +52,65 @@ impl Region {
         Ok(self)
     }
 
-    /// Force at a deflection, and its slope.
+    /// Force at deflections side by side, and its slope.
+    #[inline(always)]
     #[must_use]
-    pub fn force(&self, deflection: f64) -> [f64; 2] {
+    pub fn force<R: Real>(&self, deflection: R) -> [R; 2] {
         match *self {
-            Self::Rigid => [0.0, f64::INFINITY],
+            Self::Rigid => [R::zero(), R::splat(f64::INFINITY)],
             Self::Spring { stiffness, cubic } => {
-                let more = cubic * deflection * deflection;
-                [(stiffness + more) * deflection, stiffness + 3.0 * more]
+                let stiffness = R::splat(stiffness);
+                let more = R::splat(cubic) * deflection * deflection;
+                let slope = stiffness + R::splat(3.0) * more;
+                [(stiffness + more) * deflection, slope]
             }
             Self::Power {
                 stiffness,
                 exponent,
-            } => {
+            } => each(deflection, |deflection| {
                 if deflection <= 0.0 {
                     let slope = stiffness * exponent * 0.0_f64.powf(exponent - 1.0);
                     return [0.0, slope];
                 }
                 let force = stiffness * deflection.powf(exponent);
                 [force, exponent * force / deflection]
-            }
+            }),
         }
     }
 
-    /// Deflection under a force.
+    /// Deflection under forces side by side.
+    #[inline(always)]
     #[must_use]
-    pub fn deflection(&self, force: f64) -> f64 {
+    pub fn deflection<R: Real>(&self, force: R) -> R {
         match *self {
-            Self::Rigid => 0.0,
+            Self::Rigid => R::zero(),
             Self::Spring {
                 stiffness,
                 cubic: 0.0,
-            } => force / stiffness,
-            Self::Spring { .. } => covering::inverse_of(force, |x| self.force(x)),
+            } => force / R::splat(stiffness),
+            Self::Spring { .. } => {
+                let of = |lane| covering::inverse_of(force.lane(lane), |x| self.force(x));
+                R::from_fn(of)
+            }
             Self::Power {
                 stiffness,
                 exponent,
-            } => (force / stiffness).powf(1.0 / exponent),
+            } => R::from_fn(|lane| (force.lane(lane) / stiffness).powf(1.0 / exponent)),
         }
     }
 
-    /// Work that is stored at a deflection.
+    /// Work that is stored at deflections side by side.
+    #[inline(always)]
     #[must_use]
-    pub fn stored(&self, deflection: f64) -> f64 {
+    pub fn stored<R: Real>(&self, deflection: R) -> R {
         match *self {
-            Self::Rigid => 0.0,
+            Self::Rigid => R::zero(),
             Self::Spring { stiffness, cubic } => {
                 let square = deflection * deflection;
-                square * (0.5 * stiffness + 0.25 * cubic * square)
+                square * (R::splat(0.5 * stiffness) + R::splat(0.25 * cubic) * square)
             }
             Self::Power { exponent, .. } => {
-                self.force(deflection)[0] * deflection / (exponent + 1.0)
+                self.force(deflection)[0] * deflection / R::splat(exponent + 1.0)
             }
         }
     }

@@ -4,11 +4,13 @@
 //! region together, so the time to the largest one is the integral of `deps/eps'`. That holds on the way back of
 //! every covering, with the work that unloading returns, and on the way in of one without rate.
 
+use numeric::lanes::{Lanes, Real, each};
+
 use super::loading::{Turn, first_exponent, smooth_power, turn_of};
 use super::outcome::{Outcome, Status};
 use super::statics::rest_of;
 use super::{Collision, Region};
-use crate::covering::{Pad, Shape};
+use crate::covering::{Pad, Shape, product};
 use crate::roots::Peak;
 
 /// Positive nodes of Kronrod's rule of 15 points on [-1, 1] with their weights, and those of Gauss's rule of 7.
@@ -31,13 +33,34 @@ const HALVINGS: u32 = 4;
 /// Shares of the largest compression between which a kink ends the first piece; else half of it does.
 const FIRST_MARK: [f64; 2] = [0.01, 0.5];
 
+/// Half of the nodes of a rule and its middle.
+type Nodes = Lanes<8>;
+
+/// What is integrated.
+trait Integrand {
+    /// Its values side by side.
+    fn at<R: Real>(&self, x: R) -> R;
+}
+
+/// Values of an integrand side by side: one copy of the code for all.
+#[inline(never)]
+fn values(integrand: &impl Integrand, x: Nodes) -> Nodes {
+    integrand.at(x)
+}
+
 /// Integral over an interval, and the error of the smaller rule.
-fn kronrod(low: f64, high: f64, function: &impl Fn(f64) -> f64) -> [f64; 2] {
+fn kronrod(low: f64, high: f64, integrand: &impl Integrand) -> [f64; 2] {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let center = function(middle);
-    let [mut fine, mut coarse] = MIDDLE.map(|weight| weight * center);
-    for [node, weight, of_gauss] in NODES {
-        let both = function(middle - half * node) + function(middle + half * node);
+    let node = |lane: usize| NODES.get(lane).map_or(0.0, |node| node[0]);
+    let away = Nodes::splat(half) * Nodes::from_fn(node);
+    let center = Nodes::splat(middle);
+    let [before, beyond] = [
+        values(integrand, center - away),
+        values(integrand, center + away),
+    ];
+    let [mut fine, mut coarse] = MIDDLE.map(|weight| weight * before.lane(NODES.len()));
+    for (index, [_, weight, of_gauss]) in NODES.into_iter().enumerate() {
+        let both = before.lane(index) + beyond.lane(index);
         fine += weight * both;
         coarse += of_gauss * both;
     }
@@ -49,9 +72,9 @@ fn integral(
     [low, high]: [f64; 2],
     (size, tolerance): (f64, f64),
     halvings: u32,
-    function: &impl Fn(f64) -> f64,
+    integrand: &impl Integrand,
 ) -> Option<f64> {
-    let [value, error] = kronrod(low, high, function);
+    let [value, error] = kronrod(low, high, integrand);
     if !value.is_finite() {
         return None;
     }
@@ -63,8 +86,8 @@ fn integral(
     let middle = 0.5 * (low + high);
     let goal = (size, tolerance);
     Some(
-        integral([low, middle], goal, left, function)?
-            + integral([middle, high], goal, left, function)?,
+        integral([low, middle], goal, left, integrand)?
+            + integral([middle, high], goal, left, integrand)?,
     )
 }
 
@@ -77,16 +100,18 @@ struct Column<'a> {
 }
 
 impl Column<'_> {
-    /// Stored work at a compression, and `deps/dd`.
-    fn at(&self, compression: f64) -> [f64; 2] {
+    /// Stored work at compressions side by side, and `deps/dd`.
+    #[inline(always)]
+    fn at<R: Real>(&self, compression: R) -> [R; 2] {
+        let one = R::splat(1.0);
         let Some(pad) = self.pad else {
-            return [self.region.stored(compression), 1.0];
+            return [self.region.stored(compression), one];
         };
         if let Some(largest) = self.largest_work {
-            return self.returned(pad, largest, compression);
+            return each(compression, |d| self.returned(pad, largest, d));
         }
         if self.region == Region::Rigid {
-            return [pad.work(compression), 1.0];
+            return [pad.works(compression), one];
         }
         let [work, force, slope] = pad.work_and_force(compression);
         self.with_region(work, [force, slope])
@@ -110,17 +135,20 @@ impl Column<'_> {
         self.with_region(work, [force * factor, slope])
     }
 
-    fn with_region(&self, work: f64, [force, slope]: [f64; 2]) -> [f64; 2] {
+    #[inline(always)]
+    fn with_region<R: Real>(&self, work: R, [force, slope]: [R; 2]) -> [R; 2] {
         let deflection = self.region.deflection(force);
         let yielding = self.region.force(deflection)[1];
-        let more = if slope == 0.0 { 0.0 } else { slope / yielding };
-        [work + self.region.stored(deflection), 1.0 + more]
+        let zero = R::zero();
+        let level = slope.le(zero) & slope.ge(zero);
+        let more = R::select(level, zero, slope / yielding);
+        [work + self.region.stored(deflection), R::splat(1.0) + more]
     }
 
     /// Power of the substitution in which the compression starts smoothly.
-    fn power(&self) -> i32 {
+    fn power(&self) -> u32 {
         let exponent = self.pad.map_or(1.0, |pad| first_exponent(pad, self.region));
-        smooth_power(exponent)
+        smooth_power(exponent).unsigned_abs()
     }
 
     /// Whether the force of a cylinder beyond a kink of the law grows like a half power.
@@ -133,11 +161,6 @@ impl Column<'_> {
 
     /// Time to a largest compression.
     fn time(&self, largest: f64, mass: f64, size: f64, tolerance: f64) -> Option<f64> {
-        let all = self.at(largest)[0];
-        let late = |compression: f64| {
-            let [work, rate] = self.at(compression);
-            rate / (2.0 * (all - work) / mass).sqrt()
-        };
         let mut marks = self.pad.map_or_else(Vec::new, Pad::kinks);
         marks.retain(|kink| *kink < largest);
         let early = FIRST_MARK[0] * largest..=FIRST_MARK[1] * largest;
@@ -147,28 +170,76 @@ impl Column<'_> {
         }
         marks.push(largest);
         let goal = (size, tolerance);
-        let first = marks[0];
-        let power = self.power();
-        let mut time = integral([0.0, 1.0], goal, HALVINGS, &|x| {
-            f64::from(power) * first * x.powi(power - 1) * late(first * x.powi(power))
-        })?;
+        let (first, power) = (marks[0], self.power());
+        let start = Late {
+            column: self,
+            // As every other work, for their difference.
+            all: self.at(Lanes::<2>::splat(largest))[0].lane(0),
+            mass,
+            over: Over::Start { first, power },
+        };
+        let mut time = integral([0.0, 1.0], goal, HALVINGS, &start)?;
         for pair in marks.windows(2) {
             let mut from = pair[0];
             if self.starts_with_half_power(from) {
                 from = 0.5 * (pair[0] + pair[1]);
-                time += integral([0.0, (from - pair[0]).sqrt()], goal, HALVINGS, &|x| {
-                    2.0 * x * late(pair[0] + x * x)
-                })?;
+                let beyond = Late {
+                    over: Over::Beyond(pair[0]),
+                    ..start
+                };
+                time += integral([0.0, (from - pair[0]).sqrt()], goal, HALVINGS, &beyond)?;
             }
             // The speed falls like the square root of what is left.
             let [near, far] = [pair[1], from].map(|mark| (largest - mark).max(0.0).sqrt());
             if far > near {
-                time += integral([near, far], goal, HALVINGS, &|s| {
-                    2.0 * s * late(largest - s * s)
-                })?;
+                let left = Late {
+                    over: Over::Left(largest),
+                    ..start
+                };
+                time += integral([near, far], goal, HALVINGS, &left)?;
             }
         }
         Some(time)
+    }
+}
+
+/// What a compression is integrated over.
+#[derive(Clone, Copy)]
+enum Over {
+    /// `x` of `d = first x^power`.
+    Start { first: f64, power: u32 },
+    /// `x` of `d = kink + x^2`.
+    Beyond(f64),
+    /// `x` of `d = largest - x^2`.
+    Left(f64),
+}
+
+/// Rate of the time over a variable.
+#[derive(Clone, Copy)]
+struct Late<'a> {
+    column: &'a Column<'a>,
+    /// Work at the largest compression.
+    all: f64,
+    mass: f64,
+    over: Over,
+}
+
+impl Integrand for Late<'_> {
+    #[inline(always)]
+    fn at<R: Real>(&self, x: R) -> R {
+        let two = R::splat(2.0);
+        let (compression, change) = match self.over {
+            Over::Start { first, power } => {
+                let first = R::splat(first);
+                let change = R::splat(f64::from(power)) * first * product(x, power - 1);
+                (first * product(x, power), change)
+            }
+            Over::Beyond(kink) => (R::splat(kink) + x * x, two * x),
+            Over::Left(largest) => (R::splat(largest) - x * x, two * x),
+        };
+        let [work, rate] = self.column.at(compression);
+        let speed = (two * (R::splat(self.all) - work) / R::splat(self.mass)).sqrt();
+        change * (rate / speed)
     }
 }
 
@@ -245,7 +316,7 @@ pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
         };
         let size = total / speed;
         back = column.time(turn.compression, mass, size, collision.tolerance)?;
-        rebound = (2.0 * column.at(turn.compression)[0] / mass).sqrt();
+        rebound = (2.0 * column.at::<f64>(turn.compression)[0] / mass).sqrt();
     }
     let release_time = turn.time + back;
     if release_time >= collision.horizon {
@@ -285,7 +356,16 @@ pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
 
 #[cfg(test)]
 mod tests {
-    use super::{MIDDLE, NODES, kronrod};
+    use super::{Integrand, MIDDLE, NODES, Real, kronrod, product};
+
+    /// `(n + 1) x^n`.
+    struct Monomial(u32);
+
+    impl Integrand for Monomial {
+        fn at<R: Real>(&self, x: R) -> R {
+            R::splat(f64::from(self.0 + 1)) * product(x, self.0)
+        }
+    }
 
     #[test]
     fn both_rules_are_exact_for_their_polynomials() {
@@ -294,9 +374,9 @@ mod tests {
         });
         assert!((sums[0] + MIDDLE[0] - 2.0).abs() < 1e-15);
         assert!((sums[1] + MIDDLE[1] - 2.0).abs() < 1e-15);
-        let [value, error] = kronrod(0.0, 2.0, &|x| 23.0 * x.powi(22));
+        let [value, error] = kronrod(0.0, 2.0, &Monomial(22));
         assert!((value / 2.0_f64.powi(23) - 1.0).abs() < 1e-14 && error > 1.0);
-        let [value, error] = kronrod(0.0, 2.0, &|x| 14.0 * x.powi(13));
+        let [value, error] = kronrod(0.0, 2.0, &Monomial(13));
         assert!((value / 2.0_f64.powi(14) - 1.0).abs() < 1e-14 && error < 1e-9);
     }
 }

@@ -6,10 +6,11 @@
 use std::sync::Arc;
 
 use super::gibson_ashby::GibsonAshby;
-use super::powers::{MOST_EXPONENT, power, raised, within};
+use super::powers::{MOST_EXPONENT, power, powers, raised, within};
 use super::quadrature::integral_before_pole;
 use super::table::Table;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
+use numeric::lanes::{Mask, Real, each};
 
 /// Strains at which a law is asked whether it falls.
 const LOOKS: usize = 2000;
@@ -147,9 +148,8 @@ impl Material {
                 }
             }
             Self::Rusch { a, p, b, q } => {
-                let [first, first_slope] = power(*a, *p, strain);
-                let [second, second_slope] = power(*b, *q, strain);
-                [first + second, first_slope + second_slope]
+                let [_, stress, slope] = rusch([*a, *b], [*p, *q], strain);
+                [stress, slope]
             }
             Self::Avalle {
                 plateau,
@@ -182,10 +182,7 @@ impl Material {
         match self {
             Self::Linear { modulus } => 0.5 * modulus * strain * strain,
             Self::GibsonAshby(law) => law.work(strain),
-            Self::Rusch { a, p, b, q } => {
-                strain
-                    * (power(*a, *p, strain)[0] / (p + 1.0) + power(*b, *q, strain)[0] / (q + 1.0))
-            }
+            Self::Rusch { a, p, b, q } => rusch([*a, *b], [*p, *q], strain)[0],
             Self::Avalle { .. } => {
                 strain * integral_before_pole(1.0 / strain - 1.0, |y| self.stress(strain * y)[0])
             }
@@ -193,22 +190,31 @@ impl Material {
         }
     }
 
-    /// Work, stress and slope of the stress, for less than each for itself.
+    /// Work of strains side by side.
+    #[inline(always)]
     #[must_use]
-    pub fn work_and_stress(&self, strain: f64) -> [f64; 3] {
+    pub fn works<R: Real>(&self, strain: R) -> R {
         if let Self::Rusch { a, p, b, q } = self
-            && strain > 0.0
+            && !strain.le(R::zero()).any()
         {
-            let [first, first_slope] = power(*a, *p, strain);
-            let [second, second_slope] = power(*b, *q, strain);
-            return [
-                strain * (first / (p + 1.0) + second / (q + 1.0)),
-                first + second,
-                first_slope + second_slope,
-            ];
+            return rusch([*a, *b], [*p, *q], strain)[0];
         }
-        let [stress, slope] = self.stress(strain);
-        [self.work(strain), stress, slope]
+        R::from_fn(|lane| self.work(strain.lane(lane)))
+    }
+
+    /// Work, stress and slope of the stress of strains side by side, for less than each for itself.
+    #[inline(always)]
+    #[must_use]
+    pub fn work_and_stress<R: Real>(&self, strain: R) -> [R; 3] {
+        if let Self::Rusch { a, p, b, q } = self
+            && !strain.le(R::zero()).any()
+        {
+            return rusch([*a, *b], [*p, *q], strain);
+        }
+        each(strain, |strain| {
+            let [stress, slope] = self.stress(strain);
+            [self.work(strain), stress, slope]
+        })
     }
 
     /// Integral `w2` of the work.
@@ -222,10 +228,11 @@ impl Material {
             Self::Linear { modulus } => modulus * square * strain / 6.0,
             Self::GibsonAshby(law) => law.work_integral(strain),
             Self::Rusch { a, p, b, q } => {
-                let part = |factor, exponent: f64| {
-                    power(factor, exponent, strain)[0] / ((exponent + 1.0) * (exponent + 2.0))
+                let part = |[value, _]: [f64; 2], exponent: f64| {
+                    value / ((exponent + 1.0) * (exponent + 2.0))
                 };
-                square * (part(*a, *p) + part(*b, *q))
+                let [first, second] = powers([*a, *b], [*p, *q], strain);
+                square * (part(first, *p) + part(second, *q))
             }
             Self::Avalle { .. } => {
                 let column = |y: f64| (1.0 - y) * self.stress(strain * y)[0];
@@ -277,6 +284,18 @@ impl Material {
             Self::Table(table) => table.end(),
         }
     }
+}
+
+/// Work, stress and slope of a sum of two powers.
+#[inline(always)]
+fn rusch<R: Real>(factors: [f64; 2], exponents: [f64; 2], strain: R) -> [R; 3] {
+    let [[first, first_slope], [second, second_slope]] = powers(factors, exponents, strain);
+    let [more, most] = exponents.map(|exponent| R::splat(exponent + 1.0));
+    [
+        strain * (first / more + second / most),
+        first + second,
+        first_slope + second_slope,
+    ]
 }
 
 fn check_rusch([a, p, b, q]: [f64; 4]) -> Result<()> {

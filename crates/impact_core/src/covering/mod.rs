@@ -12,9 +12,11 @@ mod shape;
 mod table;
 #[cfg(test)]
 mod tests;
+mod work;
 
 pub use gibson_ashby::GibsonAshby;
 pub use material::Material;
+pub use powers::product;
 pub use shape::Shape;
 pub use table::Table;
 
@@ -291,49 +293,6 @@ impl Pad {
             slope += bottoming.stiffness;
         }
         [value, slope]
-    }
-
-    /// Work that is stored at a compression.
-    #[must_use]
-    pub fn work(&self, compression: f64) -> f64 {
-        let Covering {
-            material,
-            thickness,
-            shape,
-            bottoming,
-            ..
-        } = &self.covering;
-        if compression <= 0.0 {
-            return 0.0;
-        }
-        let strain = compression / thickness;
-        let value = match (shape, &self.halves) {
-            (Shape::Cylinder { .. }, Some(halves)) => halves.work(material, strain),
-            (Shape::Curved { .. }, _) => material.work_integral(strain),
-            _ => material.work(strain),
-        };
-        let backing = (compression - self.bottom).max(0.0);
-        self.scale * thickness * value + 0.5 * bottoming.stiffness * backing * backing
-    }
-
-    /// Work, force and slope of the force at a compression.
-    #[must_use]
-    pub fn work_and_force(&self, compression: f64) -> [f64; 3] {
-        let thickness = self.covering.thickness;
-        let flat = matches!(self.covering.shape, Shape::Flat { .. });
-        if !flat || compression <= 0.0 || compression > self.bottom {
-            let [force, slope] = self.force(compression);
-            return [self.work(compression), force, slope];
-        }
-        let [work, stress, slope] = self
-            .covering
-            .material
-            .work_and_stress(compression / thickness);
-        [
-            self.scale * thickness * work,
-            self.scale * stress,
-            self.scale * slope / thickness,
-        ]
     }
 
     /// Largest compression at which the force is at most a value; `None` beyond the end of a table.

@@ -104,6 +104,33 @@ pub trait Real:
         // The last bits hold `k`; with the bias of exponents they are moved to their place.
         Self::from_fn(|lane| f64::from_bits((self.lane(lane).to_bits().wrapping_add(1023)) << 52))
     }
+    /// `m` from `sqrt(1/2)` to `sqrt(2)` and an integer `k` with `self = m 2^k`, of a positive number of full precision.
+    #[inline(always)]
+    #[must_use]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        // Exponents are counted from the bits of `sqrt(1/2)`; 1024 more of them keep the difference above zero.
+        const SQRT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
+        const MORE: u64 = 1024 << 52;
+        const WHOLE: f64 = 4_503_599_627_370_496.0;
+        let above = |lane: usize| {
+            self.lane(lane)
+                .to_bits()
+                .wrapping_sub(SQRT_HALF)
+                .wrapping_add(MORE)
+        };
+        let mantissa = Self::from_fn(|lane| {
+            let power = above(lane) >> 52 << 52;
+            f64::from_bits(
+                self.lane(lane)
+                    .to_bits()
+                    .wrapping_add(MORE)
+                    .wrapping_sub(power),
+            )
+        });
+        // The last bits of a number from 2^52 on hold an integer.
+        let whole = Self::from_fn(|lane| f64::from_bits(above(lane) >> 52 | WHOLE.to_bits()));
+        [mantissa, whole - Self::splat(WHOLE + 1024.0)]
+    }
     /// Whether `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// Whether `self <= other`.
@@ -140,6 +167,18 @@ pub trait Real:
     fn sign(self) -> Self {
         Self::select(self.ge(Self::zero()), Self::splat(1.0), Self::splat(-1.0))
     }
+}
+
+/// Numbers of each lane from its number alone, for what has no lanes.
+#[inline(always)]
+pub fn each<R: Real, const N: usize>(x: R, of: impl Fn(f64) -> [f64; N]) -> [R; N] {
+    let mut found = [R::zero(); N];
+    for lane in 0..R::WIDTH {
+        for (number, of_lane) in found.iter_mut().zip(of(x.lane(lane))) {
+            number.set(lane, of_lane);
+        }
+    }
+    found
 }
 
 /// `N` numbers side by side.

@@ -68,6 +68,8 @@ struct Loading<'a> {
     size: f64,
     /// Power with which the force rises at the touch.
     exponent: f64,
+    /// How the start is integrated over.
+    from_touch: Variable,
     /// How the end is integrated over.
     to_turn: Variable,
     /// How much shorter first steps are than at a tolerance of 1e-6.
@@ -133,7 +135,7 @@ impl Loading<'_> {
 
     /// At the touch.
     fn touch(&self) -> Progress {
-        let variable = Variable::from_touch(self.size, self.exponent);
+        let variable = self.from_touch;
         Progress::new(variable, self.point(variable, 0.0, [1.0, 0.0]))
     }
 
@@ -221,6 +223,7 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
     if !(size > 0.0 && size.is_finite()) {
         return None;
     }
+    let exponent = first_exponent(pad, collision.region);
     let mut loading = Loading {
         collision,
         pad,
@@ -240,7 +243,8 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
         kink: f64::INFINITY,
         piece: [0.0; 2],
         size,
-        exponent: first_exponent(pad, collision.region),
+        exponent,
+        from_touch: Variable::from_touch(size, exponent),
         to_turn: Variable::to_turn(pad, speed),
         finer: finer_than_usual(collision.tolerance),
         evaluations: Cell::new(0),

@@ -67,7 +67,7 @@ impl Loading<'_> {
         if !(to_kink || near || early) {
             self.to_turn
         } else if self.piece[0] == 0.0 {
-            Variable::from_touch(self.size, self.exponent)
+            self.from_touch
         } else if self.half_powers {
             Variable::from_half_power(self.piece[0], self.size)
         } else {
@@ -89,10 +89,10 @@ impl Loading<'_> {
             Variable::Pace { .. } => (1.0, f64::INFINITY),
             Variable::Depth { power, .. } => {
                 let [end, whole] = [self.kink, self.size].map(|depth| variable.at(depth, 0.0));
-                let first = FIRST.powf(1.0 / ((1.0 + self.exponent) * f64::from(power)));
+                let first = || FIRST.powf(1.0 / ((1.0 + self.exponent) * f64::from(power)));
                 let most = match point.at {
                     _ if to_kink => f64::INFINITY,
-                    0.0 => self.finer * whole * first,
+                    0.0 => self.finer * whole * first(),
                     at => LONGEST * (whole - at),
                 };
                 (end, most)

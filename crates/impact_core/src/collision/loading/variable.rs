@@ -169,6 +169,7 @@ pub fn slowed([unit, range]: [f64; 2], doublings: u32, at: f64) -> [f64; 2] {
 /// `value^(1/power)`.
 fn root_of(value: f64, power: i32) -> f64 {
     match power {
+        _ if value == 1.0 || value == f64::INFINITY => value,
         1 => value,
         2 => value.sqrt(),
         power => value.powf(1.0 / f64::from(power)),
