@@ -28,7 +28,7 @@ def entries(name: str) -> list[tuple[str, str, dict[str, object]]]:
 def words_of_the_code() -> set[str]:
     """Return every string and keyword name of the modules, those of f-strings and their beginnings too."""
     found = set()
-    for path in FOLDER.glob("*.py"):
+    for path in FOLDER.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 found.add(node.value)
