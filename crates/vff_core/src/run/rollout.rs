@@ -49,13 +49,13 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let staged = options.integrator == Integrator::Rk4 && !options.hold;
     let mut sensor = SampledScene::new(scenario);
     let mut seen = bodies_at(scenario, 0.0);
-    let mut groups: Vec<Runs<&Scenario, R>> = team
-        .iter()
-        .map(|_| Runs::new(scenario, clock, &seen, maps.clone()))
-        .collect();
+    let mut groups: Vec<Runs<&Scenario, R>> = Vec::with_capacity(team.len());
+    // Those that are led come when they part.
+    let first = Runs::new(scenario, clock, &seen, maps.clone());
+    groups.resize(if led { 1 } else { team.len() }, first);
     // A group by itself that keeps no rows needs the obstacles between two samples only where they
     // are near; several groups share them.
-    let alone = groups.len() == 1 && !C::EVERY_STEP && !staged;
+    let alone = team.len() == 1 && !C::EVERY_STEP && !staged;
     // One run by itself that knows everything exactly need not look at what is far away.
     let single = R::WIDTH == 1 && alone && sensor.is_none() && !led && !plan.shortcuts;
     let mut dormant = single
@@ -90,11 +90,10 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             let known = known(sensor.as_ref().map(|_| &*seen), None, &scene);
             if groups[0].feels_any(known) {
                 led = false;
-                follow(&mut groups);
+                follow(&mut groups, team.len());
             }
         }
-        let active = if led { 1 } else { groups.len() };
-        let members = groups.iter_mut().zip(team.iter_mut()).take(active);
+        let members = groups.iter_mut().zip(team.iter_mut());
         for (index, (runs, member)) in members.enumerate() {
             if samples && runs.running.any() {
                 let time = clock.time(first);
@@ -136,7 +135,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         }
     }
     if led {
-        follow(&mut groups);
+        follow(&mut groups, team.len());
     }
     let ended = clock.time(first);
     hand_over(scenario, &mut groups, team, (ended, dormant), &mut keep)
@@ -189,13 +188,11 @@ fn hand_over<R: Real, L, C: Recorder<R>>(
     Ok(())
 }
 
-/// Brings all groups to where the first one is.
+/// All groups continue from where the first one is.
 #[cold]
-fn follow<R: Real>(groups: &mut [Runs<&Scenario, R>]) {
-    if let Some((first, others)) = groups.split_first_mut() {
-        for runs in others {
-            runs.clone_from(first);
-        }
+fn follow<R: Real>(groups: &mut Vec<Runs<&Scenario, R>>, count: usize) {
+    if let Some(first) = groups.first().cloned() {
+        groups.resize(count, first);
     }
 }
 
