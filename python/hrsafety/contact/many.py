@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,8 +18,6 @@ __all__ = ["Many", "many", "words_at"]
 
 WORDS: dict[str, list[str]] = dict(zip(("collide", "speed", "thickness"), _hrsafety.contact_words(), strict=True))
 """Words of the statuses of collisions, allowed speeds and thicknesses, in the order of their codes."""
-_SHARED_FROM = 200_000
-"""Rows from which threads share the writing of words: fewer take less than starting a thread."""
 _DEPTHS = {"collide": "peak_covering_compression", "speed": "covering_compression"}
 
 
@@ -87,33 +83,19 @@ def many(
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, covering, threads),
+        status=_status(words, codes, covering),
         flags=flags,
         warnings=(*flagged(told | flags), *implausible_numbers(covering, region, given)),
         given=given,
     )
 
 
-def words_at(words: npt.NDArray[np.str_], codes: npt.NDArray[Any], threads: int | None) -> npt.NDArray[np.str_]:
-    """Return the words at codes; a word takes many times the room of its code, so that threads share the writing."""
-    found = np.empty(codes.shape, dtype=words.dtype)
-    flat, places = found.reshape(-1), codes.reshape(-1)
-    count = min(thread_count(threads) or os.cpu_count() or 1, places.size // _SHARED_FROM + 1)
-
-    def write(piece: int) -> None:
-        part = slice(piece * places.size // count, (piece + 1) * places.size // count)
-        # The last word stands for every code beyond it.
-        np.take(words, places[part], mode="clip", out=flat[part])
-
-    if count == 1:
-        write(0)
-    else:
-        with ThreadPoolExecutor(count) as pool:
-            list(pool.map(write, range(count)))
-    return found
+def words_at(words: npt.NDArray[np.str_], codes: npt.NDArray[Any]) -> npt.NDArray[np.str_]:
+    """Return the words at codes; the last word stands for every code beyond it."""
+    return np.asarray(np.take(words, codes, mode="clip"))
 
 
-def _status(words: list[str], codes: Array, covering: Covering | None, threads: int | None) -> npt.NDArray[np.str_]:
+def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
     if covering is not None:
@@ -124,4 +106,4 @@ def _status(words: list[str], codes: Array, covering: Covering | None, threads: 
     there = np.bincount(codes.ravel(), minlength=256) > 0
     there[len(all_words) - 1] = there[len(all_words) - 1 :].any()
     found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=False)])
-    return words_at(found, codes, threads)
+    return words_at(found, codes)

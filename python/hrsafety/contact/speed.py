@@ -300,7 +300,7 @@ def allowed_speeds(
     empty = np.zeros(found.status.shape, dtype=bool)
     numbers: dict[str, Any] = dict(found.numbers)
     flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
-    governs = words_at(_GOVERNS, numbers.pop("governs_code"), threads)[()]
+    governs = words_at(_GOVERNS, numbers.pop("governs_code"))[()]
     return AllowedSpeeds(
         **numbers,
         governs=governs,
