@@ -18,6 +18,7 @@ from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible
 from hrsafety.contact.many import many, words_at
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = [
@@ -32,8 +33,6 @@ __all__ = [
 
 _GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
 _FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
-_THINNEST = 1e-4
-"""Thinnest covering that is looked at, in m."""
 
 
 @displayed
@@ -321,8 +320,8 @@ class LeastThickness:
     thickness : float or None
         In m; 0 if bare is enough, ``None`` if not even 1 m suffices. Coverings of 0.1 mm and more are looked at.
     status : {"found", "bare_is_enough", "none_up_to_1_m"}
-        What was found: bare is enough where it keeps the limits, and so does a covering of 0.1 mm. The strain counts: a
-        thin pad may be slower than none.
+        What was found: bare is enough where a covering of 0.1 mm keeps the limits; where a contact without any does
+        not, a warning says so (``bare_exceeds``). The strain counts: a thin pad may be slower than none.
     not_checked : tuple of str
         Limits that were not checked; they never count as kept. The pressure of a bare contact needs the area of a flat
         covering.
@@ -393,16 +392,17 @@ def thickness(
     values |= limits_of(limits)
     value, status = _hrsafety.contact_thickness(shared, in_order(values))
     missing = missing_limits(values, bare=pad is None)
+    doubts: list[ResultWarning] = []
     if status == "bare_is_enough" and pad is not None:
         bare, alone = contact_row(
             robot_mass=robot_mass, body_mass=body_mass, region=region, covering=None, tolerance=TOLERANCE, area=pad.area
         )
         alone |= limits_of(limits)
-        if shared["region"] == "rigid" or _hrsafety.contact_speed(bare, in_order(alone))["speed"] < speed:
-            # What keeps the limits is the thinnest covering that is looked at, not the lack of one.
-            value, status = _THINNEST, "found"
-        else:
-            missing = missing_limits(alone, bare=True)
+        missing = missing_limits(alone, bare=True)
+        rigid = shared["region"] == "rigid"
+        most = 0.0 if rigid else _hrsafety.contact_speed(bare, in_order(alone))["speed"]
+        if most < speed:
+            doubts.append(_bare_exceeds(most))
     doubted = values | {"thickness": value if value > 0.0 else math.nan}
     depth = math.nan
     if value > 0.0:
@@ -412,10 +412,21 @@ def thickness(
         status=status,
         not_checked=missing,
         warnings=(
+            *doubts,
             *not_checked(missing),
             *flagged(covering_flags(pad, depth, doubted)),
             *implausible_numbers(pad, str(shared["region"]), doubted),
         ),
+    )
+
+
+def _bare_exceeds(most: float) -> ResultWarning:
+    """Return the doubt about a bare contact that is enough only as a covering of 0.1 mm; the speed it allows in m/s."""
+    return ResultWarning(
+        "bare_exceeds",
+        "speed",
+        "bare_is_enough says that a covering of 0.1 mm keeps the limits: a contact without any is allowed "
+        f"{most:.4g} m/s only",
     )
 
 

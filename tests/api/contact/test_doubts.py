@@ -233,22 +233,26 @@ def margins(places: Any, regions: list[SimpleNamespace], **options: Any) -> cont
     return contact.contact_margins(run, regions=regions, robot_radius=0.2, person_radius=0.1, **given)
 
 
-def test_bare_is_enough_only_where_bare_keeps_the_limits() -> None:
+def test_bare_that_exceeds_the_limits_is_told() -> None:
     stiff = {"law": "rusch", "a": 1e6, "p": 0.1, "b": 1e3, "q": 2.0}
     case: dict[str, Any] = {"robot_mass": 2.0, "body_mass": None, "region": 25e3, "limits": {"force": 20.0}}
     flat = {"material": stiff, "area": 2e-5, "bottom": (0.9, 1e3)}
     bare = contact.allowed_speed(**case)
     slow, fast = (contact.thickness(**case, covering=flat, speed=share * bare.speed) for share in (0.9, 1.05))
     assert (slow.thickness, slow.status, slow.not_checked) == (0.0, "bare_is_enough", ("pressure",))
-    assert (fast.thickness, fast.status) == (1e-4, "found")
-    rigid = contact.thickness(**case | {"region": None}, covering=flat, speed=0.9 * bare.speed)
-    assert rigid.status == "found"
+    assert (fast.thickness, fast.status) == (0.0, "bare_is_enough")
+    rigid = contact.thickness(**case | {"region": None}, covering=flat, speed=0.3 * bare.speed)
+    told = [[warning.message for warning in each.warnings if warning.code == "bare_exceeds"] for each in (fast, rigid)]
+    assert [f"is allowed {most:.4g} m/s" in text for most, [text] in zip((bare.speed, 0.0), told, strict=True)] == [
+        True
+    ] * 2
+    assert "bare_exceeds" not in {warning.code for warning in slow.warnings}
     # The pressure of a bare contact is known with an area only.
     case["limits"] = {"force": 20.0, "pressure": 1e7}
     ball = {"material": stiff, "shape": "sphere", "radius": 0.1, "bottom": (0.9, 1e3)}
-    found = [contact.thickness(**case, covering=pad, speed=0.01) for pad in (flat, ball)]
-    assert [each.status for each in found] == ["bare_is_enough"] * 2
-    assert [each.not_checked for each in found] == [(), ("pressure",)]
+    both = [contact.thickness(**case, covering=pad, speed=0.01) for pad in (flat, ball)]
+    assert [each.status for each in both] == ["bare_is_enough"] * 2
+    assert [each.not_checked for each in both] == [(), ("pressure",)]
 
 
 STANDING = [(2.0, 0.0)] * 4

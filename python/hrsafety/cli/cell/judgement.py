@@ -15,7 +15,7 @@ __all__ = ["FASTEST", "Judged", "common", "governing", "judged_of", "known", "re
 UNCHECKED = frozenset(
     {
         *("rising_at_horizon", "unfinished", "beyond_data", "invalid_numbers", "not_checked"),
-        *("outside_paraboloid", "beyond_pad", "beyond_thickness", "edge"),
+        *("outside_paraboloid", "beyond_pad", "beyond_thickness", "edge", "bare_exceeds"),
     }
 )
 """Warnings with which a limit does not count as kept."""
