@@ -140,8 +140,10 @@ class World(Parameters):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Implausible numbers, and bounds of the robots' shields that people, other robots or measurements exceed."""
-        if self._warnings is None:
+        found = self._warnings
+        if found is None:
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
             of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
-            self._set(_warnings=(*of_numbers(*own, self.time_limit), *of_shields))
-        return self._warnings  # type: ignore[return-value]  # just set
+            found = (*of_numbers(*own, self.time_limit), *of_shields)
+            self._set(_warnings=found)
+        return found
