@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.episode import Episode, Wall
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
@@ -122,56 +121,20 @@ def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) 
     if not moves.any():
         return Between(0, np.inf)
     begin, end = own[:-1][moves], own[1:][moves]
-    ends = np.full((2, len(begin)), np.inf)
-    between = np.full(len(begin), np.inf)
-    for first, last, radius in _edges(episode.walls):
-        ends = np.minimum(ends, [_from_segment(place, first, last) - radius for place in (begin, end)])
-        between = np.minimum(between, _between_segments(begin, end, first, last) - radius)
-    gap = between - episode.robot_radius
-    hidden = (gap < 0.0) & (ends >= episode.robot_radius).all(axis=0)
+    walls = _map_of(episode.walls)
+    at_ends = np.minimum(walls.clearance(begin), walls.clearance(end))
+    gap = np.array([walls.segment_clearance(*way) for way in zip(begin, end, strict=True)]) - episode.robot_radius
+    hidden = (gap < 0.0) & (at_ends >= episode.robot_radius)
     return Between(int(hidden.sum()), float(gap[hidden].min(initial=np.inf)))
 
 
-def _edges(walls: Iterable[Wall]) -> Iterator[tuple[Array, Array, float]]:
-    """Yield ends and radii of the segments that walls are made of, in m."""
-    for wall in walls:
-        if isinstance(wall, Disc):
-            center = np.array(wall.center)
-            yield center, center, wall.radius
-            continue
-        if isinstance(wall, Rectangle):
-            cos, sin = math.cos(wall.heading), math.sin(wall.heading)
-            corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (0.5 * wall.length, 0.5 * wall.width)
-            points = corners @ np.array([(cos, sin), (-sin, cos)]) + wall.center
-        else:
-            points = np.asarray(wall, dtype=np.float64)
-        yield from ((first, last, 0.0) for first, last in itertools.pairwise(points))
-
-
-def _from_segment(places: Array, first: Array, last: Array) -> Array:
-    """Return distances of places (n, 2) from a segment, or of a place from segments (n, 2)."""
-    way = last - first
-    square = (way * way).sum(axis=-1)
-    share = np.clip(((places - first) * way).sum(axis=-1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    away: Array = np.linalg.norm(places - first - share[..., None] * way, axis=-1)
-    return away
-
-
-def _between_segments(begin: Array, end: Array, first: Array, last: Array) -> Array:
-    """Return the distances of segments (n, 2) from another one."""
-
-    def side(one: Array, other: Array, place: Array) -> Array:
-        (x, y), (right, up) = (other - one).T, (place - one).T
-        turn: Array = x * up - y * right
-        return turn
-
-    one, other = np.broadcast_to(first, begin.shape), np.broadcast_to(last, begin.shape)
-    crosses = (side(begin, end, one) * side(begin, end, other) < 0.0) & (
-        side(one, other, begin) * side(one, other, end) < 0.0
-    )
-    ends = [_from_segment(place, first, last) for place in (begin, end)]
-    ends += [_from_segment(place, begin, end) for place in (first, last)]
-    return np.where(crosses, 0.0, np.min(ends, axis=0))
+def _map_of(walls: Sequence[Wall]) -> StaticMap:
+    """Return walls as a map, which knows distances of segments; a line without length is a disc of a nanometer."""
+    solid = [wall for wall in walls if isinstance(wall, Disc | Rectangle)]
+    lines = [np.asarray(wall, dtype=np.float64) for wall in walls if not isinstance(wall, Disc | Rectangle)]
+    dots = [(*line[0], 1e-9) for line in lines if not np.ptp(line, axis=0).any()]
+    drawn = [line for line in lines if np.ptp(line, axis=0).any()]
+    return StaticMap.from_obstacles(solid) + StaticMap.from_polylines(drawn) + StaticMap(discs=dots)
 
 
 def doubts_between(
