@@ -69,6 +69,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let longest = longest_block(&groups);
     let blocks_per_question = (BLOCKS_PER_QUESTION / scene.told.len().max(1)).max(1);
     let mut until_question = blocks_per_question;
+    let thinks = team.first().is_some_and(|member| member.law.thinks());
     let mut first = 0;
     while first < clock.steps && groups.iter().any(|runs| runs.running.any()) {
         let until_sample = clock.steps_per_sample - first % clock.steps_per_sample;
@@ -127,7 +128,7 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
         }
         first += steps;
         until_question -= 1;
-        if L::THINKS || until_question == 0 {
+        if thinks || until_question == 0 {
             until_question = blocks_per_question;
             if interrupted() {
                 return Err(Failure::Interrupted);
@@ -312,13 +313,16 @@ fn record<R: Real, L, C: Recorder<R>>(
 /// State of the robots as the controller knows it.
 #[inline(always)]
 fn observe<R: Real>(runs: &mut Runs<&Scenario, R>, measured: Option<Measured>) -> RobotState<R> {
-    let (present, velocity) = (runs.position, runs.velocity);
-    let past = runs.past.as_ref();
-    let position = past.map_or(present, |past| past.delayed(present));
+    // No closures: they become calls, which pass whole lane groups through memory.
+    let (mut position, velocity) = (runs.position, runs.velocity);
+    if let Some(past) = &runs.past {
+        position = past.delayed(position);
+    }
     let robot = RobotState { position, velocity };
-    measured.map_or(robot, |measured| {
-        measured.of_robot(robot, &mut runs.last_measured)
-    })
+    match measured {
+        Some(measured) => measured.of_robot(robot, &mut runs.last_measured),
+        None => robot,
+    }
 }
 
 #[inline(always)]
