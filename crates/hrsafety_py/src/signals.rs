@@ -19,13 +19,26 @@ pub fn attended<T: Send>(
     mut look: impl FnMut() -> PyResult<()>,
     stop: impl Fn(),
 ) -> PyResult<(T, Option<PyErr>)> {
+    let (mut work, mut result) = (Some(work), None);
+    let mut once = || result = work.take().map(|work| work());
+    let raised = attend(&mut once, &mut look, &stop)?;
+    let result =
+        result.ok_or_else(|| SimulationError::new_err("a worker thread ended unexpectedly"))?;
+    Ok((result, raised))
+}
+
+/// Compiled once, not once for each kind of work: what begins and ends a thread is long.
+fn attend(
+    work: &mut (dyn FnMut() + Send),
+    look: &mut dyn FnMut() -> PyResult<()>,
+    stop: &dyn Fn(),
+) -> PyResult<Option<PyErr>> {
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
         let worker = scope.spawn(move || {
-            let result = work();
+            work();
             // The receiver waits until this has been sent.
             sender.send(()).ok();
-            result
         });
         let mut raised = None;
         while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(LOOK) {
@@ -36,9 +49,9 @@ pub fn attended<T: Send>(
                 }
             }
         }
-        let result = worker
+        worker
             .join()
             .map_err(|_| SimulationError::new_err("a worker thread ended unexpectedly"))?;
-        Ok((result, raised))
+        Ok(raised)
     })
 }

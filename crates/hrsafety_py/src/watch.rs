@@ -1,11 +1,11 @@
 //! Long work of the cores: it is told to stop, and reports how much is done.
 
-use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use numeric::error::Failure;
+use numeric::parallel::{Work, each_run};
 use pyo3::prelude::*;
 
 use crate::errors::CoreError;
@@ -212,34 +212,12 @@ pub fn watched_each<T: Send>(
     items: &[f64],
     work: impl Fn(f64) -> Result<T, Failure> + Sync,
 ) -> PyResult<Vec<T>> {
-    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let next = AtomicUsize::new(0);
     watched(py, Report::none(), |control| {
-        let share = || -> Result<Vec<(usize, T)>, Failure> {
-            let mut done = Vec::new();
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(item) = items.get(index) else {
-                    return Ok(done);
-                };
-                if control.interrupted() {
-                    return Err(Failure::Interrupted);
-                }
-                done.push((index, work(*item)?));
-            }
+        let batch = Work {
+            threads: None,
+            interrupted: &|| control.interrupted(),
+            progress: &|_| (),
         };
-        let shares = std::thread::scope(|scope| {
-            let workers: Vec<_> = (1..cores.min(items.len()))
-                .map(|_| scope.spawn(share))
-                .collect();
-            let own = share();
-            let others = workers
-                .into_iter()
-                .map(|worker| worker.join().unwrap_or(Err(Failure::Interrupted)));
-            others.chain([own]).collect::<Result<Vec<_>, _>>()
-        })?;
-        let mut all: Vec<_> = shares.into_iter().flatten().collect();
-        all.sort_by_key(|(index, _)| *index);
-        Ok::<_, Failure>(all.into_iter().map(|(_, found)| found).collect())
+        each_run(items.len(), batch, |index| work(items[index]))
     })
 }

@@ -36,11 +36,45 @@ pub fn each_run<T: Send>(
     on_threads(work.threads, || {
         let share = count / (BLOCKS_OF_THREAD * team());
         let size = share.clamp(1, MOST_IN_BLOCK);
-        let failure = First::new();
-        let block = |block: usize| -> Result<Vec<T>> {
-            let runs = block * size..count.min((block + 1) * size);
-            let mut found = Vec::with_capacity(runs.len());
-            for index in runs {
+        let found: Vec<Mutex<Vec<T>>> = (0..count.div_ceil(size))
+            .map(|_| Mutex::default())
+            .collect();
+        each_block((count, size), work, &|block, each| {
+            let mut results = Vec::with_capacity(size);
+            each(&mut |index| {
+                results.push(run(index)?);
+                Ok(())
+            })?;
+            // Nobody else takes this lock: a thread that panics ends the whole batch.
+            if let Ok(mut place) = found[block].lock() {
+                *place = results;
+            }
+            Ok(())
+        })?;
+        let found = found.into_iter().map(Mutex::into_inner);
+        Ok(found
+            .flat_map(std::result::Result::unwrap_or_default)
+            .collect())
+    })
+}
+
+/// Does a run by its index.
+type Run<'a> = &'a mut dyn FnMut(usize) -> Result<()>;
+
+/// Does each run of a block.
+type Each<'a> = &'a dyn Fn(Run<'_>) -> Result<()>;
+
+/// Does the runs of every block of a size. Compiled once, not once for each kind of run.
+fn each_block(
+    (count, size): (usize, usize),
+    work: Work<'_>,
+    runs_of: &(dyn Fn(usize, Each<'_>) -> Result<()> + Sync),
+) -> Result<()> {
+    let failure = First::new();
+    let block = |block: usize| {
+        let runs = block * size..count.min((block + 1) * size);
+        runs_of(block, &|run| {
+            for index in runs.clone() {
                 if (work.interrupted)() {
                     return Err(Failure::Interrupted);
                 }
@@ -48,17 +82,16 @@ pub fn each_run<T: Send>(
                 if failure.before(index) {
                     break;
                 }
-                match run(index) {
-                    Ok(result) => found.push(result),
-                    Err(error) => failure.add(index, error),
+                if let Err(error) = run(index) {
+                    failure.add(index, error);
                 }
                 (work.progress)(1);
             }
-            Ok(found)
-        };
-        let all: Vec<Vec<T>> = try_map(count.div_ceil(size), block)?;
-        failure.or(all.into_iter().flatten().collect())
-    })
+            Ok(())
+        })
+    };
+    try_map(count.div_ceil(size), block)?;
+    failure.or(())
 }
 
 /// The failure of the first run by index.

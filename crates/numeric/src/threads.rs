@@ -134,41 +134,38 @@ pub fn on_threads<T: Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> Result<T> + Send,
 ) -> Result<T> {
-    match threads {
-        Some(0) => {
-            let rule = format!("be from 1 to {MOST_THREADS}");
-            Err(Failure::invalid("threads", rule, Given::Count(0)))
-        }
-        Some(1) => {
-            let _alone = Alone::begin();
-            work()
-        }
-        Some(count) => {
-            crate::error::at_most("threads", count, MOST_THREADS)?;
-            installed(threads, work)
-        }
-        None if ALONE.get() || spread() => work(),
-        None => installed(None, work),
-    }
-}
-
-fn installed<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce() -> Result<T> + Send,
-) -> Result<T> {
-    let leased = Leased::take(threads)?;
-    let Some(team) = &leased.0 else { return work() };
     let (mut work, mut result) = (Some(work), None);
-    install(&team.pool, &mut || {
-        result = work.take().map(|work| work());
-    });
+    carry_out(threads, &mut || result = work.take().map(|work| work()))?;
     result.unwrap_or(Err(Failure::Interrupted))
 }
 
-/// Does work on the threads of a pool. Compiled once, not once for each batch, as is [`spread_out`]:
-/// what a pool does with work is long.
-fn install(pool: &rayon::ThreadPool, work: &mut (dyn FnMut() + Send)) {
-    pool.install(work);
+/// Compiled once, not once for each batch, as are [`install`] and [`spread_out`]: what a pool does with
+/// work is long.
+fn carry_out(threads: Option<usize>, work: &mut (dyn FnMut() + Send)) -> Result<()> {
+    match threads {
+        Some(0) => {
+            let rule = format!("be from 1 to {MOST_THREADS}");
+            return Err(Failure::invalid("threads", rule, Given::Count(0)));
+        }
+        Some(1) => {
+            let _alone = Alone::begin();
+            work();
+        }
+        Some(count) => {
+            crate::error::at_most("threads", count, MOST_THREADS)?;
+            install(&Leased::take(threads)?, work);
+        }
+        None if ALONE.get() || spread() => work(),
+        None => install(&Leased::take(None)?, work),
+    }
+    Ok(())
+}
+
+/// Does work on the threads of a pool.
+fn install(leased: &Leased, work: &mut (dyn FnMut() + Send)) {
+    if let Some(team) = &leased.0 {
+        team.pool.install(work);
+    }
 }
 
 /// Does `work(0)`, `work(1)`, ... on the threads that share the work here.
@@ -179,10 +176,15 @@ fn spread_out(count: usize, work: &(dyn Fn(usize) + Sync)) {
 /// Values of `of(0)`, `of(1)`, ... in this order.
 pub fn map<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if spread() {
-        (0..count).into_par_iter().map(of).collect()
+        map_spread_out(count, &of)
     } else {
         (0..count).map(of).collect()
     }
+}
+
+/// Compiled once for each kind of value, as [`spread_out`] is.
+fn map_spread_out<T: Send>(count: usize, of: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+    (0..count).into_par_iter().map(of).collect()
 }
 
 /// Values of `of(0)`, `of(1)`, ... in this order, or one of the errors.
@@ -247,13 +249,22 @@ pub fn each_piece<T: Send>(
     work: impl Fn(usize, &mut [T]) + Sync + Send,
 ) {
     if spread() {
-        let pieces = slice.par_chunks_exact_mut(length).enumerate();
-        pieces.for_each(|(index, piece)| work(index, piece));
+        each_piece_spread_out(slice, length, &work);
     } else {
         for (index, piece) in slice.chunks_exact_mut(length).enumerate() {
             work(index, piece);
         }
     }
+}
+
+/// Compiled once for each kind of value, as [`spread_out`] is.
+fn each_piece_spread_out<T: Send>(
+    slice: &mut [T],
+    length: usize,
+    work: &(dyn Fn(usize, &mut [T]) + Sync),
+) {
+    let pieces = slice.par_chunks_exact_mut(length).enumerate();
+    pieces.for_each(|(index, piece)| work(index, piece));
 }
 
 #[cfg(test)]
