@@ -166,7 +166,7 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     };
     let mut decisions = Vec::new();
     let mut snapshot = Snapshot::default();
-    snapshot.decide(&setting, &mut people, &robots, |_| &model, &mut decisions);
+    snapshot.decide(&setting, &mut people, &robots, &|_| &model, &mut decisions);
     decisions
 }
 

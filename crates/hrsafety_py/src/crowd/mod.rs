@@ -418,7 +418,13 @@ pub fn crowd_decisions<'py>(
     };
     let mut decisions = Vec::new();
     let mut snapshot = Snapshot::default();
-    snapshot.decide(&setting, &mut people, &robots, |_| &model.0, &mut decisions);
+    snapshot.decide(
+        &setting,
+        &mut people,
+        &robots,
+        &|_| &model.0,
+        &mut decisions,
+    );
     for (decision, person) in decisions.iter_mut().zip(&people) {
         if person.is_none() {
             *decision = Vector2::repeat(f64::NAN);

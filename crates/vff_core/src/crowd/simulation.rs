@@ -170,7 +170,7 @@ impl CrowdParts {
             step: part,
         };
         let model_of = |number: usize| &world.models[people[number].model as usize];
-        snapshot.decide(&setting, walkers, &self.bodies, model_of, decisions);
+        snapshot.decide(&setting, walkers, &self.bodies, &model_of, decisions);
         let decided = decisions.iter().zip(&*walkers);
         for (person, (decision, walker)) in people.iter_mut().zip(decided) {
             if let Some(walker) = walker.as_ref().filter(|walker| walker.decides) {

@@ -40,7 +40,8 @@ impl Snapshot {
         setting: &Setting<'_>,
         walkers: &mut [Option<Walker>],
         robots: &[Agent],
-        model_of: impl Fn(usize) -> &'m Model,
+        // Not one copy of all models for each caller.
+        model_of: &dyn Fn(usize) -> &'m Model,
         decisions: &mut Vec<Vector2<f64>>,
     ) {
         self.present.clear();
@@ -74,15 +75,15 @@ impl Snapshot {
 }
 
 /// The decisions of everybody, compiled once for each instruction set; their bits are the same for all.
-struct Job<'a, F> {
+struct Job<'a, 'm> {
     around: &'a Around<'a>,
     walkers: &'a mut [Option<Walker>],
-    model_of: F,
+    model_of: &'a dyn Fn(usize) -> &'m Model,
     decisions: &'a mut [Vector2<f64>],
     room: &'a mut Room,
 }
 
-impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Job<'_, F> {
+impl pulp::NullaryFnOnce for Job<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -102,13 +103,13 @@ impl<'m, F: Fn(usize) -> &'m Model> pulp::NullaryFnOnce for Job<'_, F> {
     }
 }
 
-impl<'m, F: Fn(usize) -> &'m Model> Job<'_, F> {
+impl<'m> Job<'_, 'm> {
     /// The model of everybody, if all have the same one and the world does not repeat itself.
     #[inline(always)]
     fn mutual(&self) -> Option<&'m Model> {
         let people = self.around.neighbors.people;
         let numbers = people.agents().iter().map(|agent| agent.number as usize);
-        let mut models = numbers.map(&self.model_of);
+        let mut models = numbers.map(self.model_of);
         let model = models.next()?;
         let shared = models.all(|other| std::ptr::eq(other, model));
         (shared && people.period == Period::default()).then_some(model)
@@ -217,7 +218,7 @@ mod tests {
                         &setting,
                         &mut walkers.clone(),
                         &robots,
-                        model_of,
+                        &model_of,
                         &mut decisions,
                     );
                     decisions
