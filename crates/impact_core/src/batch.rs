@@ -55,9 +55,8 @@ impl FieldSet {
 pub enum Width {
     /// One.
     One,
-    /// Four, with the instructions that every processor of its family has.
-    Four,
-    /// Eight, or four on a processor that has no instructions for them.
+    /// Eight, or one on a processor that has no instructions for them: another copy of the kernel for
+    /// processors that are rare would be as long as this one.
     Eight,
 }
 
@@ -69,9 +68,8 @@ impl Width {
     pub fn of(lanes: usize) -> Result<Self> {
         match lanes {
             1 => Ok(Self::One),
-            4 => Ok(Self::Four),
             // Sixteen are two times eight: more than eight would not stay in registers.
-            8 | 16 => Ok(Self::Eight),
+            4 | 8 | 16 => Ok(Self::Eight),
             other => {
                 let given = Given::Count(other as u64);
                 Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))

@@ -143,8 +143,6 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
     for (threads, width) in [
         (1, Width::One),
         (2, Width::One),
-        (2, Width::Four),
-        (1, Width::Four),
         (1, Width::Eight),
         (2, Width::Eight),
     ] {

@@ -181,8 +181,8 @@ def metrics_batch(
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
     lanes : int or None
-        Impacts that are solved side by side: 1, 4 (with the instructions that every processor has), 8, or 16 as
-        two times 8; as many as suit the processor when ``None``. Never changes a bit.
+        1 for impacts one after the other, 4, 8 or 16 for groups of eight side by side, where the processor has
+        vectors for them (AVX2 or NEON); what suits the processor when ``None``. Never changes a bit.
     progress : callable or None
         Called now and then as ``progress(done, total)`` with numbers of impacts, and at the end.
 

@@ -7,7 +7,7 @@ use crate::fast::apart::apart;
 use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, Side, Walk, Workspace, one_row};
 use crate::metrics::{FREE_HORIZON, Metrics, Status};
 use numeric::lanes::{Lanes, Mask, Real};
-use pulp::{Scalar, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 /// Fills a block.
 pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Block<'_>) {
@@ -18,8 +18,7 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
         return;
     }
     let processor = match options.width {
-        Some(Width::One) => return by_width::<_, f64>(Scalar, columns, options, block),
-        Some(Width::Four) => pulp::Arch::Scalar,
+        Some(Width::One) => pulp::Arch::Scalar,
         Some(Width::Eight) | None => pulp::Arch::new(),
     };
     processor.dispatch(SideBySide {
@@ -48,8 +47,9 @@ impl WithSimd for SideBySide<'_, '_> {
             block,
         } = self;
         // A number of every row takes two vectors of the processor; with more, registers run out.
+        // Without vectors there are no lanes.
         if S::IS_SCALAR {
-            by_width::<_, Lanes<4>>(simd, columns, options, block);
+            by_width::<_, f64>(simd, columns, options, block);
         } else {
             by_width::<_, Lanes<8>>(simd, columns, options, block);
         }
