@@ -133,7 +133,9 @@ impl AtWork {
 }
 
 impl<R: Real> Law<R> for AtWork {
-    const THINKS: bool = true;
+    fn thinks(&self) -> bool {
+        true
+    }
 
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut force = Vector2::<R>::zeros();

@@ -139,7 +139,9 @@ impl<R: Real> Command<R> {
 /// A law for robots side by side; it may remember what it needs between two samples.
 pub trait Law<R: Real, B: Wide<R> = f64> {
     /// Whether a command takes so long that the caller is asked at each of them whether to stop.
-    const THINKS: bool = false;
+    fn thinks(&self) -> bool {
+        false
+    }
 
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R>;

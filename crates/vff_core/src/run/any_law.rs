@@ -12,12 +12,12 @@ use crate::run::Interrupted;
 use crate::run::group::{Group, Keep, SceneGroup};
 use crate::run::options::Options;
 use crate::run::outcome::RunSummary;
-use crate::run::plan::{Plan, Width};
+use crate::run::plan::{Plan, Vectors, Width};
 use crate::run::record::{DescentCounter, Trajectory, TrajectoryRecorder};
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;
 use crate::world::map::StaticMap;
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A law of any kind up to its gains.
 ///
@@ -87,6 +87,10 @@ impl AnyLaw {
 
 /// A law of any kind at work on one robot.
 pub(crate) trait Steering: Send {
+    /// Whether a command takes so long that the caller is asked at each of them whether to stop.
+    fn thinks(&self) -> bool;
+    /// Distance in m beyond which an obstacle changes no command.
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64;
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
     /// Heads for another goal from now on, in m.
@@ -98,6 +102,14 @@ pub(crate) trait Steering: Send {
 }
 
 impl<L: Law<f64> + Send> Steering for L {
+    fn thinks(&self) -> bool {
+        Law::thinks(self)
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        Law::felt_within(self, obstacle)
+    }
+
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         Law::command(self, situation)
     }
@@ -112,6 +124,36 @@ impl<L: Law<f64> + Send> Steering for L {
 
     fn trace(&self) -> Option<Trace> {
         Law::trace(self)
+    }
+}
+
+/// A law behind a pointer, for the loop of runs one after the other, which is compiled once and not
+/// once for each law.
+pub(crate) struct BoxedLaw(pub Box<dyn Steering>);
+
+impl Law<f64> for BoxedLaw {
+    fn thinks(&self) -> bool {
+        self.0.thinks()
+    }
+
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        self.0.command(situation)
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        self.0.felt_within(obstacle)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.0.aim(goal);
+    }
+
+    fn turning(&mut self, ordered: Twist, since: f64) {
+        self.0.turning(ordered, since);
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        self.0.trace()
     }
 }
 
@@ -132,8 +174,6 @@ pub(crate) trait ErasedLaw: Send + Sync {
     fn most_obstacles(&self) -> usize;
     /// Runs scenes that agree in robot and rules, and hands every run over.
     fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()>;
-    /// What it asks for at first, with its own gains.
-    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>>;
     /// Every force term with its own gains; `None` for laws that are no sum of terms.
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
     /// Whether it chooses a velocity, and so knows no regions.
@@ -155,13 +195,42 @@ pub(crate) trait ErasedLaw: Send + Sync {
         scenario: &Scenario,
         record: bool,
     ) -> Result<Box<dyn Steering>>;
+}
+
+impl dyn ErasedLaw + '_ {
+    /// What it asks for at first, with its own gains.
+    pub fn command(
+        &self,
+        scenario: &Scenario,
+        situation: &Situation<'_, f64>,
+    ) -> Result<Command<f64>> {
+        let mut law = self.steering_with(&self.gains(), scenario, false)?;
+        Ok(law.command(situation))
+    }
+
     /// One run with its own gains and everything recorded.
-    fn record(
+    pub fn record(
         &self,
         scenario: &Scenario,
         options: &Options,
         interrupted: Interrupted<'_>,
-    ) -> Result<(RunSummary, Trajectory)>;
+    ) -> Result<(RunSummary, Trajectory)> {
+        let mut team = [Member {
+            law: BoxedLaw(self.steering(scenario)?),
+            recorder: TrajectoryRecorder::keeping(options.kept, scenario),
+        }];
+        let mut summary = None;
+        run_team(
+            scenario,
+            (&mut team, false),
+            (&Plan::single(*options), &Maps::of_law(scenario, self.map())),
+            interrupted,
+            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
+        )?;
+        let [member] = team;
+        let summary = summary.ok_or(Failure::Interrupted)?;
+        Ok((summary, member.recorder.finish()))
+    }
 }
 
 /// A law and the kernels that are compiled for it.
@@ -173,8 +242,19 @@ pub(crate) trait Kernels<F: LawFamily>: 'static {
     const SCENES: bool = false;
     /// Most obstacles of a scene beside others: one by itself leaves those that are far away alone.
     const MOST_OBSTACLES: usize = usize::MAX;
-    /// Runs gain sets in the kernel that suits the plan.
-    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
+    /// Whether there is one for gain sets side by side.
+    const LANES: bool = false;
+    /// Whether the law has a Lyapunov function, whose descent is counted.
+    const LYAPUNOV: bool = false;
+    /// Runs gain sets side by side, if there is such a kernel.
+    fn run_lanes(
+        _law: &F,
+        _group: &Group<'_>,
+        _lanes: (Vectors, Width),
+        _keep: Keep<'_>,
+    ) -> Result<()> {
+        Ok(())
+    }
     /// Runs scenes side by side, if there is such a kernel.
     fn run_scenes(_law: &F, _group: &SceneGroup<'_>, _keep: Keep<'_>) -> Result<()> {
         Ok(())
@@ -189,22 +269,28 @@ where
     F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
 {
     const SCENES: bool = true;
+    const LANES: bool = true;
+    const LYAPUNOV: bool = true;
 
     fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.dispatch(law, keep)
+        group.side_by_side(law, keep)
     }
 
-    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+    fn run_lanes(
+        law: &F,
+        group: &Group<'_>,
+        (vectors, width): (Vectors, Width),
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        type Counter = DescentCounter<Lanes<8>>;
         // One job for each kind of run: in one body an unoptimized build would need more stack
         // than a thread has.
-        match (group.plan.width, group.plan.descent) {
-            (Width::One, false) => group.dispatch::<F, f64, (), false>(law, keep),
-            (Width::One, true) => group.dispatch::<F, f64, DescentCounter<f64>, true>(law, keep),
-            (Width::Four, false) => group.dispatch::<F, Lanes<4>, (), false>(law, keep),
-            (Width::Eight | Width::Sixteen, false) => {
-                group.dispatch::<F, Lanes<8>, (), false>(law, keep)
+        match (width, group.plan.descent) {
+            (Width::Four, false) => {
+                group.side_by_side::<F, Lanes<4>, (), false>(vectors, law, keep)
             }
-            (_, true) => group.dispatch::<F, Lanes<8>, DescentCounter<Lanes<8>>, true>(law, keep),
+            (_, false) => group.side_by_side::<F, Lanes<8>, (), false>(vectors, law, keep),
+            (_, true) => group.side_by_side::<F, Lanes<8>, Counter, true>(vectors, law, keep),
         }
     }
 }
@@ -217,16 +303,19 @@ where
     F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
 {
     const SCENES: bool = true;
+    const LANES: bool = true;
 
     fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.dispatch(law, keep)
+        group.side_by_side(law, keep)
     }
 
-    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
-        match group.plan.width {
-            Width::One => group.dispatch::<F, f64, (), false>(law, keep),
-            _ => group.dispatch::<F, Lanes<8>, (), false>(law, keep),
-        }
+    fn run_lanes(
+        law: &F,
+        group: &Group<'_>,
+        (vectors, _): (Vectors, Width),
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        group.side_by_side::<F, Lanes<8>, (), false>(vectors, law, keep)
     }
 }
 
@@ -241,22 +330,14 @@ where
     const MOST_OBSTACLES: usize = 32;
 
     fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.dispatch(law, keep)
-    }
-
-    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
-        group.dispatch::<F, f64, (), false>(law, keep)
+        group.side_by_side(law, keep)
     }
 }
 
 /// One after the other, for laws that think longer than a robot moves.
 pub(crate) struct One;
 
-impl<F: LawFamily> Kernels<F> for One {
-    fn run(law: &F, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
-        group.dispatch::<F, f64, (), false>(law, keep)
-    }
-}
+impl<F: LawFamily> Kernels<F> for One {}
 
 impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
     fn gain_names(&self) -> &'static [&'static str] {
@@ -288,7 +369,13 @@ impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
             plan: &plan,
             ..*group
         };
-        K::run(&self.0, group, keep)
+        match plan.lanes().filter(|_| K::LANES) {
+            Some(lanes) => K::run_lanes(&self.0, group, lanes, keep),
+            None if plan.descent && K::LYAPUNOV => {
+                group.one_by_one::<DescentCounter<f64>>(self, true, keep)
+            }
+            None => group.one_by_one::<()>(self, false, keep),
+        }
     }
 
     fn takes_scenes(&self) -> bool {
@@ -304,11 +391,6 @@ impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
             return Err(Failure::Interrupted);
         }
         K::run_scenes(&self.0, group, keep)
-    }
-
-    fn command(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Result<Command<f64>> {
-        let mut law = self.0.with_gains::<f64, false>(&self.0.gains(), scenario)?;
-        Ok(Law::command(&mut law, situation))
     }
 
     fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
@@ -342,31 +424,5 @@ impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
         } else {
             Box::new(self.0.with_gains::<f64, false>(gains, scenario)?)
         })
-    }
-
-    fn record(
-        &self,
-        scenario: &Scenario,
-        options: &Options,
-        interrupted: Interrupted<'_>,
-    ) -> Result<(RunSummary, Trajectory)> {
-        let mut team = [Member {
-            law: self.0.with_gains::<f64, true>(&self.0.gains(), scenario)?,
-            recorder: TrajectoryRecorder::keeping(options.kept, scenario),
-        }];
-        let mut summary = None;
-        run_team(
-            scenario,
-            (&mut team, false),
-            (
-                &Plan::single(*options),
-                &Maps::of_law(scenario, self.0.map()),
-            ),
-            interrupted,
-            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
-        )?;
-        let [member] = team;
-        let summary = summary.ok_or(Failure::Interrupted)?;
-        Ok((summary, member.recorder.finish()))
     }
 }

@@ -2,16 +2,20 @@
 
 use std::marker::PhantomData;
 
+use pulp::Simd;
+
 use crate::error::Result;
 use crate::lanes::{Lanes, Real};
-use crate::laws::{LawFamily, SceneLaw};
+use crate::laws::{Law, LawFamily, SceneLaw};
 use crate::run::Interrupted;
+use crate::run::any_law::{BoxedLaw, ErasedLaw};
 use crate::run::lane_rollout::run_scenes;
 use crate::run::outcome::RunTotals;
-use crate::run::plan::{Instructions, MAX_GAINS, Plan, key_of};
+use crate::run::plan::{MAX_GAINS, Plan, Vectors, key_of};
 use crate::run::record::Recorder;
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;
+use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
 /// Receives each run: its index, its totals, and its least distance to an obstacle.
@@ -27,21 +31,87 @@ pub(crate) struct Group<'a> {
 }
 
 impl Group<'_> {
-    pub fn dispatch<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool>(
+    /// Runs gain sets side by side.
+    pub fn side_by_side<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool>(
         &self,
+        vectors: Vectors,
         law: &F,
         keep: Keep<'_>,
     ) -> Result<()> {
-        let processor = match self.plan.instructions {
-            Instructions::Widest => pulp::Arch::new(),
-            Instructions::Baseline => pulp::Arch::Scalar,
+        Simd::vectorize(
+            vectors,
+            Job::<F, Kind<R, C, RECORD>> {
+                group: self,
+                law,
+                keep,
+                kind: PhantomData,
+            },
+        )
+    }
+
+    /// Runs gain sets one after the other. `record`: the Lyapunov function is wanted too.
+    pub fn one_by_one<C: Recorder<f64> + Default>(
+        &self,
+        law: &dyn ErasedLaw,
+        record: bool,
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        let dimension = law.gain_names().len();
+        let mut team = Vec::with_capacity(self.points.len() / dimension);
+        for gains in self.points.chunks_exact(dimension) {
+            team.push(Member {
+                law: BoxedLaw(law.steering_with(gains, self.scenario, record)?),
+                recorder: C::default(),
+            });
+        }
+        let known = Known {
+            dimension,
+            free_gains: law.free_gains(),
+            map: law.map(),
         };
-        processor.dispatch(Job::<F, Kind<R, C, RECORD>> {
-            group: self,
-            law,
-            keep,
-            kind: PhantomData,
-        })
+        self.run(&mut team, &known, keep)
+    }
+
+    #[inline(always)]
+    fn run<R: Real, L: Law<R>, C: Recorder<R>>(
+        &self,
+        team: &mut [Member<L, C>],
+        law: &Known<'_>,
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        let count = self.points.len() / law.dimension;
+        let led = self.plan.shortcuts && law.shares_free_gains(self.points);
+        run_team(
+            self.scenario,
+            (team, led),
+            (self.plan, &Maps::of_law(self.scenario, law.map)),
+            self.interrupted,
+            |index, runs, lane, recorder| {
+                if index < count {
+                    let totals = runs.totals(lane, recorder);
+                    keep(index, &totals, &|obstacle| {
+                        runs.min_distance(obstacle, lane)
+                    });
+                }
+            },
+        )
+    }
+}
+
+/// What runs in a scenario need to know of a law up to its gains.
+struct Known<'a> {
+    dimension: usize,
+    free_gains: &'a [usize],
+    map: Option<&'a StaticMap>,
+}
+
+impl Known<'_> {
+    /// Whether gain sets differ only in gains that act near obstacles.
+    fn shares_free_gains(&self, points: &[f64]) -> bool {
+        let key = |set: &[f64]| key_of(self.free_gains, set);
+        let mut sets = points.chunks_exact(self.dimension);
+        let first = sets.next().map(key);
+        sets.all(|set| Some(key(set)) == first)
     }
 }
 
@@ -52,23 +122,24 @@ pub(crate) struct SceneGroup<'a> {
     /// The gain set.
     pub gains: &'a [f64],
     pub plan: &'a Plan,
+    pub vectors: Vectors,
     pub interrupted: Interrupted<'a>,
 }
 
 impl SceneGroup<'_> {
-    pub fn dispatch<F: LawFamily>(&self, law: &F, keep: Keep<'_>) -> Result<()>
+    /// Runs scenes side by side.
+    pub fn side_by_side<F: LawFamily>(&self, law: &F, keep: Keep<'_>) -> Result<()>
     where
         F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
     {
-        let processor = match self.plan.instructions {
-            Instructions::Widest => pulp::Arch::new(),
-            Instructions::Baseline => pulp::Arch::Scalar,
-        };
-        processor.dispatch(SceneJob {
-            group: self,
-            law,
-            keep,
-        })
+        Simd::vectorize(
+            self.vectors,
+            SceneJob {
+                group: self,
+                law,
+                keep,
+            },
+        )
     }
 }
 
@@ -127,16 +198,7 @@ fn law_of<F: LawFamily, R: Real, const RECORD: bool>(
     law.with_gains(&gains[..dimension], scenario)
 }
 
-/// Whether gain sets differ only in gains that act near obstacles.
-fn shares_free_gains<F: LawFamily>(law: &F, points: &[f64]) -> bool {
-    let mut sets = points.chunks_exact(LawFamily::gain_names(law).len());
-    let key = |set: &[f64]| key_of(LawFamily::free_gains(law), set);
-    let first = sets.next().map(key);
-    sets.all(|set| Some(key(set)) == first)
-}
-
-/// A task that is compiled once for each instruction set; the widest one that the processor has
-/// is chosen at run time. The arithmetic is the same, bit for bit.
+/// Gain sets of a task side by side. The arithmetic is the same as of one by itself, bit for bit.
 struct Job<'a, 'b, 'c, F, K> {
     group: &'a Group<'b>,
     law: &'a F,
@@ -156,32 +218,20 @@ impl<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::
     fn call(self) -> Self::Output {
         let group = self.group;
         let dimension = LawFamily::gain_names(self.law).len();
-        let member = |sets: &[f64]| -> Result<_> {
-            Ok(Member {
+        let sets = group.points.chunks(R::WIDTH * dimension);
+        // No `collect`: laws of eight lanes are long to move.
+        let mut team = Vec::with_capacity(sets.len());
+        for sets in sets {
+            team.push(Member {
                 law: law_of::<F, R, RECORD>(self.law, sets, group.scenario)?,
                 recorder: C::default(),
-            })
+            });
+        }
+        let known = Known {
+            dimension,
+            free_gains: LawFamily::free_gains(self.law),
+            map: self.law.map(),
         };
-        let mut team: Vec<_> = group
-            .points
-            .chunks(R::WIDTH * dimension)
-            .map(member)
-            .collect::<Result<_>>()?;
-        let count = group.points.len() / dimension;
-        let led = group.plan.shortcuts && shares_free_gains(self.law, group.points);
-        run_team(
-            group.scenario,
-            (&mut team, led),
-            (group.plan, &Maps::of_law(group.scenario, self.law.map())),
-            group.interrupted,
-            |index, runs, lane, recorder| {
-                if index < count {
-                    let totals = runs.totals(lane, recorder);
-                    (self.keep)(index, &totals, &|obstacle| {
-                        runs.min_distance(obstacle, lane)
-                    });
-                }
-            },
-        )
+        group.run(&mut team, &known, self.keep)
     }
 }

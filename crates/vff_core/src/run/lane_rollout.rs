@@ -81,7 +81,7 @@ pub(crate) fn run_scenes<R: Real + Wide<R>, L: SceneLaw<R>>(
                 .period(law, options, Stop(interrupted))
                 .map_err(|error| error.of_run(|lane| relay.index[lane].unwrap_or(0)))?;
             until_question -= 1;
-            if L::THINKS || until_question == 0 {
+            if law.thinks() || until_question == 0 {
                 until_question = periods_per_question;
                 if interrupted() {
                     return Err(Failure::Interrupted);

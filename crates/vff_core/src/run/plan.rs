@@ -65,6 +65,25 @@ pub enum Instructions {
     Baseline,
 }
 
+/// Vectors with which lanes pay. What a processor of x86 has without them would make another copy of
+/// every kernel for machines that are rare: there gain sets and scenes run one after the other, with
+/// the same bits.
+#[cfg(target_arch = "x86_64")]
+pub(crate) type Vectors = pulp::x86::V3;
+/// The baseline of other families has them.
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) type Vectors = pulp::Scalar;
+
+impl Instructions {
+    /// Vectors for lanes, where they may be used.
+    pub(crate) fn vectors(self) -> Option<Vectors> {
+        #[cfg(target_arch = "x86_64")]
+        return (self == Self::Widest).then(Vectors::try_new).flatten();
+        #[cfg(not(target_arch = "x86_64"))]
+        return Some(pulp::Scalar);
+    }
+}
+
 /// Most gains of a law.
 pub(crate) const MAX_GAINS: usize = 8;
 
@@ -101,6 +120,12 @@ impl Plan {
             descent: false,
             shortcuts: false,
         }
+    }
+
+    /// How many gain sets are stepped side by side, and with which vectors; nothing for one after the other.
+    pub fn lanes(&self) -> Option<(Vectors, Width)> {
+        let vectors = self.instructions.vectors()?;
+        (self.width != Width::One).then_some((vectors, self.width))
     }
 
     /// Number of gain sets of a task.

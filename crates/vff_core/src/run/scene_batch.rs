@@ -139,13 +139,15 @@ impl SceneBatch<'_> {
         (scenarios, task): (&[Scenario], &Task),
         keep: Keep<'_>,
     ) -> Result<()> {
-        if task.side_by_side {
+        let vectors = self.plan.instructions.vectors();
+        if let Some(vectors) = vectors.filter(|_| task.side_by_side) {
             let scenes: Vec<&Scenario> =
                 task.scenes.iter().map(|scene| &scenarios[*scene]).collect();
             let group = SceneGroup {
                 scenes: &scenes,
                 gains,
                 plan: self.plan,
+                vectors,
                 interrupted: self.interrupted,
             };
             return self.law.run_scenes(&group, keep);

@@ -44,7 +44,9 @@ pub struct LanePlanners<P> {
 }
 
 impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
-    const THINKS: bool = true;
+    fn thinks(&self) -> bool {
+        true
+    }
 
     #[inline]
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {

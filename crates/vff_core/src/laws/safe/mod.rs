@@ -26,7 +26,9 @@ use crate::world::scenario::Scenario;
 pub struct SafeLanes(Vec<SafeLaw>);
 
 impl<R: Real> Law<R> for SafeLanes {
-    const THINKS: bool = true;
+    fn thinks(&self) -> bool {
+        true
+    }
 
     fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let mut force = Vector2::<R>::zeros();
