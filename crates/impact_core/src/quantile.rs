@@ -130,7 +130,7 @@ mod tests {
                     .collect();
                 let shares = [0.0, 0.05, 0.5, 0.95, 1.0];
                 let found = quantiles(&values, shares, &|| false).unwrap();
-                values.sort_by(f64::total_cmp);
+                numeric::order::sort_ascending(&mut values);
                 for (share, found) in shares.into_iter().zip(found) {
                     let place = share * f64::from(count - 1);
                     // Of an index.

@@ -7,6 +7,7 @@ pub mod angle;
 pub mod elementary;
 pub mod error;
 pub mod lanes;
+pub mod order;
 pub mod parallel;
 pub mod pcg64;
 pub mod random;

@@ -33,6 +33,15 @@ pub fn each_run<T: Send>(
     work: Work<'_>,
     run: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
+    results_of(count, work, &run)
+}
+
+/// Compiled once for each kind of result, not once for each kind of run.
+fn results_of<T: Send>(
+    count: usize,
+    work: Work<'_>,
+    run: &(dyn Fn(usize) -> Result<T> + Sync),
+) -> Result<Vec<T>> {
     on_threads(work.threads, || {
         let share = count / (BLOCKS_OF_THREAD * team());
         let size = share.clamp(1, MOST_IN_BLOCK);
@@ -64,7 +73,7 @@ type Run<'a> = &'a mut dyn FnMut(usize) -> Result<()>;
 /// Does each run of a block.
 type Each<'a> = &'a dyn Fn(Run<'_>) -> Result<()>;
 
-/// Does the runs of every block of a size. Compiled once, not once for each kind of run.
+/// Does the runs of every block of a size.
 fn each_block(
     (count, size): (usize, usize),
     work: Work<'_>,

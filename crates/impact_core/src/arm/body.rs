@@ -68,7 +68,7 @@ impl Body {
     #[must_use]
     pub fn principal_moments(&self) -> [f64; 3] {
         let mut found: [f64; 3] = SymmetricEigen::new(self.inertia).eigenvalues.into();
-        found.sort_by(f64::total_cmp);
+        numeric::order::sort_ascending(&mut found);
         found
     }
 

@@ -136,31 +136,16 @@ impl Segment {
     }
 }
 
-/// Calls with the size of the mass matrix, which is known when the program is compiled.
+/// Calls with a size that the mass matrix fits into, known when the program is compiled. Few of them:
+/// columns without a joint cost less than another copy of everything that looks at a pose.
 macro_rules! sized {
     ($arm:expr, $size:ident => $call:expr) => {
         match $arm.free {
-            0..=1 => {
-                const $size: usize = 1;
-                $call
-            }
-            2 => {
-                const $size: usize = 2;
-                $call
-            }
-            3 => {
-                const $size: usize = 3;
-                $call
-            }
-            4 => {
+            0..=4 => {
                 const $size: usize = 4;
                 $call
             }
-            5 => {
-                const $size: usize = 5;
-                $call
-            }
-            6 => {
+            5..=6 => {
                 const $size: usize = 6;
                 $call
             }
@@ -168,11 +153,7 @@ macro_rules! sized {
                 const $size: usize = 7;
                 $call
             }
-            8 => {
-                const $size: usize = 8;
-                $call
-            }
-            9..=16 => {
+            8..=16 => {
                 const $size: usize = 16;
                 $call
             }

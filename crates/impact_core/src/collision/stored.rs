@@ -166,7 +166,7 @@ impl Column<'_> {
         let early = FIRST_MARK[0] * largest..=FIRST_MARK[1] * largest;
         if !marks.first().is_some_and(|kink| early.contains(kink)) {
             marks.push(0.5 * largest);
-            marks.sort_by(f64::total_cmp);
+            numeric::order::sort_ascending(&mut marks);
         }
         marks.push(largest);
         let goal = (size, tolerance);

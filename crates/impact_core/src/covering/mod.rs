@@ -345,7 +345,7 @@ impl Pad {
         if self.bottom.is_finite() {
             all.push(self.bottom);
         }
-        all.sort_by(f64::total_cmp);
+        numeric::order::sort_ascending(&mut all);
         all
     }
 

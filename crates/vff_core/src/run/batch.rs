@@ -8,7 +8,7 @@ use crate::run::any_law::AnyLaw;
 use crate::run::group::Group;
 use crate::run::metrics::{Weights, score};
 use crate::run::nominal::{NominalRuns, Ways};
-use crate::run::options::{Integrator, Options};
+use crate::run::options::Options;
 use crate::run::plan::{Instructions, Plan, Width};
 use crate::run::scene_batch::SceneBatch;
 use crate::run::table::{BatchTable, Cell, Strip};
@@ -145,7 +145,7 @@ impl Batch<'_> {
     /// Whether scenes fill the lanes better than gain sets do.
     fn scenes_suit(&self, sets: usize) -> bool {
         let options = &self.options;
-        let held = options.run.hold || options.run.integrator != Integrator::Rk4;
+        let held = !options.run.is_staged();
         let asked = options.width.is_none_or(|width| width != Width::One);
         let many = sets < FULL_LANES && self.scenarios.len() >= FEWEST_SCENES;
         let law = self.law.erased();

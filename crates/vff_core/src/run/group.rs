@@ -38,15 +38,29 @@ impl Group<'_> {
         law: &F,
         keep: Keep<'_>,
     ) -> Result<()> {
-        Simd::vectorize(
-            vectors,
-            Job::<F, Kind<R, C, RECORD>> {
-                group: self,
-                law,
-                keep,
-                kind: PhantomData,
-            },
-        )
+        let known = Known {
+            dimension: law.gain_names().len(),
+            free_gains: law.free_gains(),
+            map: law.map(),
+        };
+        let sets = self.points.chunks(R::WIDTH * known.dimension);
+        // No `collect`: laws of eight lanes are long to move.
+        let mut team = Vec::with_capacity(sets.len());
+        for sets in sets {
+            team.push(Member {
+                law: law_of::<F, R, RECORD>(law, sets, self.scenario)?,
+                recorder: C::default(),
+            });
+        }
+        // A job knows no family: families with the same law share its code.
+        let job = Job {
+            group: self,
+            team: &mut team,
+            law: &known,
+            keep,
+            width: PhantomData,
+        };
+        Simd::vectorize(vectors, job)
     }
 
     /// Runs gain sets one after the other. `record`: the Lyapunov function is wanted too.
@@ -132,44 +146,36 @@ impl SceneGroup<'_> {
     where
         F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
     {
-        Simd::vectorize(
-            self.vectors,
-            SceneJob {
-                group: self,
-                law,
-                keep,
-            },
-        )
+        let count = |scene: &&&Scenario| scene.obstacle_count();
+        let Some(fullest) = self.scenes.iter().max_by_key(count) else {
+            return Ok(());
+        };
+        let mut law = law_of::<F, Lanes<8>, false>(law, self.gains, fullest)?;
+        let job = SceneJob {
+            group: self,
+            law: &mut law,
+            keep,
+        };
+        Simd::vectorize(self.vectors, job)
     }
 }
 
 /// As [`Job`], for scenes side by side.
-struct SceneJob<'a, 'b, 'c, F> {
+struct SceneJob<'a, 'b, 'c, L> {
     group: &'a SceneGroup<'b>,
-    law: &'a F,
+    law: &'a mut L,
     keep: Keep<'c>,
 }
 
-impl<F: LawFamily> pulp::NullaryFnOnce for SceneJob<'_, '_, '_, F>
-where
-    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
-{
+impl<L: SceneLaw<Lanes<8>>> pulp::NullaryFnOnce for SceneJob<'_, '_, '_, L> {
     type Output = Result<()>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
         let group = self.group;
-        let fullest = group
-            .scenes
-            .iter()
-            .max_by_key(|scene| scene.obstacle_count());
-        let Some(fullest) = fullest else {
-            return Ok(());
-        };
-        let mut law = law_of::<F, Lanes<8>, false>(self.law, group.gains, fullest)?;
         run_scenes(
             group.scenes,
-            &mut law,
+            self.law,
             &group.plan.run,
             group.interrupted,
             |index, runs, lane| {
@@ -199,39 +205,19 @@ fn law_of<F: LawFamily, R: Real, const RECORD: bool>(
 }
 
 /// Gain sets of a task side by side. The arithmetic is the same as of one by itself, bit for bit.
-struct Job<'a, 'b, 'c, F, K> {
+struct Job<'a, 'b, 'c, R, L, C> {
     group: &'a Group<'b>,
-    law: &'a F,
+    team: &'a mut [Member<L, C>],
+    law: &'a Known<'a>,
     keep: Keep<'c>,
-    kind: PhantomData<K>,
+    width: PhantomData<R>,
 }
 
-/// Width, recorder, and whether the Lyapunov function is wanted.
-struct Kind<R, C, const RECORD: bool>(PhantomData<(R, C)>);
-
-impl<F: LawFamily, R: Real, C: Recorder<R> + Default, const RECORD: bool> pulp::NullaryFnOnce
-    for Job<'_, '_, '_, F, Kind<R, C, RECORD>>
-{
+impl<R: Real, L: Law<R>, C: Recorder<R>> pulp::NullaryFnOnce for Job<'_, '_, '_, R, L, C> {
     type Output = Result<()>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let group = self.group;
-        let dimension = LawFamily::gain_names(self.law).len();
-        let sets = group.points.chunks(R::WIDTH * dimension);
-        // No `collect`: laws of eight lanes are long to move.
-        let mut team = Vec::with_capacity(sets.len());
-        for sets in sets {
-            team.push(Member {
-                law: law_of::<F, R, RECORD>(self.law, sets, group.scenario)?,
-                recorder: C::default(),
-            });
-        }
-        let known = Known {
-            dimension,
-            free_gains: LawFamily::free_gains(self.law),
-            map: self.law.map(),
-        };
-        group.run(&mut team, &known, self.keep)
+        self.group.run(self.team, self.law, self.keep)
     }
 }

@@ -125,6 +125,11 @@ impl Clock {
 }
 
 impl Options {
+    /// Whether the law is asked at every stage of a motion step.
+    pub(crate) fn is_staged(&self) -> bool {
+        self.integrator == Integrator::Rk4 && !self.hold
+    }
+
     /// Steps for a scenario.
     pub(crate) fn clock(&self, scenario: &Scenario) -> Result<Clock> {
         let step = positive("step", self.step)?;

@@ -122,10 +122,12 @@ impl Plan {
         }
     }
 
-    /// How many gain sets are stepped side by side, and with which vectors; nothing for one after the other.
+    /// How many gain sets are stepped side by side, and with which vectors; nothing for one after the
+    /// other, as where every stage of a step asks the law, which lanes make little faster.
     pub fn lanes(&self) -> Option<(Vectors, Width)> {
         let vectors = self.instructions.vectors()?;
-        (self.width != Width::One).then_some((vectors, self.width))
+        let alone = self.width == Width::One || self.run.is_staged();
+        (!alone).then_some((vectors, self.width))
     }
 
     /// Number of gain sets of a task.

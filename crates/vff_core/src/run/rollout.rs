@@ -46,7 +46,8 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
 ) -> Result<()> {
     let options = &plan.run;
     let clock = options.clock(scenario)?;
-    let staged = options.integrator == Integrator::Rk4 && !options.hold;
+    let staged = options.is_staged();
+    debug_assert!(R::WIDTH == 1 || !staged, "stages have no lanes");
     let mut sensor = SampledScene::new(scenario);
     let mut seen = bodies_at(scenario, 0.0);
     let mut groups: Vec<Runs<&Scenario, R>> = Vec::with_capacity(team.len());
@@ -274,7 +275,8 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
         let before = runs.position;
         match options.integrator {
             Integrator::SemiImplicitEuler => semi_implicit_euler(runs),
-            Integrator::Rk4 if options.hold => rk4_held(runs),
+            // Lanes are for held forces; without lanes this law is not compiled a second time.
+            Integrator::Rk4 if options.hold || R::WIDTH > 1 => rk4_held(runs),
             Integrator::Rk4 => rk4(runs, &mut member.law, block, time),
         }
         let later = clock.time(block.first + step + 1);

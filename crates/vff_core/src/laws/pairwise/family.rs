@@ -1,16 +1,17 @@
 //! The compared laws up to their gains.
 
 use crate::error::{Result, not_negative};
-use crate::lanes::Real;
-use crate::laws::pairwise::{PairwiseField, PairwiseLaw};
+use crate::lanes::{Real, Vector2, Wide};
+use crate::laws::pairwise::{Neighbor, PairwiseField, PairwiseLaw, Push};
 use crate::laws::{BorensteinKoren, GeCui, Khatib, Masoud};
 use crate::laws::{FieldTerms, LawFamily, Situation};
+use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// A field with its gains, by which it is known to a search.
 pub trait PairwiseFamily: Copy + Sync {
     /// The field for gain sets side by side.
-    type Field<R: Real>: PairwiseField<R> + Send + 'static;
+    type Field<R: Real>: PairwiseField<R> + Into<AnyField<R>>;
     /// Words for the gains, in their order.
     const GAIN_NAMES: &'static [&'static str];
     /// Gains that act on a robot without obstacles, ascending.
@@ -25,8 +26,52 @@ pub trait PairwiseFamily: Copy + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct Pairwise<F>(pub F);
 
+/// The fields, and one that is any of them: the time loop is compiled for it, once for all fields.
+macro_rules! any_field {
+    ($($field:ident),+) => {
+        /// Any of the fields.
+        #[derive(Clone, Copy, Debug)]
+        pub enum AnyField<R> {
+            $(#[doc = concat!("[`", stringify!($field), "`]")] $field($field<R>)),+
+        }
+
+        $(impl<R> From<$field<R>> for AnyField<R> {
+            #[inline(always)]
+            fn from(field: $field<R>) -> Self {
+                Self::$field(field)
+            }
+        })+
+
+        impl<R: Real> PairwiseField<R> for AnyField<R> {
+            #[inline(always)]
+            fn attraction(
+                &self,
+                to_goal: Vector2<R>,
+                velocity: Vector2<R>,
+                inside: R::Mask,
+            ) -> Vector2<R> {
+                match self {
+                    $(Self::$field(field) => field.attraction(to_goal, velocity, inside)),+
+                }
+            }
+
+            #[inline(always)]
+            fn push<B: Wide<R>>(
+                &self,
+                neighbor: &Neighbor<'_, R, B>,
+                robot: &RobotState<R>,
+            ) -> Push<R> {
+                match self {
+                    $(Self::$field(field) => field.push(neighbor, robot)),+
+                }
+            }
+        }
+    };
+}
+any_field!(Masoud, GeCui, Khatib, BorensteinKoren);
+
 impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
-    type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, F::Field<R>>;
+    type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, AnyField<R>>;
 
     fn gain_names(&self) -> &'static [&'static str] {
         F::GAIN_NAMES
@@ -58,10 +103,8 @@ impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
         gains: &[R],
         scenario: &Scenario,
     ) -> Result<Self::Law<R, RECORD>> {
-        Ok(PairwiseLaw::new(
-            self.0.with_gains(gains, scenario),
-            scenario,
-        ))
+        let field = self.0.with_gains(gains, scenario);
+        Ok(PairwiseLaw::new(field.into(), scenario))
     }
 }
 

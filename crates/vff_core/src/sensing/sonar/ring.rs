@@ -113,7 +113,7 @@ impl Ring {
             .iter()
             .map(|bearing| bearing.rem_euclid(TAU))
             .collect();
-        turned.sort_by(f64::total_cmp);
+        numeric::order::sort_ascending(&mut turned);
         let first = turned.first().copied().unwrap_or_default();
         let next = turned.iter().skip(1).copied().chain([first + TAU]);
         turned
