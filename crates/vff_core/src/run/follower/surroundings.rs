@@ -87,11 +87,16 @@ impl Surroundings {
         self.near.clear();
         self.least = f64::INFINITY;
         let horizon = self.horizon * self.horizon;
-        let heeded = self.horizon.max(SLACK * least_before.sqrt());
+        // No root where the horizon is farther anyway: a step takes less than 100 ns.
+        let heeded = if SLACK * SLACK * least_before > horizon {
+            SLACK * least_before.sqrt()
+        } else {
+            self.horizon
+        };
         let tracks = self.tracks.iter_mut().zip(&mut self.shapes);
         for (index, (obstacle, (track, shape))) in scene.obstacles.iter().zip(tracks).enumerate() {
             if !track.stands {
-                *shape = obstacle.at(time, &mut track.cursor);
+                shape.center = obstacle.motion.at(time, &mut track.cursor).position.into();
                 track.stands = time >= track.stands_from;
             }
             let away = shape.center - pose.position;
