@@ -8,12 +8,14 @@ line; a quantity without a unit has none. Summaries that are also the columns of
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import math
 import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, MissingExtraError
@@ -126,7 +128,8 @@ class Table:
         Returns
         -------
         pandas.DataFrame
-            The columns of ``columns()``.
+            The columns of ``columns()``; ``attrs["warnings"]`` holds the warnings of the result, if it has
+            any, as dictionaries of ``code``, ``subject`` and ``message``.
 
         Raises
         ------
@@ -134,13 +137,18 @@ class Table:
             If pandas is not installed.
         """
         frame: pandas.DataFrame = _library("pandas", "pandas").DataFrame(self.columns())
+        doubts = [dataclasses.asdict(each) for each in getattr(self, "warnings", ())]
+        if doubts:
+            frame.attrs["warnings"] = doubts
         return frame
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write a CSV file, whole or not at all.
 
         Numbers are written with all their digits. A cell is empty where there is no number, and
-        ``inf`` where it is infinite; flags are ``true`` or ``false``.
+        ``inf`` where it is infinite; flags are ``true`` or ``false``. Warnings of the result stand in a
+        second file beside it, ``runs.warnings.csv`` for ``runs.csv``; where there are none, one of an
+        earlier result is removed.
 
         Parameters
         ----------
@@ -157,7 +165,15 @@ class Table:
         InvalidParameterError
             If the path is none, or its folder does not exist.
         """
-        return write_csv(path, self.columns())
+        place = write_csv(path, self.columns())
+        beside = place.with_suffix(".warnings.csv")
+        doubts = [dataclasses.astuple(each) for each in getattr(self, "warnings", ())]
+        if doubts:
+            code, subject, message = (np.array(words) for words in zip(*doubts, strict=True))
+            write_csv(beside, {"code": code, "subject": subject, "message": message})
+        else:
+            beside.unlink(missing_ok=True)
+        return place
 
 
 def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:

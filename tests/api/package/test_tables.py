@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import math
 import re
 import sys
@@ -137,6 +138,21 @@ def test_polars_reads_the_file_back(tmp_path: Path) -> None:
     read = polars.read_csv(run.to_csv(tmp_path / "run.csv"), infer_schema_length=None)
     for name, values in run.columns().items():
         np.testing.assert_array_equal(read[name].cast(polars.Float64).fill_null(np.nan).to_numpy(), values)
+
+
+def test_warnings_are_written_beside_the_rows(tmp_path: Path) -> None:
+    doubted = nav.simulate_many(dataclasses.replace(CROSSING, heading=90.0), LAW)
+    path = doubted.to_csv(tmp_path / "runs.csv")
+    beside = tmp_path / "runs.warnings.csv"
+    with beside.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows == [dataclasses.asdict(each) for each in doubted.warnings]
+    assert rows[0]["code"] == "implausible"
+    assert doubted.to_pandas().attrs == {"warnings": rows}
+    plain = nav.simulate_many(CROSSING, LAW)
+    assert plain.to_csv(path) == path
+    assert not beside.exists(), "warnings of an earlier result"
+    assert plain.to_pandas().attrs == {}
 
 
 def test_trajectory_has_the_columns_of_the_command_line(tmp_path: Path) -> None:
