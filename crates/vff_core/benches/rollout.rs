@@ -8,18 +8,12 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::laws::VirtualForceField;
 use vff_core::laws::field::gains::Gains;
-use vff_core::run::{BatchOptions, BatchTable, Instructions, Options, Width, run_batch, simulate};
+use vff_core::run::{BatchOptions, BatchTable, Options, Width, run_batch, simulate};
 use vff_core::world::scenario::Scenario;
 
-fn batch(
-    scenario: &Scenario,
-    law: &VirtualForceField,
-    width: Width,
-    instructions: Instructions,
-) -> BatchTable {
+fn batch(scenario: &Scenario, law: &VirtualForceField, width: Width) -> BatchTable {
     let options = BatchOptions {
         width: Some(width),
-        instructions,
         ..scenes::one_thread()
     };
     let scenarios = std::slice::from_ref(scenario);
@@ -41,29 +35,22 @@ fn rollouts(criterion: &mut Criterion) {
         ("8", Width::Eight),
         ("16", Width::Sixteen),
     ];
-    let levels = [
-        ("baseline", Instructions::Baseline),
-        ("widest", Instructions::Widest),
-    ];
     for (scene, scenario) in [
         ("c4", scenes::configuration_4()),
         ("always_active", scenes::always_active()),
     ] {
         for mode in ["off", "capped", "full"] {
             let law = scenes::law(mode);
-            for (level, instructions) in levels {
-                let name = format!("batch/{scene}/{mode}/{level}");
-                let mut group = criterion.benchmark_group(name);
-                for (name, width) in widths {
-                    let table = batch(&scenario, &law, width, instructions);
-                    let evaluations: i64 = table.force_evaluations.iter().sum();
-                    group.throughput(Throughput::Elements(evaluations.unsigned_abs()));
-                    group.bench_function(name, |bencher| {
-                        bencher.iter(|| batch(black_box(&scenario), &law, width, instructions));
-                    });
-                }
-                group.finish();
+            let mut group = criterion.benchmark_group(format!("batch/{scene}/{mode}"));
+            for (name, width) in widths {
+                let table = batch(&scenario, &law, width);
+                let evaluations: i64 = table.force_evaluations.iter().sum();
+                group.throughput(Throughput::Elements(evaluations.unsigned_abs()));
+                group.bench_function(name, |bencher| {
+                    bencher.iter(|| batch(black_box(&scenario), &law, width));
+                });
             }
+            group.finish();
         }
     }
     let scenario = scenes::configuration_4();

@@ -178,8 +178,14 @@ impl TwoWheels {
     fn roll(&mut self) -> Twist {
         let (step, kinematics) = (self.step, self.kinematics);
         let Some(wheels) = &mut self.wheels else {
-            self.pose = self.pose.after(self.twist, step);
-            self.known = self.known.after(self.twist, step);
+            let moved = self.pose.after(self.twist, step);
+            // Ideal wheels leave no doubt about where a known pose leads to.
+            self.known = if self.exact {
+                moved
+            } else {
+                self.known.after(self.twist, step)
+            };
+            self.pose = moved;
             return self.twist;
         };
         let wanted = spread(kinematics.wheel_speeds([self.twist.speed, self.twist.turn_rate]));
