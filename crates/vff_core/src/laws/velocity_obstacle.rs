@@ -8,15 +8,18 @@ mod free;
 mod lines;
 #[cfg(test)]
 mod tests;
+mod view;
 
 use std::cell::Cell;
 
 use best::{Best, Place, Room};
 use cones::{Cone, ConeBase};
 use lines::{Line, Reachable, where_circles_meet};
+use view::View;
 
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
+use crate::laws::outlook::Attention;
 use crate::laws::planning::Planner;
 use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::geometry::Body;
@@ -92,6 +95,8 @@ pub struct VelocityObstaclePlanner {
     blocking: Cell<usize>,
     /// For decisions with the margin, and without it: what forbids something differs.
     rooms: [Room; 2],
+    /// What it is told of.
+    view: View,
 }
 
 impl VelocityObstaclePlanner {
@@ -112,6 +117,7 @@ impl VelocityObstaclePlanner {
             chosen: (0, 0),
             blocking: Cell::new(0),
             rooms: Default::default(),
+            view: View::default(),
         }
     }
 
@@ -288,11 +294,15 @@ impl VelocityObstaclePlanner {
             best.offer(self.chosen, velocity);
         }
         let cap = best.cap();
-        best.narrow(&cap);
-        best.look_along_lines(wanted);
+        let told = self.view.holds(&cap, &reachable);
+        if told {
+            best.narrow(&cap);
+            best.look_along_lines(wanted);
+        }
         let (chosen, room) = best.ended();
         self.rooms[pass] = room;
-        let (place, velocity) = chosen?;
+        self.view.note(cap, told);
+        let (place, velocity) = chosen.filter(|_| told)?;
         self.chosen = place;
         Some(velocity)
     }
@@ -358,8 +368,19 @@ impl Planner for VelocityObstaclePlanner {
             if let Some(best) = self.select(pass, situation) {
                 return best.lane(0);
             }
+            if self.overlooks() {
+                return [0.0; 2];
+            }
         }
         self.latest_contact(situation).lane(0)
+    }
+
+    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
+        self.look_out(situation)
+    }
+
+    fn overlooks(&self) -> bool {
+        self.view.misses()
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

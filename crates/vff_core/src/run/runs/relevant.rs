@@ -168,3 +168,208 @@ impl pulp::NullaryFnOnce for Choice<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::planning::Planner;
+    use crate::laws::planning::outline::Legs;
+    use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
+    use crate::laws::{Situation, Stop};
+    use crate::robots::HolonomicRobot;
+    use crate::run::scene::bodies_at;
+    use crate::world::geometry::RobotState;
+    use crate::world::motion::Motion;
+    use crate::world::obstacle::{Limits, Obstacle};
+    use crate::world::scenario::Rules;
+
+    type Vector = Vector2<f64>;
+
+    /// Numbers between two bounds, the same in every run.
+    struct Draws(u64);
+
+    impl Draws {
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+        }
+
+        fn within(&mut self, radius: f64) -> Vector {
+            let angle = self.between(0.0, std::f64::consts::TAU);
+            Vector::new(angle.cos(), angle.sin()) * self.between(0.0, radius)
+        }
+    }
+
+    fn scenario(draws: &mut Draws, case: usize) -> Scenario {
+        let spread = [4.0, 15.0, 150.0][case % 3];
+        let fast = [0.0, 0.5, 6.0][case / 3 % 3];
+        let limits = Limits {
+            critical_radius: Some(0.9),
+            active_radius: Some(1.8),
+            max_speed: None,
+        };
+        let mut obstacles = Vec::new();
+        while obstacles.len() < [16, 32, 96][case / 9 % 3] {
+            let [x, y] = draws.within(spread).into();
+            if x.hypot(y) < 1.0 {
+                continue;
+            }
+            let velocity = draws.within(fast).into();
+            let motion = match obstacles.len() % 8 {
+                0 => Motion::moving([x, y], velocity, [0.05, -0.02], None),
+                1 => Motion::between([x, y], velocity, [0.5, 1.5]),
+                2 => Ok(Motion::at_rest([x, y])),
+                _ => Motion::moving([x, y], velocity, [0.0; 2], None),
+            };
+            let radius = draws.between(0.05, 0.4);
+            obstacles.push(if obstacles.len() % 16 == 5 {
+                Obstacle::rectangle([x, y], [0.4, 0.9], 0.3, limits).unwrap()
+            } else {
+                Obstacle::disc(radius, motion.unwrap(), limits).unwrap()
+            });
+        }
+        let robot = HolonomicRobot {
+            max_acceleration: [0.4, 2.0, 10.0][case / 27],
+            ..HolonomicRobot::default()
+        };
+        Scenario::new(robot, [0.0; 2], [9.0, 1.0], obstacles, Rules::default()).unwrap()
+    }
+
+    #[test]
+    fn a_planner_that_is_told_of_few_obstacles_decides_as_one_that_is_told_of_all() {
+        let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
+        let (mut told, mut all) = (0, 0);
+        for case in 0..81 {
+            let scenario = scenario(&mut draws, case);
+            let settings = VelocityObstacle {
+                selection: match case % 5 {
+                    3 => Selection::Fastest { sector: 0.8 },
+                    4 => Selection::TimeAndRisk { risk: 0.5 },
+                    _ => Selection::ToGoal,
+                },
+                horizon: if case % 4 == 0 { 3.0 } else { f64::INFINITY },
+                margin: [0.0, 0.1, 0.4][case % 7 % 3],
+                ..VelocityObstacle::default()
+            };
+            let planner = || VelocityObstaclePlanner::new(settings, &scenario);
+            let (mut one, mut other) = (planner(), planner());
+            let mut relevant = Relevant::new(&scenario);
+            let (mut position, mut velocity) = (Vector::zeros(), Vector::zeros());
+            for period in 0..24 {
+                let time = 0.06 * f64::from(period);
+                let everything = bodies_at(&scenario, time);
+                let situation = Situation {
+                    time,
+                    bodies: &everything,
+                    ages: &[],
+                    robot: RobotState { position, velocity },
+                    heading: 0.0,
+                    interval: 0.06,
+                    stop: Stop::never(),
+                };
+                let wanted = other.desired_velocity(&situation);
+                let chosen = loop {
+                    let attention = one.attention(&situation);
+                    let bodies = relevant.at(&scenario, time, attention);
+                    let chosen = one.desired_velocity(&Situation {
+                        bodies,
+                        ..situation
+                    });
+                    if !one.overlooks() {
+                        break chosen;
+                    }
+                };
+                assert_eq!(
+                    chosen.map(f64::to_bits),
+                    wanted.map(f64::to_bits),
+                    "case {case}, period {period}"
+                );
+                (told, all) = (told + relevant.told.len(), all + everything.len());
+                // Robots that are pushed off their way look anew.
+                let push = if period % 9 == 8 { 0.3 } else { 0.0 };
+                velocity = Vector::from(wanted);
+                position += velocity * 0.06 + draws.within(push);
+            }
+        }
+        assert!(3 * told < 2 * all, "{told} of {all}");
+    }
+
+    #[test]
+    fn no_velocity_that_matters_leads_near_a_disc_that_does_not() {
+        let mut draws = Draws(0x2545_f491_4f6c_dd1d);
+        let mut left_out = 0;
+        for _ in 0..20_000 {
+            let radius = draws.between(0.0, 0.5);
+            let outlook = Outlook {
+                center: draws.within(1.0),
+                radius: draws.between(0.0, 0.3),
+                place: draws.within(3.0),
+                off: draws.between(0.0, 0.2),
+                ahead: 0.025,
+                span: draws.between(0.0, 4.0),
+                clearance: draws.between(0.1, 0.8),
+                way: 0.1,
+                haste: 0.12,
+            };
+            let center = draws.within(30.0);
+            let velocity = draws.within(2.0);
+            let disc = Discs {
+                center,
+                velocity,
+                radius,
+            };
+            if outlook.concerns(&disc) {
+                continue;
+            }
+            left_out += 1;
+            for _ in 0..20 {
+                let time = draws.between(0.0, outlook.span);
+                let place = outlook.place + outlook.center * time + draws.within(outlook.off);
+                let seen = center + velocity * (time + outlook.ahead) - place;
+                let kept = radius + outlook.clearance;
+                assert!(seen.norm() > kept + outlook.way + outlook.haste * velocity.norm());
+                let legs = Legs::of_disc(seen, kept);
+                let relative = outlook.center - velocity;
+                let across = [legs.left, legs.right].map(|leg| leg.perp(&relative));
+                assert!(across.iter().all(|side| side.abs() > outlook.radius));
+                assert!(across[0] > 0.0 || across[1] < 0.0);
+            }
+        }
+        assert!(left_out > 2_000, "{left_out}");
+    }
+
+    #[test]
+    fn what_is_no_disc_that_moves_straight_on_always_matters() {
+        let mut draws = Draws(0x1234_5678_9abc_def1);
+        let scenario = scenario(&mut draws, 11);
+        let mut relevant = Relevant::new(&scenario);
+        let outlook = Outlook {
+            center: Vector::new(0.5, 0.0),
+            radius: 0.0,
+            place: Vector::zeros(),
+            off: 0.0,
+            ahead: 0.0,
+            span: 0.0,
+            clearance: 0.0,
+            way: 0.0,
+            haste: 0.0,
+        };
+        relevant.at(&scenario, 0.3, Attention::Within(outlook));
+        for (index, placed) in scenario.obstacles.iter().enumerate() {
+            if track(placed).is_none() {
+                assert!(relevant.told.contains(&index));
+            }
+        }
+        let count = relevant.told.len();
+        assert!(count < scenario.obstacles.len(), "{count}");
+        let bodies = relevant.at(&scenario, 0.36, Attention::All).to_vec();
+        let wanted = bodies_at(&scenario, 0.36);
+        let places = |bodies: &[Body]| -> Vec<[u64; 2]> {
+            let bits = |body: &Body| body.state.position.map(f64::to_bits);
+            bodies.iter().map(bits).collect()
+        };
+        assert_eq!(places(&bodies), places(&wanted));
+    }
+}
