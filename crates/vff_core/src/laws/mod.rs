@@ -9,6 +9,7 @@ pub mod guide;
 pub mod impedance;
 mod khatib;
 mod masoud;
+pub mod outlook;
 pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
@@ -30,6 +31,7 @@ pub use masoud::Masoud;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
+use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::robots::differential::Twist;
 use crate::world::geometry::{Body, RobotState};
@@ -151,6 +153,18 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     /// by their places in the list.
     fn felt_within(&self, _obstacle: &PlacedObstacle) -> f64 {
         f64::INFINITY
+    }
+
+    /// Which obstacles it must be told of in a situation, if it feels any from anywhere; those that the
+    /// situation has count for nothing.
+    fn attention(&mut self, _situation: &Situation<'_, R, B>) -> Attention {
+        Attention::All
+    }
+
+    /// Whether the last command counts for nothing, since obstacles may matter that it was not told of: it
+    /// must be asked again which ones those are.
+    fn overlooks(&self) -> bool {
+        false
     }
 
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.

@@ -2,21 +2,26 @@
 //! lie between two rays; what is left of the reachable velocities is searched exactly.
 
 mod best;
+mod cones;
 mod cover;
 mod free;
 mod lines;
 #[cfg(test)]
 mod tests;
+mod view;
 
 use std::cell::Cell;
 
 use best::{Best, Place, Room};
+use cones::{Cone, ConeBase};
 use lines::{Line, Reachable, where_circles_meet};
+use view::View;
 
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
+use crate::laws::outlook::Attention;
 use crate::laws::planning::Planner;
-use crate::laws::planning::outline::{Legs, Outline, touches};
+use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::geometry::Body;
 use crate::world::obstacle::Shape;
 use crate::world::scenario::Scenario;
@@ -70,24 +75,6 @@ impl Default for VelocityObstacle {
     }
 }
 
-/// Velocities that one obstacle forbids, as seen where the robot turns into its new velocity.
-#[derive(Clone, Copy, Debug)]
-struct Cone {
-    /// Velocity of the obstacle in m/s.
-    tip: Vector,
-    legs: Option<Legs>,
-    base: ConeBase,
-}
-
-/// Outline of an obstacle: that of a disc is small, and most are discs.
-#[derive(Clone, Copy, Debug)]
-enum ConeBase {
-    /// Center relative to the robot, and radius, in m.
-    Disc(Vector, f64),
-    /// Place among the outlines with edges.
-    Edges(usize),
-}
-
 /// The planner at work in one scenario.
 #[derive(Clone, Debug)]
 pub struct VelocityObstaclePlanner {
@@ -106,7 +93,10 @@ pub struct VelocityObstaclePlanner {
     chosen: Place,
     /// The cone that forbade the last velocity.
     blocking: Cell<usize>,
-    room: Room,
+    /// For decisions with the margin, and without it: what forbids something differs.
+    rooms: [Room; 2],
+    /// What it is told of.
+    view: View,
 }
 
 impl VelocityObstaclePlanner {
@@ -126,7 +116,8 @@ impl VelocityObstaclePlanner {
             lines: Vec::new(),
             chosen: (0, 0),
             blocking: Cell::new(0),
-            room: Room::default(),
+            rooms: Default::default(),
+            view: View::default(),
         }
     }
 
@@ -142,7 +133,7 @@ impl VelocityObstaclePlanner {
     #[must_use]
     pub fn best_free(&mut self, situation: &Situation<'_, f64>) -> Option<[f64; 2]> {
         self.look(situation, self.settings.margin);
-        self.select(situation).map(|best| best.lane(0))
+        self.select(0, situation).map(|best| best.lane(0))
     }
 
     fn reachable(&self, situation: &Situation<'_, f64>) -> Reachable {
@@ -166,6 +157,7 @@ impl VelocityObstaclePlanner {
                 self.look_at(body, situation, (margin, farthest, before));
             }
         }
+        cones::draw_legs(&mut self.cones);
     }
 
     #[inline]
@@ -194,20 +186,23 @@ impl VelocityObstaclePlanner {
         if !free::is_far((center, radius), tip, (farthest, situation.interval)) {
             self.close.push(Outline::disc(center, radius, tip));
         }
-        let center = center - way;
-        let legs = (!touches(center, radius)).then(|| Legs::of_disc(center, radius));
-        let base = ConeBase::Disc(center, radius);
-        self.cones.push(Cone { tip, legs, base });
+        self.cones.push(Cone {
+            tip,
+            legs: None,
+            base: ConeBase::Disc(center - way, radius),
+        });
     }
 
     /// Draws every line on which a rule of selection can have its optimum.
     fn draw_lines(&mut self, aim: Vector) {
         let lines = &mut self.lines;
         lines.clear();
+        lines.reserve(2 * self.cones.len());
         for cone in &self.cones {
-            if let Some(legs) = cone.legs {
+            if let Some(Legs { left, right, .. }) = cone.legs {
                 let from = cone.tip;
-                lines.extend([legs.left, legs.right].map(|along| Line { from, along }));
+                lines.push(Line { from, along: left });
+                lines.push(Line { from, along: right });
             }
         }
         let mut ahead = |along| {
@@ -276,12 +271,12 @@ impl VelocityObstaclePlanner {
     /// [`Self::candidates`]. Lines come by what they promise: those that promise less than what is
     /// found, and their crossings, are not looked at, nor are those that one obstacle forbids as far as
     /// they promise more.
-    fn select(&mut self, situation: &Situation<'_, f64>) -> Option<Vector> {
+    fn select(&mut self, pass: usize, situation: &Situation<'_, f64>) -> Option<Vector> {
         let reachable = self.reachable(situation);
         let aim = self.direction_to_goal(situation);
         self.draw_lines(aim);
         let wanted = self.wanted(situation, aim);
-        let room = std::mem::take(&mut self.room);
+        let room = std::mem::take(&mut self.rooms[pass]);
         let mut best = Best::new(self, situation, (reachable, aim), room);
         for (number, velocity) in self
             .first_candidates(situation, aim)
@@ -298,11 +293,16 @@ impl VelocityObstaclePlanner {
         if let Some(velocity) = self.candidate(self.chosen, wanted, &reachable) {
             best.offer(self.chosen, velocity);
         }
-        best.narrow();
-        best.look_along_lines(wanted);
+        let cap = best.cap();
+        let told = self.view.holds(&cap, &reachable);
+        if told {
+            best.narrow(&cap);
+            best.look_along_lines(wanted);
+        }
         let (chosen, room) = best.ended();
-        self.room = room;
-        let (place, velocity) = chosen?;
+        self.rooms[pass] = room;
+        self.view.note(cap, told);
+        let (place, velocity) = chosen.filter(|_| told)?;
         self.chosen = place;
         Some(velocity)
     }
@@ -363,13 +363,24 @@ impl Planner for VelocityObstaclePlanner {
     /// A free velocity by the rule of selection; if there is none with the margin, one without
     /// it, and otherwise the velocity with the latest contact.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
-        for margin in [self.settings.margin, 0.0] {
+        for (pass, margin) in [self.settings.margin, 0.0].into_iter().enumerate() {
             self.look(situation, margin);
-            if let Some(best) = self.select(situation) {
+            if let Some(best) = self.select(pass, situation) {
                 return best.lane(0);
+            }
+            if self.overlooks() {
+                return [0.0; 2];
             }
         }
         self.latest_contact(situation).lane(0)
+    }
+
+    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
+        self.look_out(situation)
+    }
+
+    fn overlooks(&self) -> bool {
+        self.view.misses()
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

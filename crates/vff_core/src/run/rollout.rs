@@ -7,7 +7,7 @@ use crate::run::Interrupted;
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
-use crate::run::runs::{Dormant, Runs};
+use crate::run::runs::{Dormant, Relevant, Runs};
 use crate::run::scene::{Scene, World, bodies_at};
 use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
@@ -89,8 +89,8 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
             .filter(|_| samples)
             .map(|sensor| sensor.measure(clock.time(first), &scene.frames[0], &mut seen));
         if led && samples {
-            let known = known(sensor.as_ref().map(|_| &*seen), None, &scene);
-            if groups[0].feels_any(known) {
+            let known = sensor.as_ref().map(|_| &*seen);
+            if groups[0].feels_any(known.unwrap_or(&scene.frames[0])) {
                 led = false;
                 follow(&mut groups, team.len());
             }
@@ -102,12 +102,13 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 if plan.shortcuts {
                     runs.end_hopeless(&scene.frames[0], time);
                 }
-                let seen = sensor.as_ref().map(|_| &*seen);
-                let known = known(seen, dormant.as_ref(), &scene);
+                let known = sensor.as_ref().map(|_| &*seen);
+                let known = known.unwrap_or(&scene.frames[0]);
+                let relevant = dormant.as_mut().and_then(Dormant::relevant);
                 sample(
                     runs,
                     member,
-                    known,
+                    (known, relevant),
                     measured,
                     &Block::of(&scene, Stop(interrupted), span),
                 )
@@ -141,17 +142,6 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     }
     let ended = clock.time(first);
     hand_over(scenario, &mut groups, team, (ended, dormant), &mut keep)
-}
-
-/// The obstacles that a law is told of: as they are measured, or all of them where only some are looked at.
-#[inline(always)]
-fn known<'a>(
-    seen: Option<&'a [Body]>,
-    dormant: Option<&'a Dormant>,
-    scene: &'a Scene<&Scenario>,
-) -> &'a [Body] {
-    let told = seen.or_else(|| dormant.and_then(Dormant::told));
-    told.unwrap_or(&scene.frames[0])
 }
 
 /// Most steps of a block: positions between two samples are wanted only for robots that are measured
@@ -221,12 +211,13 @@ impl<'a> Block<'a> {
     }
 }
 
-/// A sample of the force for the runs of a group.
+/// A sample of the force for the runs of a group. The law is told of the known obstacles, or of those that are
+/// relevant to it where not all of them are looked at.
 #[inline(always)]
 fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs: &mut Runs<&Scenario, R>,
     member: &mut Member<L, C>,
-    known: &[Body],
+    (known, mut relevant): (&[Body], Option<&mut Relevant>),
     measured: Option<Measured>,
     block: &Block<'_>,
 ) -> Result<()> {
@@ -238,7 +229,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         return Ok(());
     }
     let robot = observe(runs, measured);
-    let command = member.law.command(&Situation {
+    let situation = Situation {
         time,
         bodies: known,
         ages: &[],
@@ -246,7 +237,23 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         heading: runs.scenario.rules.heading,
         interval: clock.interval,
         stop: block.stop,
-    });
+    };
+    let command = loop {
+        let bodies = match &mut relevant {
+            Some(relevant) if R::WIDTH == 1 => {
+                let attention = member.law.attention(&situation);
+                relevant.at(runs.scenario, time, attention)
+            }
+            _ => known,
+        };
+        let command = member.law.command(&Situation {
+            bodies,
+            ..situation
+        });
+        if !member.law.overlooks() {
+            break command;
+        }
+    };
     runs.check_force(command.force, time)?;
     if C::EVERY_STEP {
         runs.command = command;

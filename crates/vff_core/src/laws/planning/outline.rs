@@ -245,7 +245,7 @@ impl Legs {
 
 /// Whether a point at the origin touches a disc or is inside.
 #[inline]
-pub(in crate::laws) fn touches(center: Vector, radius: f64) -> bool {
+fn touches(center: Vector, radius: f64) -> bool {
     center.dot(&center) <= radius * radius
 }
 

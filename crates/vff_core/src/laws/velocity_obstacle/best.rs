@@ -122,8 +122,7 @@ impl<'a> Best<'a> {
 
     /// Sorts out the cones that can forbid nothing that may be worth more than what was found, and the
     /// legs on which there is nothing of that kind.
-    pub fn narrow(&mut self) {
-        let cap = self.cap();
+    pub fn narrow(&mut self, cap: &Cap) {
         self.narrow = true;
         let Room { near, lines, .. } = &mut self.room;
         near.clear();
@@ -152,7 +151,7 @@ impl<'a> Best<'a> {
     }
 
     /// The smallest disc that is known to hold everything reachable that may be worth enough.
-    fn cap(&self) -> Cap {
+    pub fn cap(&self) -> Cap {
         let wide = self.reachable.circles().map(|(center, radius)| {
             let wide = Cap { center, radius };
             if self.planner.settings.selection != Selection::ToGoal {
@@ -198,18 +197,26 @@ impl<'a> Best<'a> {
                     self.offer((1 + line.index, number), velocity);
                 }
             }
-            for other in 0..self.room.open.len() {
-                let other = self.room.open[other];
-                let (later, earlier) = if line.index > other.index {
-                    (&line, &other)
-                } else {
-                    (&other, &line)
-                };
-                if let Some(velocity) = later.line.crossing(&earlier.line) {
-                    self.offer((1 + later.index, OWN + earlier.index), velocity);
-                }
-            }
+            self.look_at_crossings(&line);
             self.room.open.push(line);
+        }
+    }
+
+    /// Offers the crossings of a line with those that were looked at before.
+    #[inline]
+    fn look_at_crossings(&mut self, line: &Promising) {
+        for place in 0..self.room.open.len() {
+            let other = &self.room.open[place];
+            // Of two lines the later one is gone along.
+            let (later, earlier) = if line.index > other.index {
+                (line, other)
+            } else {
+                (other, line)
+            };
+            if let Some(velocity) = later.line.crossing(&earlier.line) {
+                let place = (1 + later.index, OWN + earlier.index);
+                self.offer(place, velocity);
+            }
         }
     }
 
@@ -219,7 +226,7 @@ impl<'a> Best<'a> {
         let planner = self.planner;
         self.room.promising.clear();
         if planner.settings.selection == Selection::ToGoal {
-            self.room.covers.take(&planner.cones, &self.room.near);
+            self.room.covers.forget();
         }
         pulp::Arch::new().dispatch(LineSorting(self));
         // The lines follow each other by their places, so that equal promises are told apart by the order.
@@ -236,9 +243,10 @@ impl<'a> Best<'a> {
     #[inline(always)]
     fn sort_out_group(&mut self, first: usize) {
         let count = GROUP.min(self.room.lines.len() - first);
-        let indices = |lane: usize| self.room.lines[first + lane.min(count - 1)];
-        let lines = &self.planner.lines;
-        let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&lines[indices(lane)]));
+        let chosen = &self.room.lines[first..first + count];
+        let group: [Line; GROUP] =
+            std::array::from_fn(|lane| self.planner.lines[chosen[lane.min(count - 1)]]);
+        let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&group[lane]));
         let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
         let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
         let (some, ends) = self.reachable.chords(from, along);
@@ -249,22 +257,33 @@ impl<'a> Best<'a> {
             (Group::splat(f64::INFINITY), ends)
         };
         let kept = some & !promises.lt(Group::splat(self.least));
-        for lane in (0..count).filter(|lane| kept.lane(*lane)) {
-            let of_lane = |ends: [Vector2<Group>; 2]| ends.map(|end| Vector::from(end.lane(lane)));
-            let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
-            let found = Promising {
-                promise: if to_goal {
-                    promises.lane(lane)
-                } else {
-                    self.promise(ends)
-                },
-                index,
-                line: self.planner.lines[index],
-                ends,
+        let forever = to_goal && self.planner.settings.horizon == f64::INFINITY;
+        let open = if forever && kept.any() {
+            let line = |lane: usize| chosen[lane.min(count - 1)];
+            kept & !self.room.covers.known(&self.planner.cones, line, parts)
+        } else {
+            kept
+        };
+        for lane in (0..count).filter(|lane| open.lane(*lane)) {
+            let of_lane = |[one, other]: [Vector2<Group>; 2]| -> [Vector; 2] {
+                [one.lane(lane).into(), other.lane(lane).into()]
             };
-            let covered = to_goal && self.covers(index, of_lane(parts));
-            if !covered && !self.is_better_than(found.promise) {
-                self.room.promising.push(found);
+            let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
+            if to_goal && self.covers(index, of_lane(parts)) {
+                continue;
+            }
+            let promise = if to_goal {
+                promises.lane(lane)
+            } else {
+                self.promise(ends)
+            };
+            if !self.is_better_than(promise) {
+                self.room.promising.push(Promising {
+                    promise,
+                    index,
+                    line: group[lane],
+                    ends,
+                });
             }
         }
     }
@@ -274,7 +293,7 @@ impl<'a> Best<'a> {
     #[inline(always)]
     fn promises(&self, ends: [Vector2<Group>; 2]) -> (Group, [Vector2<Group>; 2]) {
         let (aim, number) = (Vector2::splat([self.aim.x, self.aim.y]), Group::splat);
-        let [first, second] = ends.map(|end: Vector2<Group>| end.dot(&aim));
+        let (first, second) = (ends[0].dot(&aim), ends[1].dot(&aim));
         let exact = first.max(second);
         let promises = exact + number(SLACK) * (number(1.0) + exact.abs());
         let least = number(self.least - SLACK * (1.0 + self.least.abs()));
@@ -298,8 +317,11 @@ impl<'a> Best<'a> {
 
     /// Whether one obstacle forbids a part of a line.
     fn covers(&mut self, line: usize, ends: [Vector; 2]) -> bool {
-        let (cones, horizon) = (&self.planner.cones, self.planner.settings.horizon);
-        self.room.covers.cover(cones, (line, ends), horizon)
+        let VelocityObstaclePlanner {
+            cones, settings, ..
+        } = self.planner;
+        let Room { near, covers, .. } = &mut self.room;
+        covers.cover((cones, near), (line, ends), settings.horizon)
     }
 
     /// What the velocities between two are worth at most.

@@ -1,6 +1,7 @@
 //! Parts of lines that one obstacle forbids all by itself.
 
 use super::{Cone, ConeBase, Vector};
+use crate::lanes::{Real, Vector2};
 
 /// How far within a cone a velocity is at least, relative to 1 m/s and the magnitudes: well above all
 /// roundings.
@@ -32,13 +33,21 @@ pub(super) struct Covers {
     /// Squares of distances in m^2, with places among all cones.
     nearest: Vec<(f64, usize)>,
     discs: Vec<Cover>,
+    /// Whether those have been taken.
+    ready: bool,
     /// Which cone forbade each line last; it mostly does so again.
     known: Vec<usize>,
 }
 
 impl Covers {
-    /// Forgets all, and takes some cones.
-    pub fn take(&mut self, cones: &[Cone], chosen: &[usize]) {
+    /// Forgets all.
+    pub fn forget(&mut self) {
+        self.ready = false;
+    }
+
+    /// Takes some cones, once none forbids a line that did so last.
+    fn take(&mut self, cones: &[Cone], chosen: &[usize]) {
+        self.ready = true;
         let distance = |index: &usize| match cones[*index].base {
             ConeBase::Disc(center, _) => Some((center.dot(&center), *index)),
             ConeBase::Edges(_) => None,
@@ -55,11 +64,46 @@ impl Covers {
         self.discs.extend(nearest.iter().filter_map(cover));
     }
 
-    /// Whether a disc forbids everything between two velocities of a line, and what is as near to that as
-    /// roundings are: what a disc forbids is convex.
+    /// Whether the disc that forbade each of some lines last forbids everything between two velocities of it again,
+    /// at any time.
+    #[inline(always)]
+    pub fn known<R: Real>(
+        &self,
+        cones: &[Cone],
+        line: impl Fn(usize) -> usize,
+        ends: [Vector2<R>; 2],
+    ) -> R::Mask {
+        let disc = |lane: usize| {
+            let index = *self.known.get(line(lane))?;
+            Cover::of(cones.get(index)?, index)
+        };
+        let mut numbers = [R::splat(f64::NAN); 7];
+        for lane in 0..R::WIDTH {
+            if let Some(disc) = disc(lane) {
+                let [one, other] = disc.beside;
+                let (left, right) = (disc.left, disc.right);
+                let own = [left.x, left.y, right.x, right.y, one, other, disc.size];
+                for (number, own) in numbers.iter_mut().zip(own) {
+                    number.set(lane, own);
+                }
+            }
+        }
+        let [left_x, left_y, right_x, right_y, left, right, own] = numbers;
+        let (to_left, to_right) = (Vector2::new(left_x, left_y), Vector2::new(right_x, right_y));
+        let size = |end: &Vector2<R>| end.x.abs() + end.y.abs();
+        let within = (own + size(&ends[0]).max(size(&ends[1]))) * R::splat(WITHIN);
+        let (left, right) = (left - within, right + within);
+        to_left.perp(&ends[0]).lt(left)
+            & to_left.perp(&ends[1]).lt(left)
+            & right.lt(to_right.perp(&ends[0]))
+            & right.lt(to_right.perp(&ends[1]))
+    }
+
+    /// Whether one of the chosen discs forbids everything between two velocities of a line, and what is as near
+    /// to that as roundings are: what a disc forbids is convex.
     pub fn cover(
         &mut self,
-        cones: &[Cone],
+        (cones, chosen): (&[Cone], &[usize]),
         (line, ends): (usize, [Vector; 2]),
         horizon: f64,
     ) -> bool {
@@ -77,6 +121,9 @@ impl Covers {
         let known = known.and_then(|index| Cover::of(cones.get(*index)?, *index));
         if known.is_some_and(|disc| forbids(&disc)) {
             return true;
+        }
+        if !self.ready {
+            self.take(cones, chosen);
         }
         let Some(found) = self.discs.iter().position(forbids) else {
             return false;

@@ -60,7 +60,8 @@ impl Reachable {
     ) -> (R::Mask, [Vector2<R>; 2]) {
         let (mut low, mut high) = (R::splat(f64::NEG_INFINITY), R::splat(f64::INFINITY));
         let mut beside = R::Mask::none();
-        for (center, radius) in self.circles() {
+        let circles = self.circles();
+        for (center, radius) in &circles {
             let offset = from - Vector2::splat([center.x, center.y]);
             let foot = -offset.dot(&along);
             let across = offset.perp(&along);
@@ -71,7 +72,7 @@ impl Reachable {
             let half = square.sqrt();
             (low, high) = ((foot - half).max(low), (foot + half).min(high));
         }
-        let ends = [low, high].map(|share| from + along * share);
+        let ends = [from + along * low, from + along * high];
         (!beside & low.le(high), ends)
     }
 }

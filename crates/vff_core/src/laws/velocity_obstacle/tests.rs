@@ -116,7 +116,7 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
                 stop: Stop::never(),
             };
             planner.look(&situation, settings.margin);
-            let chosen = planner.select(&situation);
+            let chosen = planner.select(0, &situation);
             let wanted = best_of_all(&planner, &situation);
             let bits = |velocity: Vector| velocity.lane(0).map(f64::to_bits);
             let place = format!("case {case}, period {period}");

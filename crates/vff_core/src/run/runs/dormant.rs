@@ -1,17 +1,17 @@
 //! Obstacles that are too far away to be felt or touched for a while: they are not looked at before
 //! they may be, and their least distances are found afterwards from the path of the robot. A law that
-//! feels obstacles from anywhere is told where all of them are; else they are left alone as well.
+//! feels obstacles from anywhere is told of those that it asks for; else they are left alone as well.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::means::Means;
 use super::path::{Passage, Path};
+use super::relevant::Relevant;
 use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Mask, Planar, Real};
 use crate::run::options::Clock;
-use crate::run::scene::{Scene, bodies_at, body_at};
-use crate::world::geometry::Body;
+use crate::run::scene::{Scene, body_at};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Fewest obstacles for which it pays to tell the far ones from the near ones.
@@ -56,33 +56,8 @@ pub(crate) struct Dormant {
     /// the end.
     alarms: BinaryHeap<Reverse<(usize, usize)>>,
     path: Path,
-    /// Where all obstacles are at a sample, for a law that feels some of them from anywhere.
-    everything: Option<Everything>,
-}
-
-/// All obstacles, with the cursors of their motions.
-#[derive(Clone, Debug)]
-struct Everything {
-    bodies: Vec<Body>,
-    cursors: Vec<usize>,
-}
-
-impl Everything {
-    fn new(scenario: &Scenario) -> Self {
-        let bodies = bodies_at(scenario, 0.0);
-        let cursors = vec![0; bodies.len()];
-        Self { bodies, cursors }
-    }
-
-    /// Moves on to an instant, in s.
-    fn advance(&mut self, scenario: &Scenario, time: f64) {
-        let moved = self.bodies.iter_mut().zip(&mut self.cursors);
-        for ((body, cursor), placed) in moved.zip(&scenario.obstacles) {
-            if !placed.stationary {
-                body.state = placed.obstacle.motion.at(time, cursor);
-            }
-        }
-    }
+    /// What a law is told of that feels some obstacles from anywhere.
+    relevant: Option<Relevant>,
 }
 
 impl Dormant {
@@ -106,14 +81,13 @@ impl Dormant {
             since: vec![AWAKE; obstacles.len()],
             alarms: BinaryHeap::new(),
             path: Path::from(scenario.start),
-            everything: told_all.then(|| Everything::new(scenario)),
+            relevant: told_all.then(|| Relevant::new(scenario)),
         })
     }
 
-    /// The obstacles at the last sample as the law is told of them, where these are not those that are
-    /// looked at.
-    pub fn told(&self) -> Option<&[Body]> {
-        self.everything.as_ref().map(|all| all.bodies.as_slice())
+    /// What the law is told of, where that is not what is looked at.
+    pub fn relevant(&mut self) -> Option<&mut Relevant> {
+        self.relevant.as_mut()
     }
 
     /// The scene at the start, without the obstacles that are far away.
@@ -145,9 +119,6 @@ impl Dormant {
         runs: &mut Runs<&Scenario, R>,
         step: usize,
     ) {
-        if let Some(everything) = &mut self.everything {
-            everything.advance(runs.scenario, self.clock.time(step));
-        }
         while let Some(Reverse((alarm, index))) = self.alarms.peek().copied() {
             if alarm > step {
                 break;

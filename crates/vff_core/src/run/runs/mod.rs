@@ -5,9 +5,11 @@ mod dormant;
 mod ends;
 mod means;
 mod path;
+mod relevant;
 mod totals;
 
 pub(crate) use dormant::Dormant;
+pub(crate) use relevant::Relevant;
 
 use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
 use crate::laws::Command;

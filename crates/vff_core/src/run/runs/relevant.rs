@@ -1,0 +1,375 @@
+//! The obstacles that a law is told of which feels them from anywhere: all of them, or those that matter for
+//! the velocities that it may choose.
+
+use crate::lanes::{Lanes, Mask, Real, Vector2};
+use crate::laws::outlook::{Attention, Discs, Outlook};
+use crate::run::scene::body_at;
+use crate::world::geometry::Body;
+use crate::world::motion::Piece;
+use crate::world::obstacle::Shape;
+use crate::world::scenario::{PlacedObstacle, Scenario};
+
+/// Discs that are looked at side by side.
+const GROUP: usize = 4;
+type Group = Lanes<GROUP>;
+
+/// The obstacles of one run.
+#[derive(Clone, Debug)]
+pub(crate) struct Relevant {
+    /// Those that the law is told of, in their order, and as they are at the last sample.
+    told: Vec<usize>,
+    bodies: Vec<Body>,
+    /// How those of them move that move straight on.
+    straight: Vec<Option<Piece>>,
+    /// Cursors of the motions of all obstacles.
+    cursors: Vec<usize>,
+    /// All obstacles, once they are chosen from.
+    tracks: Tracks,
+}
+
+/// Straight motions of discs side by side: where they are at the start, velocities and radii. What is no disc, or
+/// moves otherwise, has no number for its place.
+#[derive(Clone, Debug, Default)]
+struct Tracks {
+    center: [Vec<f64>; 2],
+    velocity: [Vec<f64>; 2],
+    radius: Vec<f64>,
+}
+
+impl Relevant {
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            told: Vec::new(),
+            bodies: Vec::new(),
+            straight: Vec::new(),
+            cursors: vec![0; scenario.obstacles.len()],
+            tracks: Tracks::default(),
+        }
+    }
+
+    /// The obstacles at an instant in s, those that the law attends to.
+    pub fn at(&mut self, scenario: &Scenario, time: f64, attention: Attention) -> &[Body] {
+        let all = scenario.obstacles.len();
+        match attention {
+            Attention::Within(outlook) => {
+                if self.tracks.radius.is_empty() {
+                    self.tracks = Tracks::of(&scenario.obstacles);
+                }
+                self.told.clear();
+                let (tracks, told) = (&self.tracks, &mut self.told);
+                pulp::Arch::new().dispatch(Choice {
+                    tracks,
+                    outlook: &outlook,
+                    time,
+                    told,
+                });
+                self.place(scenario, time);
+            }
+            Attention::All if self.told.len() < all => {
+                self.told.clear();
+                self.told.extend(0..all);
+                self.place(scenario, time);
+            }
+            Attention::All | Attention::Same => self.advance(scenario, time),
+        }
+        &self.bodies
+    }
+
+    /// Looks at those anew that the law is told of from now on.
+    fn place(&mut self, scenario: &Scenario, time: f64) {
+        let cursors = &mut self.cursors;
+        let body = |index: &usize| body_at(&scenario.obstacles[*index], time, &mut cursors[*index]);
+        self.bodies.clear();
+        self.bodies.extend(self.told.iter().map(body));
+        let motion = |index: &usize| &scenario.obstacles[*index].obstacle.motion;
+        let straight = |index: &usize| motion(index).straight().copied();
+        self.straight.clear();
+        self.straight.extend(self.told.iter().map(straight));
+    }
+
+    /// Moves on to an instant.
+    fn advance(&mut self, scenario: &Scenario, time: f64) {
+        let bodies = self.bodies.iter_mut().zip(&self.straight);
+        for ((body, straight), index) in bodies.zip(&self.told) {
+            if let Some(piece) = straight {
+                (body.state.position, body.state.velocity) = piece.at(time);
+                continue;
+            }
+            let placed = &scenario.obstacles[*index];
+            if !placed.stationary {
+                body.state = placed.obstacle.motion.at(time, &mut self.cursors[*index]);
+            }
+        }
+    }
+}
+
+impl Tracks {
+    fn of(obstacles: &[PlacedObstacle]) -> Self {
+        let mut tracks = Self::default();
+        for placed in obstacles {
+            let ([x, y], [u, v], radius) = track(placed).unwrap_or(([f64::NAN; 2], [0.0; 2], 0.0));
+            tracks.center[0].push(x);
+            tracks.center[1].push(y);
+            tracks.velocity[0].push(u);
+            tracks.velocity[1].push(v);
+            tracks.radius.push(radius);
+        }
+        tracks
+    }
+
+    /// Discs from one on, at an instant in s; the last one again where there are no more.
+    #[inline(always)]
+    fn group(&self, first: usize, time: f64) -> Discs<Group> {
+        let last = self.radius.len() - 1;
+        let number = |of: &[f64]| match of.get(first..first + GROUP) {
+            Some(numbers) => Group::from_fn(|lane| numbers[lane]),
+            None => Group::from_fn(|lane| of[(first + lane).min(last)]),
+        };
+        let pair = |[x, y]: &[Vec<f64>; 2]| Vector2::new(number(x), number(y));
+        let velocity = pair(&self.velocity);
+        Discs {
+            center: pair(&self.center) + velocity * Group::splat(time),
+            velocity,
+            radius: number(&self.radius),
+        }
+    }
+}
+
+/// Place at the start, velocity and radius of a disc that moves straight on.
+fn track(placed: &PlacedObstacle) -> Option<([f64; 2], [f64; 2], f64)> {
+    let Shape::Disc { radius } = placed.obstacle.shape else {
+        return None;
+    };
+    let piece = placed.obstacle.motion.straight()?;
+    Some((piece.at(0.0).0, piece.velocity, radius))
+}
+
+/// Chooses the obstacles, compiled for the instructions of the processor; its bits are the same for all.
+struct Choice<'a> {
+    tracks: &'a Tracks,
+    outlook: &'a Outlook,
+    time: f64,
+    told: &'a mut Vec<usize>,
+}
+
+impl pulp::NullaryFnOnce for Choice<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let count = self.tracks.radius.len();
+        for first in (0..count).step_by(GROUP) {
+            let concerned = self.outlook.concerns(&self.tracks.group(first, self.time));
+            if concerned.any() {
+                let lanes = 0..GROUP.min(count - first);
+                let chosen = lanes.filter(|lane| concerned.lane(*lane));
+                self.told.extend(chosen.map(|lane| first + lane));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::planning::Planner;
+    use crate::laws::planning::outline::Legs;
+    use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
+    use crate::laws::{Situation, Stop};
+    use crate::robots::HolonomicRobot;
+    use crate::run::scene::bodies_at;
+    use crate::world::geometry::RobotState;
+    use crate::world::motion::Motion;
+    use crate::world::obstacle::{Limits, Obstacle};
+    use crate::world::scenario::Rules;
+
+    type Vector = Vector2<f64>;
+
+    /// Numbers between two bounds, the same in every run.
+    struct Draws(u64);
+
+    impl Draws {
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+        }
+
+        fn within(&mut self, radius: f64) -> Vector {
+            let angle = self.between(0.0, std::f64::consts::TAU);
+            Vector::new(angle.cos(), angle.sin()) * self.between(0.0, radius)
+        }
+    }
+
+    fn scenario(draws: &mut Draws, case: usize) -> Scenario {
+        let spread = [4.0, 15.0, 150.0][case % 3];
+        let fast = [0.0, 0.5, 6.0][case / 3 % 3];
+        let limits = Limits {
+            critical_radius: Some(0.9),
+            active_radius: Some(1.8),
+            max_speed: None,
+        };
+        let mut obstacles = Vec::new();
+        while obstacles.len() < [16, 32, 96][case / 9 % 3] {
+            let [x, y] = draws.within(spread).into();
+            if x.hypot(y) < 1.0 {
+                continue;
+            }
+            let velocity = draws.within(fast).into();
+            let motion = match obstacles.len() % 8 {
+                0 => Motion::moving([x, y], velocity, [0.05, -0.02], None),
+                1 => Motion::between([x, y], velocity, [0.5, 1.5]),
+                2 => Ok(Motion::at_rest([x, y])),
+                _ => Motion::moving([x, y], velocity, [0.0; 2], None),
+            };
+            let radius = draws.between(0.05, 0.4);
+            obstacles.push(if obstacles.len() % 16 == 5 {
+                Obstacle::rectangle([x, y], [0.4, 0.9], 0.3, limits).unwrap()
+            } else {
+                Obstacle::disc(radius, motion.unwrap(), limits).unwrap()
+            });
+        }
+        let robot = HolonomicRobot {
+            max_acceleration: [0.4, 2.0, 10.0][case / 27],
+            ..HolonomicRobot::default()
+        };
+        Scenario::new(robot, [0.0; 2], [9.0, 1.0], obstacles, Rules::default()).unwrap()
+    }
+
+    #[test]
+    fn a_planner_that_is_told_of_few_obstacles_decides_as_one_that_is_told_of_all() {
+        let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
+        let (mut told, mut all) = (0, 0);
+        for case in 0..81 {
+            let scenario = scenario(&mut draws, case);
+            let settings = VelocityObstacle {
+                selection: match case % 5 {
+                    3 => Selection::Fastest { sector: 0.8 },
+                    4 => Selection::TimeAndRisk { risk: 0.5 },
+                    _ => Selection::ToGoal,
+                },
+                horizon: if case % 4 == 0 { 3.0 } else { f64::INFINITY },
+                margin: [0.0, 0.1, 0.4][case % 7 % 3],
+                ..VelocityObstacle::default()
+            };
+            let planner = || VelocityObstaclePlanner::new(settings, &scenario);
+            let (mut one, mut other) = (planner(), planner());
+            let mut relevant = Relevant::new(&scenario);
+            let (mut position, mut velocity) = (Vector::zeros(), Vector::zeros());
+            for period in 0..24 {
+                let time = 0.06 * f64::from(period);
+                let everything = bodies_at(&scenario, time);
+                let situation = Situation {
+                    time,
+                    bodies: &everything,
+                    ages: &[],
+                    robot: RobotState { position, velocity },
+                    heading: 0.0,
+                    interval: 0.06,
+                    stop: Stop::never(),
+                };
+                let wanted = other.desired_velocity(&situation);
+                let chosen = loop {
+                    let attention = one.attention(&situation);
+                    let bodies = relevant.at(&scenario, time, attention);
+                    let chosen = one.desired_velocity(&Situation {
+                        bodies,
+                        ..situation
+                    });
+                    if !one.overlooks() {
+                        break chosen;
+                    }
+                };
+                assert_eq!(
+                    chosen.map(f64::to_bits),
+                    wanted.map(f64::to_bits),
+                    "case {case}, period {period}"
+                );
+                (told, all) = (told + relevant.told.len(), all + everything.len());
+                // Robots that are pushed off their way look anew.
+                let push = if period % 9 == 8 { 0.3 } else { 0.0 };
+                velocity = Vector::from(wanted);
+                position += velocity * 0.06 + draws.within(push);
+            }
+        }
+        assert!(3 * told < 2 * all, "{told} of {all}");
+    }
+
+    #[test]
+    fn no_velocity_that_matters_leads_near_a_disc_that_does_not() {
+        let mut draws = Draws(0x2545_f491_4f6c_dd1d);
+        let mut left_out = 0;
+        for _ in 0..20_000 {
+            let radius = draws.between(0.0, 0.5);
+            let outlook = Outlook {
+                center: draws.within(1.0),
+                radius: draws.between(0.0, 0.3),
+                place: draws.within(3.0),
+                off: draws.between(0.0, 0.2),
+                ahead: 0.025,
+                span: draws.between(0.0, 4.0),
+                clearance: draws.between(0.1, 0.8),
+                way: 0.1,
+                haste: 0.12,
+            };
+            let center = draws.within(30.0);
+            let velocity = draws.within(2.0);
+            let disc = Discs {
+                center,
+                velocity,
+                radius,
+            };
+            if outlook.concerns(&disc) {
+                continue;
+            }
+            left_out += 1;
+            for _ in 0..20 {
+                let time = draws.between(0.0, outlook.span);
+                let place = outlook.place + outlook.center * time + draws.within(outlook.off);
+                let seen = center + velocity * (time + outlook.ahead) - place;
+                let kept = radius + outlook.clearance;
+                assert!(seen.norm() > kept + outlook.way + outlook.haste * velocity.norm());
+                let legs = Legs::of_disc(seen, kept);
+                let relative = outlook.center - velocity;
+                let across = [legs.left, legs.right].map(|leg| leg.perp(&relative));
+                assert!(across.iter().all(|side| side.abs() > outlook.radius));
+                assert!(across[0] > 0.0 || across[1] < 0.0);
+            }
+        }
+        assert!(left_out > 2_000, "{left_out}");
+    }
+
+    #[test]
+    fn what_is_no_disc_that_moves_straight_on_always_matters() {
+        let mut draws = Draws(0x1234_5678_9abc_def1);
+        let scenario = scenario(&mut draws, 11);
+        let mut relevant = Relevant::new(&scenario);
+        let outlook = Outlook {
+            center: Vector::new(0.5, 0.0),
+            radius: 0.0,
+            place: Vector::zeros(),
+            off: 0.0,
+            ahead: 0.0,
+            span: 0.0,
+            clearance: 0.0,
+            way: 0.0,
+            haste: 0.0,
+        };
+        relevant.at(&scenario, 0.3, Attention::Within(outlook));
+        for (index, placed) in scenario.obstacles.iter().enumerate() {
+            if track(placed).is_none() {
+                assert!(relevant.told.contains(&index));
+            }
+        }
+        let count = relevant.told.len();
+        assert!(count < scenario.obstacles.len(), "{count}");
+        let bodies = relevant.at(&scenario, 0.36, Attention::All).to_vec();
+        let wanted = bodies_at(&scenario, 0.36);
+        let places = |bodies: &[Body]| -> Vec<[u64; 2]> {
+            let bits = |body: &Body| body.state.position.map(f64::to_bits);
+            bodies.iter().map(bits).collect()
+        };
+        assert_eq!(places(&bodies), places(&wanted));
+    }
+}
