@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::{Failure, Result};
 use crate::lanes::Lanes;
+use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
 use crate::robots::differential::Twist;
@@ -91,6 +92,10 @@ pub(crate) trait Steering: Send {
     fn thinks(&self) -> bool;
     /// Distance in m beyond which an obstacle changes no command.
     fn felt_within(&self, obstacle: &PlacedObstacle) -> f64;
+    /// Which obstacles it must be told of in a situation.
+    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention;
+    /// Whether the last command counts for nothing, since obstacles may matter that it was not told of.
+    fn overlooks(&self) -> bool;
     /// Force for the time until the next sample.
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
     /// Heads for another goal from now on, in m.
@@ -108,6 +113,14 @@ impl<L: Law<f64> + Send> Steering for L {
 
     fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
         Law::felt_within(self, obstacle)
+    }
+
+    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
+        Law::attention(self, situation)
+    }
+
+    fn overlooks(&self) -> bool {
+        Law::overlooks(self)
     }
 
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
@@ -142,6 +155,14 @@ impl Law<f64> for BoxedLaw {
 
     fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
         self.0.felt_within(obstacle)
+    }
+
+    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
+        self.0.attention(situation)
+    }
+
+    fn overlooks(&self) -> bool {
+        self.0.overlooks()
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

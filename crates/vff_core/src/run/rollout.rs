@@ -250,7 +250,8 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
             bodies,
             ..situation
         });
-        if !member.law.overlooks() {
+        // Who is told of everything overlooks nothing.
+        if relevant.is_none() || !member.law.overlooks() {
             break command;
         }
     };
