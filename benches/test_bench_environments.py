@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -15,7 +16,7 @@ import numpy as np
 import pyrvo  # type: ignore[import-untyped]  # it has no type information
 import pytest
 
-import hrsafety.gym  # noqa: F401  # registers the environments
+from hrsafety import gym
 from hrsafety import navigation as nav
 
 ENVIRONMENTS, STEPS, ROUNDS = 1024, 20, 5
@@ -23,8 +24,9 @@ PEERS = 64
 KINDS: dict[str, dict[str, Any]] = {
     "reciprocal": {"metrics": False},
     "reciprocal, with metrics": {},
-    "Moussaid": {"metrics": False, "model": nav.crowd.Moussaid()},
+    "Moussaid, five motion steps in a step": {"metrics": False, "model": nav.crowd.Moussaid()},
 }
+MODEL_STEP = 0.05  # largest step of the model of Moussaid in s
 
 
 def fastest(work: Callable[[], object]) -> float:
@@ -47,6 +49,21 @@ def test_environments(benchmark: Any, kind: str) -> None:
         threads=1,
         **KINDS[kind],
     )
+    report(benchmark, kind, envs)
+
+
+@pytest.mark.benchmark(group="environment steps, one core")
+def test_one_motion_step_in_a_step(benchmark: Any) -> None:
+    """The robot is commanded at every step of the model, as in a program that has no other step."""
+    task = gym.circle_crossing(model=nav.crowd.Moussaid())
+    robot = replace(task.world.robots[0], control_period=MODEL_STEP)
+    task = replace(task, world=replace(task.world, step=MODEL_STEP, robots=[robot]))
+    envs = gym.CrowdVectorEnv(task, num_envs=ENVIRONMENTS, threads=1, metrics=False)
+    report(benchmark, "Moussaid, one motion step in a step", envs)
+
+
+def report(benchmark: Any, kind: str, envs: Any) -> None:
+    """Drive all robots toward their goals, and print the steps per second."""
     seen, _ = envs.reset(seed=0)
 
     def steps() -> None:

@@ -68,7 +68,12 @@ fn polynomial<R: Real, const N: usize>(coefficients: &[f64; N], x: R) -> R {
 /// `exp(x)` of a number that is not far above zero.
 #[inline(always)]
 pub fn exponential<R: Real>(x: R) -> R {
-    let x = x.max(R::splat(LOWEST));
+    within_range(x.max(R::splat(LOWEST)))
+}
+
+/// `exp(x)` of a number whose rounded power of two is from -1023 to 1023; NaN of NaN.
+#[inline(always)]
+fn within_range<R: Real>(x: R) -> R {
     let rounder = R::splat(ROUNDER);
     let shifted = x * R::splat(std::f64::consts::LOG2_E) + rounder;
     let whole = shifted - rounder;
@@ -92,6 +97,14 @@ pub fn exp<R: Real>(x: R) -> R {
 pub fn decay<R: Real>(x: R) -> R {
     let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), exponential(x));
     R::select(x.le(R::zero()), found, x)
+}
+
+/// `exp(x)` of a number that is not above zero, without a comparison: zero where it is below the smallest number of
+/// full precision, NaN of NaN.
+#[inline(always)]
+pub fn fading<R: Real>(x: R) -> R {
+    // `2^-1023` comes out as zero. In this order a number that is none stays.
+    within_range(R::splat(-HIGHEST).max(x))
 }
 
 /// `ln(x)` of a positive number of full precision.
@@ -159,6 +172,20 @@ mod tests {
         assert_eq!(decay(f64::NEG_INFINITY), 0.0);
         assert_eq!(decay(-0.0), 1.0);
         assert!(decay(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn fading_agrees_with_the_library_down_to_zero() {
+        for index in 0..=7080 {
+            let x = -0.1 * f64::from(index);
+            assert!((fading(x) / x.exp() - 1.0).abs() < 1e-15, "{x}");
+        }
+        for x in [-708.9, -709.0, -710.0, -1e9, -1e300, f64::NEG_INFINITY] {
+            assert_eq!(fading(x), 0.0, "{x}");
+            assert_eq!(fading(Lanes::<4>::splat(x)).lane(3), 0.0);
+        }
+        assert_eq!((fading(0.0), fading(-0.0)), (1.0, 1.0));
+        assert!(fading(f64::NAN).is_nan());
     }
 
     #[test]

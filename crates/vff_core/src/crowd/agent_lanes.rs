@@ -90,6 +90,26 @@ impl AgentLanes {
         }
     }
 
+    /// Moves the people by their decisions, which hold for a step in s: velocities, or, where there is a cap on the
+    /// speed as a multiple of the desired one, accelerations.
+    #[inline(always)]
+    pub fn advance(&mut self, decisions: &[Vectors], cap: Option<f64>, step: f64) {
+        let step = Each::splat(step);
+        let people = self.all.iter_mut().zip(&self.intentions);
+        for ((agent, intention), decision) in people.zip(decisions) {
+            agent.velocity = if let Some(cap) = cap {
+                let velocity = agent.velocity + *decision * step;
+                let speed = Planar::<Each>::length(velocity);
+                let most = Each::splat(cap) * intention.desired_speed;
+                let shorter = velocity * (most / speed);
+                Planar::<Each>::select(speed.gt(most), shorter, velocity)
+            } else {
+                *decision
+            };
+            agent.position += agent.velocity * step;
+        }
+    }
+
     /// How many people there are.
     #[inline(always)]
     pub fn people(&self) -> usize {
@@ -149,9 +169,9 @@ impl AgentLanes {
                 continue;
             };
             let [mine, theirs] = forces((one, other), &pair);
-            pair.add(mine, &mut sums[one]);
+            sums[one] += pair.where_near(mine);
             if let Some(sum) = sums.get_mut(other) {
-                pair.add(theirs, sum);
+                *sum += pair.where_near(theirs);
             }
         }
         // What walls add where there are none: it makes a negative zero positive.
@@ -162,10 +182,10 @@ impl AgentLanes {
 }
 
 impl Pair {
-    /// Adds a vector where the two are near each other.
+    /// A vector where the two are near each other, elsewhere minus zero, which changes no bit of a sum.
     #[inline(always)]
-    fn add(&self, vector: Vectors, sum: &mut Vectors) {
-        *sum = Planar::<Each>::select(self.near, *sum + vector, *sum);
+    fn where_near(&self, vector: Vectors) -> Vectors {
+        Planar::<Each>::select(self.near, vector, Planar::<Each>::splat([-0.0; 2]))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
-use crate::robots::drives::{MotorDrive, Order, Reading};
+use crate::robots::drives::{MotorDrive, Order, PointMass, Reading};
 use crate::run::as_built::{AsBuilt, robot_under};
 use crate::run::{Interrupted, Request, Steering};
 use crate::world::geometry::RobotState;
@@ -18,14 +18,23 @@ use crate::world::scenario::{Rules, Scenario};
 /// Places for people of each source at first.
 const GUESTS: usize = 16;
 
+/// What moves a robot.
+enum Chassis {
+    /// A robot that accelerates in any direction; nobody asks here for the currents of its motors.
+    Point(PointMass),
+    /// One with motors.
+    Motors(Box<dyn MotorDrive>),
+}
+
 /// A robot at work.
 pub struct CrowdRobot {
-    reading: Reading,
+    state: RobotState<f64>,
+    heading: f64,
     radius: f64,
     goal: Vector2<f64>,
     tolerance: f64,
     arrival_time: f64,
-    drive: Box<dyn MotorDrive>,
+    chassis: Chassis,
     mass: f64,
     /// A law with what it sees.
     law: Option<(Box<dyn Steering>, Sight)>,
@@ -72,13 +81,19 @@ impl CrowdRobot {
             },
             _ => built,
         };
+        let chassis = match scenario.differential() {
+            None => Chassis::Point(PointMass::new(&start)),
+            Some(_) => Chassis::Motors(robot_under(&scenario, &built, setup.law.as_ref())?),
+        };
+        let Reading { robot, heading, .. } = Reading::at(&start);
         Ok(Self {
-            reading: Reading::at(&start),
+            state: robot,
+            heading,
             radius: setup.radius(),
             goal: setup.goal.into(),
             tolerance: setup.arrival_tolerance,
             arrival_time: f64::NAN,
-            drive: robot_under(&scenario, &built, setup.law.as_ref())?,
+            chassis,
             mass: scenario.mass(),
             law,
             request: Request::Law,
@@ -90,13 +105,13 @@ impl CrowdRobot {
     /// Position in m and velocity in m/s.
     #[must_use]
     pub fn state(&self) -> RobotState<f64> {
-        self.reading.robot
+        self.state
     }
 
     /// Heading in rad.
     #[must_use]
     pub fn heading(&self) -> f64 {
-        self.reading.heading
+        self.heading
     }
 
     /// Radius in m.
@@ -126,7 +141,7 @@ impl CrowdRobot {
     /// The robot as others see it.
     #[allow(clippy::cast_possible_truncation)] // there are at most ten thousand robots
     pub(super) fn agent(&self, index: usize) -> Agent {
-        let RobotState { position, velocity } = self.reading.robot;
+        let RobotState { position, velocity } = self.state;
         Agent {
             position,
             velocity,
@@ -146,7 +161,7 @@ impl CrowdRobot {
         if let Some((_, sight)) = &mut self.law {
             sight.watch(people, robots);
         }
-        let away = (self.goal - self.reading.robot.position).norm();
+        let away = (self.goal - self.state.position).norm();
         if away <= self.tolerance && !self.has_arrived() {
             self.arrival_time = time;
         }
@@ -165,14 +180,17 @@ impl CrowdRobot {
             return Ok(true);
         }
         self.make_room(world, people, index)?;
-        let mut known = self.reading.robot;
+        let mut known = self.state;
         let mut clear = true;
         let mut situation = Situation {
             time,
             bodies: &[],
             ages: &[],
             robot: known,
-            heading: self.drive.known_heading(),
+            heading: match &self.chassis {
+                Chassis::Point(_) => self.heading,
+                Chassis::Motors(drive) => drive.known_heading(),
+            },
             interval: self.interval,
             stop: Stop(interrupted),
         };
@@ -190,11 +208,14 @@ impl CrowdRobot {
                 law.command(&situation).force
             }
         };
-        self.drive.hold(&Order {
-            force,
-            fix: None,
-            clear,
-        });
+        match &mut self.chassis {
+            Chassis::Point(point) => point.hold(force),
+            Chassis::Motors(drive) => drive.hold(&Order {
+                force,
+                fix: None,
+                clear,
+            }),
+        }
         Ok(force.norm().is_finite())
     }
 
@@ -226,18 +247,27 @@ impl CrowdRobot {
 
     /// Moves by a part of a step.
     pub(super) fn advance(&mut self) {
-        self.reading = self.drive.step();
+        match &mut self.chassis {
+            Chassis::Point(point) => {
+                point.advance();
+                self.state = point.state;
+            }
+            Chassis::Motors(drive) => {
+                let Reading { robot, heading, .. } = drive.step();
+                (self.state, self.heading) = (robot, heading);
+            }
+        }
     }
 
     /// Whether its state is finite.
     pub(super) fn is_finite(&self) -> bool {
-        let RobotState { position, velocity } = self.reading.robot;
+        let RobotState { position, velocity } = self.state;
         (position + velocity).norm_squared().is_finite()
     }
 
     /// Distance of the surfaces from a disc in m.
     pub(super) fn gap(&self, place: Vector2<f64>, radius: f64, period: &Period) -> f64 {
-        period.wrap(self.reading.robot.position - place).norm() - self.radius - radius
+        period.wrap(self.state.position - place).norm() - self.radius - radius
     }
 }
 

@@ -53,8 +53,8 @@ struct CrowdParts {
     sources: Vec<Source>,
     groups: Groups,
     room: Box<DecisionRoom>,
-    /// What people have decided for the next motion, if they have done so together with those of other worlds.
-    decided: Vec<Vector2<f64>>,
+    /// Whether people have made the next motion, together with those of other worlds.
+    moved: bool,
     reach: f64,
     /// Whether somebody follows a recording.
     replays: bool,
@@ -85,7 +85,7 @@ impl CrowdParts {
             sources: Vec::new(),
             groups: Groups::default(),
             room: Box::default(),
-            decided: Vec::new(),
+            moved: false,
             reach: 0.0,
             replays: false,
             record: record.then(Trajectories::default),
@@ -112,7 +112,7 @@ impl CrowdParts {
             let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
             self.robots.push(robot);
         }
-        self.decided.clear();
+        self.moved = false;
         self.sources.clear();
         let sources = world.sources.iter().enumerate();
         self.sources
@@ -141,11 +141,7 @@ impl CrowdParts {
         if people.is_empty() {
             return;
         }
-        if !self.decided.is_empty() {
-            for (person, decision) in people.iter_mut().zip(self.decided.drain(..)) {
-                let model = &world.models[person.model as usize];
-                person.move_by(decision, model, part);
-            }
+        if std::mem::take(&mut self.moved) {
             return;
         }
         let DecisionRoom {
@@ -365,8 +361,8 @@ impl Simulation {
         self.0.begin((), interrupted)
     }
 
-    /// The second part, again and again: people decide, unless they have done so, and all move; whether they have
-    /// to once more.
+    /// The second part, again and again: people decide and all move, people only if they have not done so; whether
+    /// they have to once more.
     pub(super) fn advance(&mut self) -> bool {
         self.0.advance()
     }
@@ -379,9 +375,15 @@ impl Simulation {
         self.0.end()
     }
 
-    /// Room for what the people decide together with those of other worlds for the next motion.
-    pub(super) fn decided(&mut self) -> &mut Vec<Vector2<f64>> {
-        &mut self.0.parts.decided
+    /// The people, to be moved together with those of other worlds by what they decide.
+    pub(super) fn move_people(&mut self) -> &mut [PersonState] {
+        self.0.parts.moved = true;
+        &mut self.0.parts.people
+    }
+
+    /// Whether the people have made the next motion.
+    pub(super) fn people_have_moved(&self) -> bool {
+        self.0.parts.moved
     }
 
     /// The robots as others see them.

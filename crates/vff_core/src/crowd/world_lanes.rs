@@ -1,4 +1,4 @@
-//! People of several worlds that are alike, decided side by side: each world is a lane, and everybody is compared
+//! People of several worlds that are alike decide and move side by side: each world is a lane, and everybody is compared
 //! with everybody.
 //!
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
@@ -11,7 +11,7 @@ use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Planar, Real};
 
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;
@@ -47,30 +47,35 @@ pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
 }
 
 impl WorldLanes {
-    /// Decides for the people of worlds that have this [`model_of`] them, unless there are too few or somebody is
-    /// absent.
-    pub fn decide<'a>(&mut self, model: &Model, worlds: &mut [&'a mut Simulation]) {
+    /// Decides for the people of worlds that have this [`model_of`] them and moves them, unless there are too few or
+    /// somebody is absent. `again`: these are the worlds of the call before, and they have only moved since then.
+    pub fn advance<'a>(&mut self, model: &Model, worlds: &mut [&'a mut Simulation], again: bool) {
         let everybody_is_there =
             |world: &&'a mut Simulation| world.people().iter().all(PersonState::is_present);
         if !(WORTH..=WIDTH).contains(&worlds.len()) || !worlds.iter().all(everybody_is_there) {
             return;
         }
-        seat(&mut self.agents, worlds);
+        if !again {
+            seat(&mut self.agents, worlds);
+        }
+        seat_robots(&mut self.agents, worlds);
         pulp::Arch::new().dispatch(Job {
             model,
             step: worlds[0].part(),
             lanes: self,
         });
         for (lane, world) in worlds.iter_mut().enumerate() {
-            let decisions = self.decisions.iter();
-            let decided = world.decided();
-            decided.clear();
-            decided.extend(decisions.map(|each| Vector2::from(Planar::<Each>::lane(*each, lane))));
+            let lane = lane % WIDTH;
+            let people = world.move_people().iter_mut();
+            for (person, agent) in people.zip(&self.agents.all) {
+                person.position = Planar::<Each>::lane(agent.position, lane).into();
+                person.velocity = Planar::<Each>::lane(agent.velocity, lane).into();
+            }
         }
     }
 }
 
-/// Decisions, compiled once for each instruction set; their bits are the same for all.
+/// Decisions and motion, compiled once for each instruction set; their bits are the same for all.
 struct Job<'a> {
     model: &'a Model,
     step: f64,
@@ -98,17 +103,18 @@ impl pulp::NullaryFnOnce for Job<'_> {
             }
             Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => {}
         }
+        let cap = self.model.is_force().then(|| self.model.cap());
+        agents.advance(decisions, cap, self.step);
     }
 }
 
-/// Puts each world into a lane, the last one also into those that are left over.
+/// Puts the people of each world into a lane, those of the last one also into the lanes that are left over.
 fn seat(agents: &mut AgentLanes, worlds: &[&mut Simulation]) {
     let people = worlds[0].people().len();
     agents.open(people, worlds[0].bodies().len());
     for lane in 0..WIDTH {
         let world = &worlds[lane.min(worlds.len() - 1)];
-        let (walkers, machines) = agents.all.split_at_mut(people);
-        let walkers = walkers.iter_mut().zip(&mut agents.intentions);
+        let walkers = agents.all.iter_mut().zip(&mut agents.intentions);
         for ((agent, intention), person) in walkers.zip(world.people()) {
             agent.stand(lane, person.position, person.velocity, person.radius);
             intention.desired_speed.set(lane, person.desired_speed);
@@ -117,7 +123,15 @@ fn seat(agents: &mut AgentLanes, worlds: &[&mut Simulation]) {
                 intention.walk(lane, person.target);
             }
         }
-        for (agent, body) in machines.iter_mut().zip(world.bodies()) {
+    }
+}
+
+/// Puts the robots of each world into its lane.
+fn seat_robots(agents: &mut AgentLanes, worlds: &[&mut Simulation]) {
+    let people = agents.people();
+    for lane in 0..WIDTH {
+        let world = &worlds[lane.min(worlds.len() - 1)];
+        for (agent, body) in agents.all[people..].iter_mut().zip(world.bodies()) {
             agent.stand(lane, body.position, body.velocity, body.radius);
             agent.face(lane, body.direction);
         }
@@ -233,10 +247,10 @@ mod tests {
                     let mut under_way: Vec<&mut Simulation> = beside.iter_mut().collect();
                     under_way.retain_mut(|world| world.begin(&|| false).unwrap());
                     while !under_way.is_empty() {
-                        lanes.decide(&model, &mut under_way);
+                        lanes.advance(&model, &mut under_way, false);
                         together += under_way
                             .iter_mut()
-                            .map(|one| usize::from(!one.decided().is_empty()))
+                            .map(|one| usize::from(one.people_have_moved()))
                             .sum::<usize>();
                         under_way.retain_mut(|world| world.advance() || world.end().is_err());
                     }

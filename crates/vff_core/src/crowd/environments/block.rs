@@ -1,4 +1,4 @@
-//! Steps of environments, some at a time: their worlds move in turn, and their people decide side by side.
+//! Steps of environments, some at a time: their worlds move in turn, and their people side by side.
 
 use crate::crowd::agent_lanes::WIDTH;
 use crate::crowd::environments::one::Shared;
@@ -16,7 +16,7 @@ pub(super) const BLOCK: usize = WIDTH;
 pub(super) struct BlockStep<'a> {
     /// What they have in common.
     pub settings: &'a Settings,
-    /// The model of the people, if those of several worlds can decide together.
+    /// The model of the people, if those of several worlds can move together.
     pub model: Option<&'a Model>,
     /// What the robots do.
     pub actions: &'a [[f64; 2]],
@@ -59,11 +59,13 @@ impl BlockStep<'_> {
                 begun.push(world);
             }
         }
-        let mut under_way = begun.len();
+        let (mut under_way, mut before) = (begun.len(), 0);
         while under_way > 0 {
             if let Some(model) = self.model {
-                shared.lanes.decide(model, &mut begun[..under_way]);
+                let again = under_way == before;
+                shared.lanes.advance(model, &mut begun[..under_way], again);
             }
+            before = under_way;
             for index in (0..under_way).rev() {
                 if !advance(begun[index], shared) {
                     under_way -= 1;
@@ -75,9 +77,9 @@ impl BlockStep<'_> {
     }
 }
 
-/// Moves a world once, whose people may have decided.
+/// Moves a world once, whose people may have moved.
 fn advance(world: &mut Simulation, shared: &mut Shared) -> bool {
-    if !world.decided().is_empty() {
+    if world.people_have_moved() {
         return world.advance();
     }
     world.exchange_room(&mut shared.decisions);

@@ -16,7 +16,7 @@ use crate::crowd::pedestrian::{
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2};
 use numeric::angle::unsigned_angle;
-use numeric::elementary::decay;
+use numeric::elementary::fading;
 
 type Vector = Vector2<f64>;
 
@@ -56,7 +56,8 @@ pub struct Moussaid {
 }
 
 impl Moussaid {
-    /// Acceleration by somebody at distance `d` in direction `-n`, with the velocity relative to him in m/s.
+    /// Acceleration by somebody at distance `d` in direction `-n`, with the velocity relative to him in m/s:
+    /// `A exp(-d/B)` times `exp(-(n B theta)^2)` to the side and `exp(-(n' B theta)^2)` backward, as two exponentials.
     #[inline(always)]
     #[must_use]
     pub fn push<R: Real>(
@@ -66,30 +67,33 @@ impl Moussaid {
         relative: Vector2<R>,
     ) -> Vector2<R> {
         let (zero, pi) = (R::zero(), R::splat(PI));
-        let sight = Vector2::new(-normal.x, -normal.y);
         let weight = R::splat(self.velocity_weight);
-        let interaction = Vector2::new(relative.x * weight, relative.y * weight) + sight;
+        let interaction = relative * weight - normal;
         let length = interaction.dot(&interaction).sqrt();
-        let along = Vector2::new(interaction.x / length, interaction.y / length);
-        let reach = R::splat(self.gamma) * length;
-        let across = sight.x * along.y - sight.y * along.x;
-        let angle = unsigned_angle(across, sight.dot(&along));
-        let angle = R::select(across.lt(zero), -angle, angle);
+        let least = R::splat(SHORTEST);
+        let per_length = R::splat(1.0) / length.max(least);
+        // The angle is that of the directions: their lengths do not matter.
+        let across = normal.y * interaction.x - normal.x * interaction.y;
+        let angle = unsigned_angle(across, -normal.dot(&interaction)).copysign(across);
         let angle = R::select(angle.le(-pi), pi, angle);
+        let reach = R::splat(self.gamma) * length;
         let theta = angle + R::splat(self.side_bias) * reach;
-        let turning = bell(R::splat(self.n) * reach * theta);
-        let slowing = bell(R::splat(self.n_prime) * reach * theta);
-        let size = R::splat(self.strength) * decay(-distance / reach);
-        let side = R::select(theta.gt(zero), turning, -turning);
-        let side = R::select(theta.lt(zero) | theta.gt(zero), side, zero);
-        let push = Vector2::new(
-            (-along.y * side - along.x * slowing) * size,
-            (along.x * side - along.y * slowing) * size,
-        );
-        Planar::<R>::select(
-            length.lt(R::splat(SHORTEST)),
-            Vector2::new(zero, zero),
-            push,
+        // A product of exponentials is that of a sum.
+        let apart = distance * per_length * R::splat(1.0 / self.gamma);
+        // Written out: a map over the two would not be compiled in its place.
+        let wide = R::splat(self.n) * reach * theta;
+        let turning = fading(-(apart + wide * wide));
+        let narrow = R::splat(self.n_prime) * reach * theta;
+        let slowing = fading(-(apart + narrow * narrow));
+        // Nobody without a direction pushes.
+        let size = R::splat(self.strength) * per_length;
+        let size = R::select(length.lt(least), zero, size);
+        let slowing = slowing * size;
+        let turning = (turning * size).copysign(theta);
+        let turning = R::select(theta.abs().gt(zero), turning, zero);
+        Vector2::new(
+            -interaction.y * turning - interaction.x * slowing,
+            interaction.x * turning - interaction.y * slowing,
         )
     }
 
@@ -132,12 +136,6 @@ impl Moussaid {
         }
         force
     }
-}
-
-/// `exp(-x^2)`.
-#[inline(always)]
-fn bell<R: Real>(x: R) -> R {
-    decay(-x * x)
 }
 
 impl Moussaid {
