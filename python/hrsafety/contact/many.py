@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,14 +59,14 @@ def many(
     shared, values = row
     region = str(shared["region"])
     columns, shape = columns_of(values, varying, applying(kind, region, covering))
-    rows = int(np.prod(shape, dtype=np.int64))
+    rows, count = int(np.prod(shape, dtype=np.int64)), thread_count(threads)
     found = _hrsafety.contact_rows(
         kind,
         shared,
         columns,
         rows,
         gravity=gravity,
-        threads=thread_count(threads),
+        threads=count,
         progress=callback("progress", progress),
     )
     found = {name: each.reshape(shape) for name, each in found.items()}
@@ -83,27 +83,38 @@ def many(
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, covering),
+        status=_status(words, codes, covering, count),
         flags=flags,
-        warnings=(*flagged(told | flags), *implausible_numbers(covering, region, given)),
+        warnings=(*flagged(told | flags, covering), *implausible_numbers(covering, region, given, count)),
         given=given,
     )
 
 
-def words_at(words: npt.NDArray[np.str_], codes: npt.NDArray[Any]) -> npt.NDArray[np.str_]:
-    """Return the words at codes; the last word stands for every code beyond it."""
-    return np.asarray(np.take(words, codes, mode="clip"))
+def words_at(
+    words: Sequence[str], codes: npt.NDArray[np.uint8], *, width: int | None = None, threads: int | None
+) -> npt.NDArray[np.str_]:
+    """Return the words at codes, as wide as the longest that is there; the last stands for every code beyond it."""
+    flat = codes.reshape(-1)
+    if width is None:
+        # The longest word takes many times the room of its code.
+        there = _hrsafety.codes_there(flat, threads)
+        last = len(words) - 1
+        there[last] = any(there[last:])
+        words = [word if use else "" for word, use in zip(words, there, strict=False)]
+        width = max(1, *map(len, words))
+    letters = np.asarray(words, dtype=f"U{width}").view(np.uint32).reshape(len(words), width)
+    found = np.empty(flat.size, dtype=f"U{width}")
+    _hrsafety.fill_words(found.view(np.uint32).reshape(flat.size, width), flat, letters, threads)
+    return found.reshape(codes.shape)
 
 
-def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.NDArray[np.str_]:
+def _status(
+    words: list[str], codes: npt.NDArray[np.uint8], covering: Covering | None, threads: int | None
+) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
     if covering is not None:
         for place, name in enumerate(covering.material.keys.values()):
             names[names.index(f"material_{place}")] = name
     all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
-    # Only as wide as the words that are there: the longest one takes many times the room of its code.
-    there = np.bincount(codes.ravel(), minlength=256) > 0
-    there[len(all_words) - 1] = there[len(all_words) - 1 :].any()
-    found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=False)])
-    return words_at(found, codes)
+    return words_at(all_words, codes, threads=threads)

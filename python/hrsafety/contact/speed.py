@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, not_negative, positive
+from hrsafety._arguments import Array, not_negative, positive, thread_count
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.covering import Covering, Region, covering_of
@@ -31,7 +31,7 @@ __all__ = [
     "thickness",
 ]
 
-_GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
+_GOVERNS = ("force", "pressure", "strain", "nothing")
 _FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
 
 
@@ -180,7 +180,7 @@ def allowed_speed(
         covering_compression=known(found["covering_compression"]),
         warnings=(
             *not_checked(missing),
-            *flagged(flags),
+            *flagged(flags, pad),
             *implausible_numbers(pad, str(shared["region"]), values),
         ),
         robot_speed=None if speed is None else max(speed - walking, 0.0),
@@ -299,7 +299,8 @@ def allowed_speeds(
     empty = np.zeros(found.status.shape, dtype=bool)
     numbers: dict[str, Any] = dict(found.numbers)
     flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
-    governs = words_at(_GOVERNS, numbers.pop("governs_code"))[()]
+    codes = numbers.pop("governs_code")
+    governs = words_at(_GOVERNS, codes, width=max(map(len, _GOVERNS)), threads=thread_count(threads))[()]
     return AllowedSpeeds(
         **numbers,
         governs=governs,
