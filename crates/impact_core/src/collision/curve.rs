@@ -109,6 +109,19 @@ impl<R: Real> Steps<R> {
         }
     }
 
+    /// The same in more lanes; the last one stands for those beyond it.
+    pub fn widened<W: Real>(&self) -> Steps<W> {
+        let of = |number: R| W::from_fn(|lane| number.lane(lane.min(R::WIDTH - 1)));
+        let both = |[first, second]: [R; 2]| [of(first), of(second)];
+        Steps {
+            from: both(self.from),
+            length: of(self.length),
+            slopes: self.slopes.map(both),
+            state: both(self.state),
+            error: of(self.error),
+        }
+    }
+
     /// State at the end of one curve's step, and its error over the scales.
     pub fn end(&self, lane: usize) -> ([f64; 2], f64) {
         let state = self.state.map(|number| number.lane(lane));

@@ -51,8 +51,12 @@ impl<I: Integrand> WithSimd for Values<'_, I> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) -> [Nodes; 2] {
-        let Self(integrand, [before, beyond]) = self;
-        [integrand.at(before), integrand.at(beyond)]
+        let Self(integrand, mut nodes) = self;
+        // A loop: the code of an integrand is long.
+        for x in &mut nodes {
+            *x = integrand.at(*x);
+        }
+        nodes
     }
 }
 

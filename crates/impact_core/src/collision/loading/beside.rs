@@ -14,6 +14,9 @@ use crate::covering::Powers;
 pub(super) const WIDTH: usize = 8;
 pub(super) type Wide = Lanes<WIDTH>;
 
+/// Collisions that take fewer lanes.
+const FEW: usize = 2;
+
 /// A step that a collision asks for.
 #[derive(Clone, Copy)]
 pub(super) struct Asked {
@@ -36,7 +39,19 @@ impl Asked {
 
 /// Takes steps that are alike, at most as many as there are lanes, with their collisions.
 pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
-    pulp::Arch::new().dispatch(Group(steps, taken));
+    if steps.len() > FEW {
+        pulp::Arch::new().dispatch(Group(steps, taken));
+    } else {
+        let mut few = Steps::none();
+        fill_few(steps, &mut few);
+        *taken = few.widened();
+    }
+}
+
+/// Steps of few collisions: of one that is alone most lanes would be idle.
+#[inline(never)]
+fn fill_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<FEW>>) {
+    fill(steps, taken);
 }
 
 /// Compiled once for each instruction set; the arithmetic is the same, bit for bit.
@@ -48,59 +63,63 @@ impl WithSimd for Group<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let Self(steps, taken) = self;
-        // Lanes that are left over repeat the last step.
-        let last = steps.len() - 1;
-        let asked = |lane: usize| &steps[lane.min(last)].1;
-        let pair = |of: fn(&Asked) -> [f64; 2]| {
-            [0, 1].map(|entry| Wide::from_fn(|lane| of(asked(lane))[entry]))
-        };
-        let loading = |lane: usize| steps[lane.min(last)].0;
-        let numbers = Numbers::<Wide>::of(loading);
-        let over = Over::<Wide>::of(asked(0).variable, |lane| asked(lane).variable);
-        let columns = Columns::of(steps);
-        let at = Wide::from_fn(|lane| asked(lane).at);
-        let start = (at, pair(|of| of.state), pair(|of| of.rates));
-        let length = Wide::from_fn(|lane| asked(lane).length);
-        taken.take(
-            #[inline(always)]
-            |at, state| {
-                let place = numbers.place(
-                    over,
-                    at,
-                    state,
-                    #[inline(always)]
-                    |depth, strain| columns.forces(depth, strain),
-                    #[inline(always)]
-                    |force| columns.yielding(force),
-                );
-                place.rates
-            },
-            start,
-            length,
-            pair(|of| of.scales),
-        );
+        fill(steps, taken);
     }
 }
 
-/// Coverings and regions side by side.
-struct Columns<'a, 'b> {
-    steps: &'a [(&'a Loading<'b>, Asked)],
-    /// Exponents and factors, where forces are sums of powers.
-    powers: Option<([f64; 2], [Wide; 2])>,
-    per_thickness: Wide,
-    /// Onset and stiffness of the backing.
-    backing: [Wide; 2],
-    /// What the regions yield by, if all of them are linear or rigid.
-    yielding: Option<Wide>,
+#[inline(always)]
+fn fill<R: Real>(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<R>) {
+    // Lanes that are left over repeat the last step.
+    let last = steps.len() - 1;
+    let asked = |lane: usize| &steps[lane.min(last)].1;
+    let pair =
+        |of: fn(&Asked) -> [f64; 2]| [0, 1].map(|entry| R::from_fn(|lane| of(asked(lane))[entry]));
+    let loading = |lane: usize| steps[lane.min(last)].0;
+    let numbers = Numbers::<R>::of(loading);
+    let over = Over::<R>::of(asked(0).variable, |lane| asked(lane).variable);
+    let columns = Columns::of(steps);
+    let at = R::from_fn(|lane| asked(lane).at);
+    let start = (at, pair(|of| of.state), pair(|of| of.rates));
+    let length = R::from_fn(|lane| asked(lane).length);
+    taken.take(
+        #[inline(always)]
+        |at, state| {
+            let place = numbers.place(
+                over,
+                at,
+                state,
+                #[inline(always)]
+                |depth, strain| columns.forces(depth, strain),
+                #[inline(always)]
+                |force| columns.yielding(force),
+            );
+            place.rates
+        },
+        start,
+        length,
+        pair(|of| of.scales),
+    );
 }
 
-impl<'a, 'b> Columns<'a, 'b> {
+/// Coverings and regions side by side.
+struct Columns<'a, 'b, R> {
+    steps: &'a [(&'a Loading<'b>, Asked)],
+    /// Exponents and factors, where forces are sums of powers.
+    powers: Option<([f64; 2], [R; 2])>,
+    per_thickness: R,
+    /// Onset and stiffness of the backing.
+    backing: [R; 2],
+    /// What the regions yield by, if all of them are linear or rigid.
+    yielding: Option<R>,
+}
+
+impl<'a, 'b, R: Real> Columns<'a, 'b, R> {
     #[inline(always)]
     fn of(steps: &'a [(&'a Loading<'b>, Asked)]) -> Self {
         let last = steps.len() - 1;
         let each = |lane: usize| steps[lane.min(last)].0;
         let factor = |place: usize| {
-            Wide::from_fn(|lane| {
+            R::from_fn(|lane| {
                 let powers = each(lane).powers.as_ref();
                 powers.map_or(0.0, |powers: &Powers| powers.factors[place])
             })
@@ -117,20 +136,20 @@ impl<'a, 'b> Columns<'a, 'b> {
                 .1
                 .exponents
                 .map(|found| (found, [factor(0), factor(1)])),
-            per_thickness: Wide::from_fn(|lane| each(lane).scales.per_thickness),
+            per_thickness: R::from_fn(|lane| each(lane).scales.per_thickness),
             backing: [
-                Wide::from_fn(|lane| each(lane).pad.bottom()),
-                Wide::from_fn(|lane| each(lane).pad.covering.bottoming.stiffness),
+                R::from_fn(|lane| each(lane).pad.bottom()),
+                R::from_fn(|lane| each(lane).pad.covering.bottoming.stiffness),
             ],
             yielding: (0..=last)
                 .all(linear)
-                .then(|| Wide::from_fn(|lane| each(lane).scales.yielding)),
+                .then(|| R::from_fn(|lane| each(lane).scales.yielding)),
         }
     }
 
     /// Forces and their slopes.
     #[inline(always)]
-    fn forces(&self, depth: Wide, strain: Wide) -> [Wide; 2] {
+    fn forces(&self, depth: R, strain: R) -> [R; 2] {
         let Some((exponents, factors)) = self.powers else {
             return self.alone(depth);
         };
@@ -139,8 +158,8 @@ impl<'a, 'b> Columns<'a, 'b> {
         let [bottom, stiffness] = self.backing;
         let beyond = depth.gt(bottom);
         if beyond.any() {
-            let more = Wide::select(beyond, stiffness, Wide::splat(0.0));
-            force += more * Wide::select(beyond, depth - bottom, Wide::splat(0.0));
+            let more = R::select(beyond, stiffness, R::splat(0.0));
+            force += more * R::select(beyond, depth - bottom, R::splat(0.0));
             slope += more;
         }
         [force, slope]
@@ -148,10 +167,10 @@ impl<'a, 'b> Columns<'a, 'b> {
 
     /// Forces of laws with cases of their own, one after the other.
     #[inline(never)]
-    fn alone(&self, depth: Wide) -> [Wide; 2] {
+    fn alone(&self, depth: R) -> [R; 2] {
         let (mut force, mut slope) = (depth, depth);
         let mut found = [0.0; 2];
-        for lane in 0..WIDTH {
+        for lane in 0..R::WIDTH {
             if let Some((loading, _)) = self.steps.get(lane) {
                 let by = loading.scales.per_thickness;
                 found = loading.pad.force_by(depth.lane(lane), by);
@@ -164,13 +183,13 @@ impl<'a, 'b> Columns<'a, 'b> {
 
     /// What the regions yield by, for each newton more of a force.
     #[inline(always)]
-    fn yielding(&self, force: Wide) -> Wide {
+    fn yielding(&self, force: R) -> R {
         self.yielding.unwrap_or_else(|| self.bent(force))
     }
 
     #[inline(never)]
-    fn bent(&self, force: Wide) -> Wide {
+    fn bent(&self, force: R) -> R {
         let last = self.steps.len() - 1;
-        Wide::from_fn(|lane| self.steps[lane.min(last)].0.yielding(force.lane(lane)))
+        R::from_fn(|lane| self.steps[lane.min(last)].0.yielding(force.lane(lane)))
     }
 }
