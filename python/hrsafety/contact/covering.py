@@ -241,7 +241,7 @@ def shape_flags(depth: Any, *, radii: Sequence[Any], thickness: Any, half_width:
     """Return where the columns under a curved contact do not describe it; every number may be an array."""
     if all(np.ndim(radius) == 0 and math.isnan(radius) for radius in radii):
         # Flat: nothing to compare.
-        return {name: np.zeros(np.shape(depth), dtype=bool) for name in ("outside_paraboloid", "beyond_pad", "edge")}
+        return {}
     with np.errstate(invalid="ignore"):
         least, largest = np.fmin(*radii), np.fmax(*radii)
         widest = math.inf if half_width is None else half_width

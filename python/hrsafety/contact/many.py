@@ -44,6 +44,10 @@ class Many(NamedTuple):
     warnings: Doubts
     given: dict[str, Any]
 
+    def flag(self, name: str) -> npt.NDArray[np.bool_]:
+        """Return a flag of every row; one that cannot hold is false."""
+        return self.flags[name] if name in self.flags else np.zeros(self.status.shape, dtype=bool)
+
 
 def many(
     kind: str,
@@ -77,31 +81,24 @@ def many(
     codes, words = found.pop("status_code"), WORDS[kind]
     flags = covering_flags(covering, found[_DEPTHS[kind]], given)
     flags = {name: np.broadcast_to(each, shape) for name, each in flags.items()}
-    told = {"invalid": codes >= len(words), "unfinished": codes == words.index("unfinished")}
-    if "beyond_data" in words:
-        told["beyond_data"] = codes == words.index("beyond_data")
+    there = _hrsafety.codes_there(codes.reshape(-1), count)
+    told = {"invalid": codes >= len(words)} if any(there[len(words) :]) else {}
+    for name in ("unfinished", "beyond_data"):
+        if name in words and there[words.index(name)]:
+            told[name] = codes == words.index(name)
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, covering, count),
+        status=_status(words, codes, there, covering, count),
         flags=flags,
         warnings=(*flagged(told | flags, covering), *implausible_numbers(covering, region, given, count)),
         given=given,
     )
 
 
-def words_at(
-    words: Sequence[str], codes: npt.NDArray[np.uint8], *, width: int | None = None, threads: int | None
-) -> npt.NDArray[np.str_]:
-    """Return the words at codes, as wide as the longest that is there; the last stands for every code beyond it."""
-    flat = codes.reshape(-1)
-    if width is None:
-        # The longest word takes many times the room of its code.
-        there = _hrsafety.codes_there(flat, threads)
-        last = len(words) - 1
-        there[last] = any(there[last:])
-        words = [word if use else "" for word, use in zip(words, there, strict=False)]
-        width = max(1, *map(len, words))
+def words_at(words: Sequence[str], codes: npt.NDArray[np.uint8], *, threads: int | None) -> npt.NDArray[np.str_]:
+    """Return the words at codes; the last one stands for every code beyond it."""
+    flat, width = codes.reshape(-1), max(1, *map(len, words))
     letters = np.asarray(words, dtype=f"U{width}").view(np.uint32).reshape(len(words), width)
     found = np.empty(flat.size, dtype=f"U{width}")
     _hrsafety.fill_words(found.view(np.uint32).reshape(flat.size, width), flat, letters, threads)
@@ -109,7 +106,7 @@ def words_at(
 
 
 def _status(
-    words: list[str], codes: npt.NDArray[np.uint8], covering: Covering | None, threads: int | None
+    words: list[str], codes: npt.NDArray[np.uint8], there: list[bool], covering: Covering | None, threads: int | None
 ) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
@@ -117,4 +114,6 @@ def _status(
         for place, name in enumerate(covering.material.keys.values()):
             names[names.index(f"material_{place}")] = name
     all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
-    return words_at(all_words, codes, threads=threads)
+    # Only as wide as the words that are there: the longest one takes many times the room of its code.
+    used = [*there[: len(all_words) - 1], any(there[len(all_words) - 1 :])]
+    return words_at([word if use else "" for word, use in zip(all_words, used, strict=True)], codes, threads=threads)

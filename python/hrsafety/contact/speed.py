@@ -296,11 +296,10 @@ def allowed_speeds(
     found = many("speed", (shared, values), varying, pad, threads=threads, progress=progress)
     there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
     missing = missing_limits(there, bare=pad is None)
-    empty = np.zeros(found.status.shape, dtype=bool)
     numbers: dict[str, Any] = dict(found.numbers)
-    flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
+    flags: dict[str, Any] = {name: found.flag(name) for name in _FLAGS}
     codes = numbers.pop("governs_code")
-    governs = words_at(_GOVERNS, codes, width=max(map(len, _GOVERNS)), threads=thread_count(threads))[()]
+    governs = words_at(_GOVERNS, codes, threads=thread_count(threads))[()]
     return AllowedSpeeds(
         **numbers,
         governs=governs,
