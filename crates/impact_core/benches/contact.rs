@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use impact_core::allowed::{
-    Distribution, Given, Kind, Law, NAMES, Outline, RegionKind, Row, Setup, collide_rows,
-    exceedance, speed_rows,
+    Distribution, Given, Kind, LOADS, Law, NAMES, Outline, RegionKind, Room, Row, SPEEDS, Setup,
+    collide_rows, exceedance, speed_rows,
 };
 use impact_core::collision::Wanted;
 use impact_core::columns::Column;
+use numeric::error::Result;
 use numeric::parallel::Work;
 
 const ROWS: usize = 200_000;
@@ -74,6 +75,19 @@ fn shown(name: &str, count: usize, mut work: impl FnMut()) {
     println!("{name}: {:.3e} per s", count as f64 / best);
 }
 
+/// Work with room for the columns of its results.
+fn in_room(columns: usize, rows: usize, work: impl FnOnce(Room<'_>) -> Result<()>) {
+    let mut numbers = vec![vec![0.0; rows]; columns];
+    let mut codes = [vec![0; rows], vec![0; rows]];
+    let [status, word] = &mut codes;
+    let numbers = numbers.iter_mut().map(Vec::as_mut_slice).collect();
+    drop(work(Room {
+        numbers,
+        status,
+        word,
+    }));
+}
+
 fn main() {
     let (never, nobody) = (|| false, |_: usize| ());
     let alone = Work {
@@ -102,7 +116,9 @@ fn main() {
         given.columns[place("robot_mass")] = Column::Array(&masses);
         let speeds = setup(law.clone(), RegionKind::Spring);
         shown(&format!("closed form, {name}"), ROWS, || {
-            drop(speed_rows(&speeds, &given, alone));
+            in_room(SPEEDS.len(), given.rows, |room| {
+                speed_rows(&speeds, &given, alone, room)
+            });
         });
         given.columns[place("robot_mass")] = Column::Value(8.0);
         given.columns[place("closing_speed")] = Column::Array(&spread);
@@ -117,7 +133,9 @@ fn main() {
                     &format!("collisions, {name}, {region:?}, n {rate}"),
                     some.len(),
                     || {
-                        drop(collide_rows(&moving, &given, Wanted::default(), alone));
+                        in_room(LOADS.len(), given.rows, |room| {
+                            collide_rows(&moving, &given, Wanted::default(), (alone, room))
+                        });
                     },
                 );
             }

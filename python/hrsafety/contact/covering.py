@@ -83,7 +83,7 @@ class Covering:
     bottom : tuple of two floats
         Strain e_b from which a backing of stiffness K_b (N/m) acts; K_b = 0: none.
     half_width : float or None
-        Half-width of the pad in m, for `Column.status`.
+        Half-width of the pad under a curved contact in m, for `Column.status`; ``None`` for a flat one.
 
     Raises
     ------
@@ -125,6 +125,9 @@ class Covering:
                 raise InvalidParameterError(f"covering.{name}", f"be given for shape {self.shape!r}", None)
             if given is not None and name not in (*needed, "half_width", "second_radius"):
                 raise InvalidParameterError(f"covering.{name}", f"be None for shape {self.shape!r}", given)
+        if self.half_width is not None and self.shape == "flat":
+            remedy = "a flat contact has its area whatever the compression: leave it out, or give a curved shape"
+            raise InvalidParameterError("covering.half_width", "be None for shape 'flat'", self.half_width, remedy)
         if self.second_radius is not None and self.shape != "curved":
             raise InvalidParameterError("covering.second_radius", "be None unless curved", self.second_radius)
         values["damping"] = not_negative("covering.damping", self.damping)
@@ -238,7 +241,7 @@ def shape_flags(depth: Any, *, radii: Sequence[Any], thickness: Any, half_width:
     """Return where the columns under a curved contact do not describe it; every number may be an array."""
     if all(np.ndim(radius) == 0 and math.isnan(radius) for radius in radii):
         # Flat: nothing to compare.
-        return {name: np.zeros(np.shape(depth), dtype=bool) for name in ("outside_paraboloid", "beyond_pad", "edge")}
+        return {}
     with np.errstate(invalid="ignore"):
         least, largest = np.fmin(*radii), np.fmax(*radii)
         widest = math.inf if half_width is None else half_width

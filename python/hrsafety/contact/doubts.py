@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from hrsafety import _hrsafety
 from hrsafety.contact.covering import Covering, shape_flags
-from hrsafety.contact.materials import Rusch, StressTable
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.contact.materials import GibsonAshby, Rusch, StressTable
+from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
 __all__ = ["Doubts", "covering_flags", "flagged", "implausible_numbers", "not_checked"]
 
 Doubts = tuple[ResultWarning, ...]
 
+_UNKNOWN = "the solution did not come to its end and nothing is known"
 _FLAGS = {
     "invalid": ResultWarning("invalid_numbers", "status", "a number is invalid and nothing is known: see status"),
-    "unfinished": ResultWarning(
-        "unfinished", "status", "the solution did not come to its end and nothing is known: a larger tolerance may help"
-    ),
+    "unfinished": ResultWarning("unfinished", "status", f"{_UNKNOWN}: a larger tolerance may help"),
     "beyond_data": ResultWarning(
         "beyond_data", "covering.material", "the covering is compressed by more than was measured: no load is known"
     ),
@@ -64,16 +64,35 @@ _QUANTITIES = {
 }
 
 
-def flagged(flags: Mapping[str, Any]) -> Doubts:
-    """Return a warning for each flag that holds, with the number of rows where there are several."""
+def flagged(flags: Mapping[str, Any], pad: Covering | None = None) -> Doubts:
+    """Return a warning for each flag that holds, with the number of rows where there are several.
+
+    Of an unfinished solution the covering tells why.
+    """
     found = []
     for name, flag in flags.items():
         rows = np.asarray(flag)
         held = int(np.count_nonzero(rows))
         if held:
-            doubt = _FLAGS[name]
+            doubt = _unfinished(pad) if name == "unfinished" else _FLAGS[name]
             found.append(doubt if rows.ndim == 0 else replace(doubt, message=_counted(held, rows.size, doubt.message)))
     return tuple(found)
+
+
+def _unfinished(pad: Covering | None) -> ResultWarning:
+    """Return what leaves a solution without its end."""
+    causes = []
+    if pad is not None and isinstance(pad.material, GibsonAshby) and pad.material.exponent < 1.0:
+        causes.append(
+            "with an exponent below 1 the law stores a limited energy up to its lock, and a collision with more never "
+            "turns: a thicker or larger covering, or a backing (bottom) from a strain below the lock, bears more"
+        )
+    if pad is not None and pad.damping > 0.0:
+        causes.append(
+            "a damper that relaxes within microseconds beside a stiff column takes too many steps: leave it out"
+        )
+    doubt = _FLAGS["unfinished"]
+    return replace(doubt, message=f"{_UNKNOWN}: {'; '.join(causes)}") if causes else doubt
 
 
 def _counted(held: int, rows: int, message: str) -> str:
@@ -90,7 +109,9 @@ def covering_flags(pad: Covering | None, depth: Any, numbers: Mapping[str, Any])
         return {**flags, "beyond_thickness": np.asarray(depth) > np.asarray(numbers["thickness"])}
 
 
-def implausible_numbers(pad: Covering | None, region: str, numbers: Mapping[str, Any]) -> Doubts:
+def implausible_numbers(
+    pad: Covering | None, region: str, numbers: Mapping[str, Any], threads: int | None = 1
+) -> Doubts:
     """Return a warning for every number of a contact that is hardly what was meant."""
     values = {name: numbers[name] for name in _QUANTITIES if not (name == "stiffness" and region == "power")}
     quantities = dict(_QUANTITIES)
@@ -102,12 +123,18 @@ def implausible_numbers(pad: Covering | None, region: str, numbers: Mapping[str,
                 values[name], quantities[name] = numbers[f"material_{place}"], "covering_stress"
         if isinstance(law, StressTable):
             values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
-    return implausible({name: _judged(value) for name, value in values.items()}, quantities)
+    judged = {name: _judged(value, quantities.get(name, name), threads) for name, value in values.items()}
+    return implausible(judged, quantities)
 
 
-def _judged(value: Any) -> Any:
+def _judged(value: Any, quantity: str, threads: int | None) -> Any:
     """Return what of a number can be implausible: not what is 0, below 0, infinite or not given."""
     given = np.asarray(value, dtype=np.float64)
+    if given.ndim:
+        least, most = _hrsafety.positive_ends(np.ascontiguousarray(given).reshape(-1), threads)
+        # Most arrays are plausible, and long.
+        if least >= RANGES[quantity][0] and most <= RANGES[quantity][1]:
+            return None
     return np.where((given > 0.0) & np.isfinite(given), given, np.nan)
 
 

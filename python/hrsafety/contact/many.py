@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,6 +44,10 @@ class Many(NamedTuple):
     warnings: Doubts
     given: dict[str, Any]
 
+    def flag(self, name: str) -> npt.NDArray[np.bool_]:
+        """Return a flag of every row; one that cannot hold is false."""
+        return self.flags[name] if name in self.flags else np.zeros(self.status.shape, dtype=bool)
+
 
 def many(
     kind: str,
@@ -59,14 +63,14 @@ def many(
     shared, values = row
     region = str(shared["region"])
     columns, shape = columns_of(values, varying, applying(kind, region, covering))
-    rows = int(np.prod(shape, dtype=np.int64))
+    rows, count = int(np.prod(shape, dtype=np.int64)), thread_count(threads)
     found = _hrsafety.contact_rows(
         kind,
         shared,
         columns,
         rows,
         gravity=gravity,
-        threads=thread_count(threads),
+        threads=count,
         progress=callback("progress", progress),
     )
     found = {name: each.reshape(shape) for name, each in found.items()}
@@ -77,25 +81,33 @@ def many(
     codes, words = found.pop("status_code"), WORDS[kind]
     flags = covering_flags(covering, found[_DEPTHS[kind]], given)
     flags = {name: np.broadcast_to(each, shape) for name, each in flags.items()}
-    told = {"invalid": codes >= len(words), "unfinished": codes == words.index("unfinished")}
-    if "beyond_data" in words:
-        told["beyond_data"] = codes == words.index("beyond_data")
+    there = _hrsafety.codes_there(codes.reshape(-1), count)
+    told = {"invalid": codes >= len(words)} if any(there[len(words) :]) else {}
+    for name in ("unfinished", "beyond_data"):
+        if name in words and there[words.index(name)]:
+            told[name] = codes == words.index(name)
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, covering),
+        status=_status(words, codes, there, covering, count),
         flags=flags,
-        warnings=(*flagged(told | flags), *implausible_numbers(covering, region, given)),
+        warnings=(*flagged(told | flags, covering), *implausible_numbers(covering, region, given, count)),
         given=given,
     )
 
 
-def words_at(words: npt.NDArray[np.str_], codes: npt.NDArray[Any]) -> npt.NDArray[np.str_]:
-    """Return the words at codes; the last word stands for every code beyond it."""
-    return np.asarray(np.take(words, codes, mode="clip"))
+def words_at(words: Sequence[str], codes: npt.NDArray[np.uint8], *, threads: int | None) -> npt.NDArray[np.str_]:
+    """Return the words at codes; the last one stands for every code beyond it."""
+    flat, width = codes.reshape(-1), max(1, *map(len, words))
+    letters = np.asarray(words, dtype=f"U{width}").view(np.uint32).reshape(len(words), width)
+    found = np.empty(flat.size, dtype=f"U{width}")
+    _hrsafety.fill_words(found.view(np.uint32).reshape(flat.size, width), flat, letters, threads)
+    return found.reshape(codes.shape)
 
 
-def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.NDArray[np.str_]:
+def _status(
+    words: list[str], codes: npt.NDArray[np.uint8], there: list[bool], covering: Covering | None, threads: int | None
+) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
     if covering is not None:
@@ -103,7 +115,5 @@ def _status(words: list[str], codes: Array, covering: Covering | None) -> npt.ND
             names[names.index(f"material_{place}")] = name
     all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
     # Only as wide as the words that are there: the longest one takes many times the room of its code.
-    there = np.bincount(codes.ravel(), minlength=256) > 0
-    there[len(all_words) - 1] = there[len(all_words) - 1 :].any()
-    found = np.asarray([word if use else "" for word, use in zip(all_words, there, strict=False)])
-    return words_at(found, codes)
+    used = [*there[: len(all_words) - 1], any(there[len(all_words) - 1 :])]
+    return words_at([word if use else "" for word, use in zip(all_words, used, strict=True)], codes, threads=threads)

@@ -244,7 +244,7 @@ def simulate(
         peak_body_acceleration_g=None if acceleration is None else acceleration / GRAVITY,
         bottomed=found["bottomed"],
         rising=found["rising"],
-        warnings=(*flagged(flags), *implausible_numbers(pad, str(shared["region"]), values)),
+        warnings=(*flagged(flags, pad), *implausible_numbers(pad, str(shared["region"]), values)),
         time=found["time"],
         **{name: found[name] for name in motion},
     )
@@ -386,9 +386,8 @@ def batch(
         raise InvalidParameterError("head", "be True or False", head)
     gravity = GRAVITY if head else None
     found = many("collide", row, varying, pad, gravity=gravity, threads=threads, progress=progress)
-    empty = np.zeros(found.status.shape, dtype=bool)
     loads: dict[str, Any] = {name: found.numbers[name] for name in _FOUND}
-    flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
+    flags: dict[str, Any] = {name: found.flag(name) for name in _FLAGS}
     return ContactBatch(
         status=found.status,
         **loads,

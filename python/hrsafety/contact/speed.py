@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, not_negative, positive
+from hrsafety._arguments import Array, not_negative, positive, thread_count
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.covering import Covering, Region, covering_of
@@ -31,7 +31,7 @@ __all__ = [
     "thickness",
 ]
 
-_GOVERNS = np.asarray(["force", "pressure", "strain", "nothing"])
+_GOVERNS = ("force", "pressure", "strain", "nothing")
 _FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
 
 
@@ -180,7 +180,7 @@ def allowed_speed(
         covering_compression=known(found["covering_compression"]),
         warnings=(
             *not_checked(missing),
-            *flagged(flags),
+            *flagged(flags, pad),
             *implausible_numbers(pad, str(shared["region"]), values),
         ),
         robot_speed=None if speed is None else max(speed - walking, 0.0),
@@ -296,10 +296,10 @@ def allowed_speeds(
     found = many("speed", (shared, values), varying, pad, threads=threads, progress=progress)
     there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
     missing = missing_limits(there, bare=pad is None)
-    empty = np.zeros(found.status.shape, dtype=bool)
     numbers: dict[str, Any] = dict(found.numbers)
-    flags: dict[str, Any] = {name: found.flags.get(name, empty) for name in _FLAGS}
-    governs = words_at(_GOVERNS, numbers.pop("governs_code"))[()]
+    flags: dict[str, Any] = {name: found.flag(name) for name in _FLAGS}
+    codes = numbers.pop("governs_code")
+    governs = words_at(_GOVERNS, codes, threads=thread_count(threads))[()]
     return AllowedSpeeds(
         **numbers,
         governs=governs,

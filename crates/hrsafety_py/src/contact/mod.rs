@@ -6,15 +6,16 @@ pub(crate) mod separation;
 use std::sync::Arc;
 
 use impact_core::allowed::{
-    BOTTOMED, Columns, Distribution, Drive, Given, Kind, LOADS, Law, NAMES, Outline, RISING,
-    RegionKind, Row, Setup, SpeedStatus, ThicknessStatus, collide_rows, differential_mass,
-    exceedance, holonomic_mass, speed_rows, thickness_rows,
+    BOTTOMED, Distribution, Drive, Given, Kind, LOADS, Law, NAMES, Outline, RISING, RegionKind,
+    Room, Row, SPEEDS, Setup, SpeedStatus, THICKNESSES, ThicknessStatus, collide_rows,
+    differential_mass, exceedance, holonomic_mass, speed_rows, thickness_rows,
 };
 use impact_core::collision::{Status, Wanted};
 use impact_core::columns::Column;
 use impact_core::covering::Table;
 use numeric::error::{Failure, Given as Shown};
 use numeric::parallel::Work;
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -130,35 +131,55 @@ pub fn contact_rows<'py>(
         nodes: false,
         injury: gravity,
     };
-    let work = |control: &Control<'_>| -> Result<Columns, Failure> {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|more| control.count(more),
-        };
-        match kind {
-            "collide" => collide_rows(&setup, &given, wanted, work),
-            "speed" => speed_rows(&setup, &given, work),
-            "thickness" => thickness_rows(&setup, &given, work),
-            other => Err(Failure::invalid(
-                "kind",
-                "be a known word",
-                Shown::Word(other.to_owned()),
-            )),
-        }
+    let names: &[&str] = match kind {
+        "collide" => &LOADS,
+        "speed" => &SPEEDS,
+        "thickness" => &THICKNESSES,
+        other => return Err(unknown("kind", other).into()),
     };
-    let found = watched(py, Report::new(progress.as_ref(), rows), work)?;
-    let fields = Fields::new(py);
-    for (name, values) in found.numbers {
-        fields.vector(name, values)?;
+    // Zeros are not written before a thread fills its part.
+    let columns: Vec<_> = names
+        .iter()
+        .map(|_| PyArray1::<f64>::zeros(py, rows, false))
+        .collect();
+    let codes = [0, 1].map(|_| PyArray1::<u8>::zeros(py, rows, false));
+    {
+        let held = columns.iter().map(|column| Ok(column.try_readwrite()?));
+        let mut held: Vec<_> = held.collect::<PyResult<_>>()?;
+        let numbers = held.iter_mut().map(|column| Ok(column.as_slice_mut()?));
+        let (mut status, mut word) = (codes[0].try_readwrite()?, codes[1].try_readwrite()?);
+        let room = Room {
+            numbers: numbers.collect::<PyResult<_>>()?,
+            status: status.as_slice_mut()?,
+            word: word.as_slice_mut()?,
+        };
+        let work = |control: &Control<'_>| {
+            let work = Work {
+                threads,
+                interrupted: &|| control.interrupted(),
+                progress: &|more| control.count(more),
+            };
+            match kind {
+                "collide" => collide_rows(&setup, &given, wanted, (work, room)),
+                "speed" => speed_rows(&setup, &given, work, room),
+                _ => thickness_rows(&setup, &given, work, room),
+            }
+        };
+        watched(py, Report::new(progress.as_ref(), rows), work)?;
     }
-    fields.vector("status_code", found.status)?;
-    let has = |bit: u8| found.word.iter().map(move |word| word & bit != 0).collect();
+    let fields = Fields::new(py);
+    for (name, column) in names.iter().zip(columns) {
+        fields.value(name, column)?;
+    }
+    let word = codes[1].try_readonly()?;
+    let word = word.as_slice()?;
+    fields.value("status_code", &codes[0])?;
+    let has = |bit: u8| word.iter().map(|code| code & bit != 0).collect();
     fields.vector::<bool>("rising", has(RISING))?;
     if kind == "collide" {
         fields.vector::<bool>("bottomed", has(BOTTOMED))?;
     } else {
-        let governs = found.word.iter().map(|word| word & !RISING).collect();
+        let governs = word.iter().map(|code| code & !RISING).collect();
         fields.vector::<u8>("governs_code", governs)?;
     }
     Ok(fields.finish())

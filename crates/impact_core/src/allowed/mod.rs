@@ -12,6 +12,7 @@
 mod base;
 mod numeric;
 mod probability;
+mod room;
 mod row;
 mod rows;
 mod setup;
@@ -24,8 +25,11 @@ pub use numeric::{SCANNED, numeric_speed};
 pub use probability::{
     Distribution, Interval, Probability, clopper_pearson, exceedance, normal_probability,
 };
+pub use room::Room;
 pub use row::{Kind, Law, NAMES, Outline, RegionKind, Row};
-pub use rows::{BOTTOMED, Columns, Given, LOADS, RISING, collide_rows, speed_rows, thickness_rows};
+pub use rows::{
+    BOTTOMED, Given, LOADS, RISING, SPEEDS, THICKNESSES, collide_rows, speed_rows, thickness_rows,
+};
 pub use setup::Setup;
 pub use thickness::{Thickness, ThicknessStatus, least_thickness};
 

@@ -1,18 +1,18 @@
 //! Many contacts at once, for batches and maps.
 
 use numeric::parallel::Work;
-use numeric::threads::{on_threads, try_each};
 
+use super::room::{Piece, Room};
 use super::row::{CALLED, COUNT, FIRST_MATERIAL, MASSES, NAMES, OPTIONAL, Row, is_of_law};
 use super::setup::{Known, Setup};
 use super::{Governs, SpeedStatus, ThicknessStatus};
-use crate::collision::{Status, Wanted};
+use crate::collision::{Outcome, Status, Wanted, simulate_all};
 use crate::columns::Column;
 use crate::covering::Material;
 use crate::error::{Failure, Given as Shown, Result};
 
-/// Rows of a task; the bits of a row do not depend on it.
-const BLOCK: usize = 256;
+/// Collisions whose steps are taken side by side.
+const TOGETHER: usize = 64;
 
 /// Inputs of rows, and how many there are.
 #[derive(Clone, Debug)]
@@ -96,97 +96,81 @@ fn code_of(place: usize) -> u8 {
 /// A row of results: numbers, the place of its status among all, and a second code.
 type Found<const N: usize> = ([f64; N], usize, u8);
 
-/// Numbers by name, and the codes of statuses and of what stands beside them.
-pub struct Columns {
-    /// Columns with their names.
-    pub numbers: Vec<(&'static str, Vec<f64>)>,
-    /// Status of each row.
-    pub status: Vec<u8>,
-    /// A second code of each row.
-    pub word: Vec<u8>,
+/// What rows are made of, with the law of all of them where it does not differ.
+struct Rows<'a> {
+    setup: &'a Setup,
+    given: &'a Given<'a>,
+    varying: Vec<usize>,
+    fixed: Option<Result<Option<Material>>>,
 }
 
-/// Columns of some rows, to be filled.
-struct Piece<'a, const N: usize> {
-    first: usize,
-    numbers: [&'a mut [f64]; N],
-    status: &'a mut [u8],
-    word: &'a mut [u8],
-}
-
-impl<const N: usize> Piece<'_, N> {
-    fn put(&mut self, place: usize, (numbers, status, word): ([f64; N], u8, u8)) {
-        for (column, number) in self.numbers.iter_mut().zip(numbers) {
-            column[place] = number;
+impl<'a> Rows<'a> {
+    fn new(setup: &'a Setup, given: &'a Given<'a>) -> Self {
+        let shared = given.rows > 0 && !given.varies();
+        Self {
+            varying: given.varying(),
+            fixed: shared.then(|| setup.material(&given.row(0))),
+            setup,
+            given,
         }
-        self.status[place] = status;
-        self.word[place] = word;
+    }
+
+    /// The law of a row whose numbers are all there, if rows share it.
+    fn law(&self, index: usize) -> Result<Option<&Material>> {
+        self.given.check(index)?;
+        match &self.fixed {
+            Some(Ok(found)) => Ok(found.as_ref()),
+            Some(Err(failure)) => Err(failure.clone()),
+            None => Ok(None),
+        }
     }
 }
 
-/// Results of all rows in blocks over the threads; `words` statuses come before those of invalid rows, which
-/// have `nothing` as their second code.
+/// Codes of a kind of results: `words` statuses come before those of invalid rows, which have `nothing` as their second
+/// code.
+#[derive(Clone, Copy)]
+struct Kinds {
+    words: usize,
+    nothing: u8,
+}
+
+impl Kinds {
+    /// Numbers and codes of a result.
+    fn codes<const N: usize>(self, setup: &Setup, found: Result<Found<N>>) -> ([f64; N], u8, u8) {
+        match found {
+            Ok((numbers, status, word)) => (numbers, code_of(status), word),
+            Err(failure) => {
+                let code = invalid(setup, &failure, self.words);
+                ([f64::NAN; N], code, self.nothing)
+            }
+        }
+    }
+}
+
+/// Results of all rows in blocks over the threads.
 ///
 /// What is remembered of a row is there for the next one as long as rows differ in their masses only.
 fn each_row<const N: usize, M: Default>(
-    (setup, given): (&Setup, &Given<'_>),
-    (names, words, nothing): ([&'static str; N], usize, u8),
+    rows: &Rows<'_>,
+    (kinds, room): (Kinds, Room<'_>),
     work: Work<'_>,
-    of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync,
-) -> Result<Columns> {
-    let varying = given.varying();
-    let fill = |mut piece: Piece<'_, N>| -> Result<()> {
-        let fixed = if given.varies() {
-            Ok(None)
-        } else {
-            setup.material(&given.row(0))
-        };
-        let one = |index: usize, row: &Row, remembered: &mut M| {
-            given.check(index)?;
-            let material = fixed.as_ref().map_err(Clone::clone)?;
-            of(row, material.as_ref(), remembered)
-        };
-        let (mut row, mut remembered) = (given.row(piece.first), M::default());
+    of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync + Send,
+) -> Result<()> {
+    room.fill(work, |piece: &mut Piece<'_, N>| {
+        let (mut row, mut remembered) = (rows.given.row(piece.first), M::default());
         for place in 0..piece.status.len() {
             if (work.interrupted)() {
                 return Err(Failure::Interrupted);
             }
             let index = piece.first + place;
-            if given.advance(&mut row, &varying, index) {
+            if rows.given.advance(&mut row, &rows.varying, index) {
                 remembered = M::default();
             }
-            let found = match one(index, &row, &mut remembered) {
-                Ok((numbers, status, word)) => (numbers, code_of(status), word),
-                Err(failure) => ([f64::NAN; N], invalid(setup, &failure, words), nothing),
-            };
-            piece.put(place, found);
+            let law = rows.law(index);
+            let found = law.and_then(|law| of(&row, law, &mut remembered));
+            piece.put(place, kinds.codes(rows.setup, found));
         }
-        (work.progress)(piece.status.len());
         Ok(())
-    };
-    let mut numbers = names.map(|_| vec![0.0; given.rows]);
-    let mut status = vec![0; given.rows];
-    let mut word = vec![0; given.rows];
-    let mut columns = numbers.each_mut().map(|column| column.chunks_mut(BLOCK));
-    let codes = status.chunks_mut(BLOCK).zip(word.chunks_mut(BLOCK));
-    let pieces = codes.enumerate().map(|(index, (status, word))| Piece {
-        first: index * BLOCK,
-        numbers: columns
-            .each_mut()
-            .map(|pieces| pieces.next().unwrap_or_default()),
-        status,
-        word,
-    });
-    let pieces = pieces.collect();
-    on_threads(work.threads, || try_each(pieces, fill))?;
-    let mut numbers = numbers.into_iter();
-    Ok(Columns {
-        numbers: names
-            .into_iter()
-            .map(|name| (name, numbers.next().unwrap_or_default()))
-            .collect(),
-        status,
-        word,
     })
 }
 
@@ -212,6 +196,17 @@ pub const LOADS: [&str; 14] = [
     "hic36",
     "end_force",
 ];
+/// Names of the numbers of allowed speeds.
+pub const SPEEDS: [&str; 6] = [
+    "speed",
+    "speed_force",
+    "speed_pressure",
+    "speed_strain",
+    "bare_speed_force",
+    "covering_compression",
+];
+/// Name of the number of least thicknesses.
+pub const THICKNESSES: [&str; 1] = ["thickness"];
 /// Second code of a collision that reached the backing.
 pub const BOTTOMED: u8 = 1;
 /// Second code of loads that still rose at the horizon; it is added to the others.
@@ -225,35 +220,76 @@ pub fn collide_rows(
     setup: &Setup,
     given: &Given<'_>,
     wanted: Wanted,
-    work: Work<'_>,
-) -> Result<Columns> {
-    let kind = (LOADS, Status::ALL.len(), 0);
-    each_row((setup, given), kind, work, |row, fixed, (): &mut ()| {
-        let found = setup.collide(row, fixed, wanted, work.interrupted)?;
-        let bottomed = BOTTOMED * u8::from(found.bottomed);
-        let word = bottomed + RISING * u8::from(found.rising);
-        Ok((found.loads(), place_of(&Status::ALL, &found.status), word))
+    (work, room): (Work<'_>, Room<'_>),
+) -> Result<()> {
+    let rows = Rows::new(setup, given);
+    let kinds = Kinds {
+        words: Status::ALL.len(),
+        nothing: 0,
+    };
+    room.fill(work, |piece: &mut Piece<'_, 14>| {
+        for first in (0..piece.status.len()).step_by(TOGETHER) {
+            let places = first..piece.status.len().min(first + TOGETHER);
+            let pads: Vec<_> = places
+                .clone()
+                .map(|place| {
+                    let index = piece.first + place;
+                    let row = given.row(index);
+                    let pad = setup.pad(&row, rows.law(index)?)?;
+                    Ok((row, pad))
+                })
+                .collect();
+            let collisions: Vec<_> = pads
+                .iter()
+                .map(|found: &Result<_>| {
+                    let (row, pad) = found.as_ref().map_err(Clone::clone)?;
+                    setup.moving(row, pad.as_ref())
+                })
+                .collect();
+            if (work.interrupted)() {
+                return Err(Failure::Interrupted);
+            }
+            let valid: Vec<_> = collisions
+                .iter()
+                .filter_map(|of| of.as_ref().ok())
+                .collect();
+            let mut outcomes = simulate_all(&valid, wanted, work.interrupted).into_iter();
+            for (place, collision) in places.zip(&collisions) {
+                let found = match collision {
+                    Ok(_) => outcomes
+                        .next()
+                        .as_ref()
+                        .map(loads)
+                        .ok_or(Failure::Interrupted),
+                    Err(failure) => Err(failure.clone()),
+                };
+                piece.put(place, kinds.codes(setup, found));
+            }
+        }
+        Ok(())
     })
+}
+
+/// Numbers and codes of loads.
+fn loads(found: &Outcome) -> Found<14> {
+    let bottomed = BOTTOMED * u8::from(found.bottomed);
+    let word = bottomed + RISING * u8::from(found.rising);
+    (found.loads(), place_of(&Status::ALL, &found.status), word)
 }
 
 /// Allowed speeds of all rows; the second code is the place of what governs.
 ///
 /// # Errors
 /// The caller asked to stop.
-pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Columns> {
-    let names = [
-        "speed",
-        "speed_force",
-        "speed_pressure",
-        "speed_strain",
-        "bare_speed_force",
-        "covering_compression",
-    ];
+pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>, room: Room<'_>) -> Result<()> {
     let nothing = code_of(place_of(&Governs::ALL, &Governs::Nothing));
-    let kind = (names, SpeedStatus::ALL.len(), nothing);
+    let kinds = Kinds {
+        words: SpeedStatus::ALL.len(),
+        nothing,
+    };
     each_row(
-        (setup, given),
-        kind,
+        &Rows::new(setup, given),
+        (kinds, room),
         work,
         |row, fixed, known: &mut Option<Known>| {
             let (found, bare) = setup.allowed(row, fixed, known, work.interrupted)?;
@@ -279,9 +315,18 @@ pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Co
 ///
 /// # Errors
 /// The caller asked to stop.
-pub fn thickness_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>) -> Result<Columns> {
-    let kind = (["thickness"], ThicknessStatus::ALL.len(), 0);
-    each_row((setup, given), kind, work, |row, fixed, (): &mut ()| {
+pub fn thickness_rows(
+    setup: &Setup,
+    given: &Given<'_>,
+    work: Work<'_>,
+    room: Room<'_>,
+) -> Result<()> {
+    let kinds = Kinds {
+        words: ThicknessStatus::ALL.len(),
+        nothing: 0,
+    };
+    let rows = Rows::new(setup, given);
+    each_row(&rows, (kinds, room), work, |row, fixed, (): &mut ()| {
         let found = setup.thickness(row, fixed)?;
         let status = place_of(&ThicknessStatus::ALL, &found.status);
         Ok(([found.thickness], status, 0))

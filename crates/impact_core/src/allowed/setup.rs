@@ -254,7 +254,16 @@ impl Setup {
         interrupted: Interrupted<'_>,
     ) -> Result<Outcome> {
         let pad = self.pad(row, fixed)?;
-        let collision = self.collision(row, pad.as_ref())?;
+        let collision = self.moving(row, pad.as_ref())?;
+        Ok(simulate(&collision, wanted, interrupted))
+    }
+
+    /// The collision of a row that comes to an end.
+    ///
+    /// # Errors
+    /// A number is out of its range.
+    pub fn moving<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Collision<'a>> {
+        let collision = self.collision(row, pad)?;
         if collision.reduced_mass().is_infinite() {
             let rule = "be finite against a clamped body";
             return Err(Failure::invalid(
@@ -263,6 +272,6 @@ impl Setup {
                 Shown::Number(f64::INFINITY),
             ));
         }
-        Ok(simulate(&collision, wanted, interrupted))
+        Ok(collision)
     }
 }

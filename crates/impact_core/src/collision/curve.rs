@@ -1,6 +1,8 @@
 //! A step along a curve of two numbers: the explicit pair of order 8 with errors of orders 5 and 3 of Hairer,
 //! Norsett and Wanner (1993), known as DOP853.
 
+use numeric::lanes::Real;
+
 /// Nodes of the stages after the first one.
 const NODES: [f64; 11] = [
     0.052_600_151_958_767_73,
@@ -83,61 +85,104 @@ pub struct Step {
     slopes: [[f64; 2]; 12],
     /// State at its end.
     pub state: [f64; 2],
-    /// Its error over the scales.
-    pub error: f64,
 }
 
-/// A step of some length.
-#[inline]
-pub fn step(
-    rates: impl Fn(f64, [f64; 2]) -> [f64; 2],
-    (at, state, first): (f64, [f64; 2], [f64; 2]),
-    length: f64,
-    scales: [f64; 2],
-) -> Step {
-    let mut slopes = [[0.0; 2]; 12];
-    slopes[0] = first;
-    // Written out, so that every sum of weights becomes straight code.
-    macro_rules! stages {
-        ($($index:literal)*) => {$(
-            let inner = moved(state, length, STAGES[$index], &slopes);
-            slopes[$index + 1] = rates(at + NODES[$index] * length, inner);
-        )*};
-    }
-    stages!(0 1 2 3 4 5 6 7 8 9 10);
-    let mut sums = [[0.0; 2]; 3];
-    for (place, weights) in RESULT {
-        for (sum, weight) in sums.iter_mut().zip(weights) {
-            sum[0] += weight * slopes[place][0];
-            sum[1] += weight * slopes[place][1];
+/// Steps of curves side by side.
+#[derive(Clone, Copy)]
+pub struct Steps<R> {
+    from: [R; 2],
+    length: R,
+    slopes: [[R; 2]; 12],
+    state: [R; 2],
+    error: R,
+}
+
+impl<R: Real> Steps<R> {
+    /// None yet.
+    pub fn none() -> Self {
+        Self {
+            from: [R::zero(); 2],
+            length: R::zero(),
+            slopes: [[R::zero(); 2]; 12],
+            state: [R::zero(); 2],
+            error: R::zero(),
         }
     }
-    let [result, third, fifth] = sums;
-    let square = |error: [f64; 2]| {
-        let [first, second] = [error[0] / scales[0], error[1] / scales[1]];
-        first * first + second * second
-    };
-    let (low, high) = (square(third), square(fifth));
-    // The smaller error of order 5 counts by its share of both.
-    let error = if high == 0.0 {
-        0.0
-    } else {
-        length.abs() * high / (high + 0.01 * low).sqrt()
-    };
-    Step {
-        from: state,
-        length,
-        slopes,
-        state: [state[0] + length * result[0], state[1] + length * result[1]],
-        error,
+
+    /// The same in more lanes; the last one stands for those beyond it.
+    pub fn widened<W: Real>(&self) -> Steps<W> {
+        let of = |number: R| W::from_fn(|lane| number.lane(lane.min(R::WIDTH - 1)));
+        let both = |[first, second]: [R; 2]| [of(first), of(second)];
+        Steps {
+            from: both(self.from),
+            length: of(self.length),
+            slopes: self.slopes.map(both),
+            state: both(self.state),
+            error: of(self.error),
+        }
+    }
+
+    /// State at the end of one curve's step, and its error over the scales.
+    pub fn end(&self, lane: usize) -> ([f64; 2], f64) {
+        let state = self.state.map(|number| number.lane(lane));
+        (state, self.error.lane(lane))
+    }
+
+    /// The step of one curve.
+    pub fn lane(&self, lane: usize) -> Step {
+        let of = |pair: [R; 2]| pair.map(|number| number.lane(lane));
+        Step {
+            from: of(self.from),
+            length: self.length.lane(lane),
+            slopes: self.slopes.map(of),
+            state: of(self.state),
+        }
+    }
+
+    /// Takes steps of some lengths.
+    #[inline(always)]
+    pub fn take(
+        &mut self,
+        rates: impl Fn(R, [R; 2]) -> [R; 2],
+        (at, state, first): (R, [R; 2], [R; 2]),
+        length: R,
+        scales: [R; 2],
+    ) {
+        (self.from, self.length) = (state, length);
+        let slopes = &mut self.slopes;
+        slopes[0] = first;
+        for (index, (weights, node)) in STAGES.iter().zip(NODES).enumerate() {
+            let inner = moved(state, length, weights, slopes);
+            slopes[index + 1] = rates(at + R::splat(node) * length, inner);
+        }
+        let mut sums = [[R::zero(); 2]; 3];
+        for (place, weights) in RESULT {
+            for (sum, weight) in sums.iter_mut().zip(weights) {
+                let weight = R::splat(weight);
+                sum[0] += weight * slopes[place][0];
+                sum[1] += weight * slopes[place][1];
+            }
+        }
+        let [result, third, fifth] = sums;
+        let square = |error: [R; 2]| {
+            let [first, second] = [error[0] / scales[0], error[1] / scales[1]];
+            first * first + second * second
+        };
+        let (low, high) = (square(third), square(fifth));
+        // The smaller error of order 5 counts by its share of both.
+        let share = length.abs() * high / (high + R::splat(0.01) * low).sqrt();
+        let none = high.le(R::zero()) & high.ge(R::zero());
+        self.error = R::select(none, R::zero(), share);
+        self.state = [state[0] + length * result[0], state[1] + length * result[1]];
     }
 }
 
-/// A state moved along the slopes of some stages.
+/// States moved along the slopes of some stages.
 #[inline(always)]
-fn moved(state: [f64; 2], length: f64, weights: &[(usize, f64)], slopes: &[[f64; 2]]) -> [f64; 2] {
-    let mut sum = [0.0; 2];
+fn moved<R: Real>(state: [R; 2], length: R, weights: &[(usize, f64)], slopes: &[[R; 2]]) -> [R; 2] {
+    let mut sum = [R::zero(); 2];
     for &(place, weight) in weights {
+        let weight = R::splat(weight);
         sum[0] += weight * slopes[place][0];
         sum[1] += weight * slopes[place][1];
     }
@@ -211,7 +256,17 @@ impl Inside {
 
 #[cfg(test)]
 mod tests {
-    use super::{Inside, step};
+    use super::{Inside, Steps};
+
+    fn step(
+        rates: impl Fn(f64, [f64; 2]) -> [f64; 2],
+        from: (f64, [f64; 2], [f64; 2]),
+        length: f64,
+    ) -> Steps<f64> {
+        let mut taken = Steps::none();
+        taken.take(rates, from, length, [1.0; 2]);
+        taken
+    }
 
     /// A quarter of a circle in steps of equal length.
     fn turned(count: u32) -> ([f64; 2], f64) {
@@ -220,7 +275,7 @@ mod tests {
         let (mut state, mut worst) = ([1.0, 0.0], 0.0_f64);
         for _ in 0..count {
             let first = rates(0.0, state);
-            let taken = step(rates, (0.0, state, first), length, [1.0; 2]);
+            let taken = step(rates, (0.0, state, first), length);
             worst = worst.max(taken.error);
             state = taken.state;
         }
@@ -251,7 +306,8 @@ mod tests {
     #[test]
     fn a_right_side_of_the_variable_alone_is_integrated() {
         let rates = |x: f64, _: [f64; 2]| [8.0 * x.powi(7), 3.0 * x * x];
-        let state = step(rates, (0.0, [0.0; 2], [0.0; 2]), 1.0, [1.0; 2]).state;
+        let taken = step(rates, (0.0, [0.0; 2], [0.0; 2]), 1.0);
+        let state = taken.state;
         assert!((state[0] - 1.0).abs() < 1e-13 && (state[1] - 1.0).abs() < 1e-13);
     }
 
@@ -260,7 +316,7 @@ mod tests {
         let rates = |_, [x, y]: [f64; 2]| [-y, x];
         let error = |length: f64| {
             let from = [1.0, 0.0];
-            let taken = step(rates, (0.0, from, rates(0.0, from)), length, [1.0; 2]);
+            let taken = step(rates, (0.0, from, rates(0.0, from)), length).lane(0);
             let inside = Inside::of(rates, 0.0, &taken, rates(length, taken.state));
             assert_eq!(inside.at(0.0)[0], from);
             assert!((inside.at(1.0)[0][0] - taken.state[0]).abs() < 1e-15);

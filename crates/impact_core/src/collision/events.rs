@@ -233,8 +233,14 @@ pub fn located<const N: usize>(
 fn cubic_root(first: [f64; 2], last: [f64; 2], length: f64) -> f64 {
     let (a, b) = (first[0], last[0]);
     let (da, db) = (first[1] * length, last[1] * length);
-    // A value that starts infinite, as the rate of a force may, says nothing of where it is zero.
-    let line = if a == f64::INFINITY { 0.5 } else { a / (a - b) };
+    // A value that is infinite, as the rate of a force may be, or no number, as beyond the end of a law, says nothing of
+    // where it is zero.
+    let line = a / (a - b);
+    let line = if a == f64::INFINITY || line.is_nan() {
+        0.5
+    } else {
+        line
+    };
     if !(da.is_finite() && db.is_finite()) {
         return line * length;
     }
@@ -262,4 +268,18 @@ fn cubic_root(first: [f64; 2], last: [f64; 2], length: f64) -> f64 {
         x = next;
     }
     x * length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cubic_root;
+
+    #[test]
+    fn values_that_are_no_numbers_are_halved() {
+        for last in [[f64::NAN, 1.0], [f64::NAN; 2], [f64::NEG_INFINITY, -1.0]] {
+            let root = cubic_root([1.0, -1.0], last, 2.0);
+            assert!((0.0..=2.0).contains(&root), "{root}");
+        }
+        assert_eq!(cubic_root([1.0, -1.0], [f64::NAN; 2], 2.0), 1.0);
+    }
 }

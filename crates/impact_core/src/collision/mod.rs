@@ -29,7 +29,7 @@ mod tests;
 
 pub use outcome::{Node, Outcome, Status};
 pub use region::Region;
-pub use run::{INJURY_WINDOWS, Wanted, simulate};
+pub use run::{INJURY_WINDOWS, Wanted, simulate, simulate_all};
 pub use statics::{Rest, rest_of};
 
 use crate::covering::Pad;

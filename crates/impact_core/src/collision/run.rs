@@ -6,11 +6,12 @@ use numeric::threads::Interrupted;
 
 use super::events::{Event, Marks, Sizes, Start, first_event};
 use super::injury::injury_of;
+use super::loading::Turn;
 use super::mechanics::{BODY_SPEED, Carried, Local, Mechanics, PART, Past, SPEED, State, TOTAL};
 use super::outcome::{Node, Outcome, Status};
 use super::statics::rest_of;
 use super::step::{Step, step};
-use super::stored::stored;
+use super::stored::{stored, turns};
 use super::{Collision, Region};
 use crate::covering::Pad;
 use crate::roots::Peak;
@@ -43,15 +44,46 @@ pub fn simulate(
     wanted: Wanted,
     interrupted: Interrupted<'_>,
 ) -> Outcome {
-    if collision.closing_speed <= 0.0 {
-        return Outcome::nothing(Status::NoImpact);
-    }
-    let held =
-        collision.robot.is_held() || (collision.body.is_held() && collision.body.mass.is_finite());
-    if held {
-        return Run::<5>::new(collision, wanted).finish(wanted, interrupted);
-    }
-    let exact = stored(collision);
+    simulate_all(&[collision], wanted, interrupted)
+        .pop()
+        .unwrap_or_else(|| Outcome::nothing(Status::Unfinished))
+}
+
+/// Loads of some collisions, each as alone, bit for bit.
+#[must_use]
+pub fn simulate_all(
+    collisions: &[&Collision<'_>],
+    wanted: Wanted,
+    interrupted: Interrupted<'_>,
+) -> Vec<Outcome> {
+    let free = |collision: &&&Collision<'_>| collision.closing_speed > 0.0 && !is_held(collision);
+    let some: Vec<_> = collisions.iter().filter(free).copied().collect();
+    let mut turns = turns(&some).into_iter();
+    let each = collisions.iter().map(|collision| {
+        if collision.closing_speed <= 0.0 {
+            Outcome::nothing(Status::NoImpact)
+        } else if is_held(collision) {
+            Run::<5>::new(collision, wanted).finish(wanted, interrupted)
+        } else {
+            let turn = turns.next().flatten();
+            released(collision, turn.as_ref(), wanted, interrupted)
+        }
+    });
+    each.collect()
+}
+
+fn is_held(collision: &Collision<'_>) -> bool {
+    collision.robot.is_held() || (collision.body.is_held() && collision.body.mass.is_finite())
+}
+
+/// Loads of a collision of free bodies, with its turn if the rate counts.
+fn released(
+    collision: &Collision<'_>,
+    turn: Option<&Turn>,
+    wanted: Wanted,
+    interrupted: Interrupted<'_>,
+) -> Outcome {
+    let exact = stored(collision, turn);
     let moving = wanted.nodes || wanted.injury.is_some();
     match exact {
         Some(found) if !moving => found,

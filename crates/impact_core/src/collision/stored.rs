@@ -5,8 +5,9 @@
 //! every covering, with the work that unloading returns, and on the way in of one without rate.
 
 use numeric::lanes::{Lanes, Real, each};
+use pulp::{Simd, WithSimd};
 
-use super::loading::{Turn, first_exponent, smooth_power, turn_of};
+use super::loading::{Turn, first_exponent, smooth_power, turns_of};
 use super::outcome::{Outcome, Status};
 use super::statics::rest_of;
 use super::{Collision, Region};
@@ -42,10 +43,21 @@ trait Integrand {
     fn at<R: Real>(&self, x: R) -> R;
 }
 
-/// Values of an integrand side by side: one copy of the code for all.
-#[inline(never)]
-fn values(integrand: &impl Integrand, x: Nodes) -> Nodes {
-    integrand.at(x)
+/// Values of an integrand side by side, compiled once for each instruction set.
+struct Values<'a, I>(&'a I, [Nodes; 2]);
+
+impl<I: Integrand> WithSimd for Values<'_, I> {
+    type Output = [Nodes; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> [Nodes; 2] {
+        let Self(integrand, mut nodes) = self;
+        // A loop: the code of an integrand is long.
+        for x in &mut nodes {
+            *x = integrand.at(*x);
+        }
+        nodes
+    }
 }
 
 /// Integral over an interval, and the error of the smaller rule.
@@ -54,10 +66,8 @@ fn kronrod(low: f64, high: f64, integrand: &impl Integrand) -> [f64; 2] {
     let node = |lane: usize| NODES.get(lane).map_or(0.0, |node| node[0]);
     let away = Nodes::splat(half) * Nodes::from_fn(node);
     let center = Nodes::splat(middle);
-    let [before, beyond] = [
-        values(integrand, center - away),
-        values(integrand, center + away),
-    ];
+    let nodes = [center - away, center + away];
+    let [before, beyond] = pulp::Arch::new().dispatch(Values(integrand, nodes));
     let [mut fine, mut coarse] = MIDDLE.map(|weight| weight * before.lane(NODES.len()));
     for (index, [_, weight, of_gauss]) in NODES.into_iter().enumerate() {
         let both = before.lane(index) + beyond.lane(index);
@@ -243,11 +253,15 @@ impl Integrand for Late<'_> {
     }
 }
 
-/// Where the compression turns: from the energy, or from the motion where the rate counts.
-fn turned(collision: &Collision<'_>) -> Option<Turn> {
+fn is_rated(pad: Option<&Pad>) -> bool {
+    pad.is_some_and(|pad| !pad.covering.rate.is_none())
+}
+
+/// Where the compression turns: from the energy, or that of the motion where the rate counts.
+fn turned(collision: &Collision<'_>, moved: Option<&Turn>) -> Option<Turn> {
     let (pad, region) = (collision.pad, collision.region);
-    if pad.is_some_and(|pad| !pad.covering.rate.is_none()) {
-        return turn_of(collision);
+    if is_rated(pad) {
+        return moved.copied();
     }
     let (mass, speed) = (collision.reduced_mass(), collision.closing_speed);
     let rest = rest_of(pad, region, 0.5 * mass * speed * speed);
@@ -281,18 +295,42 @@ fn turned(collision: &Collision<'_>) -> Option<Turn> {
     })
 }
 
-/// Loads of a collision of free bodies without damper that ends before its horizon.
-#[must_use]
-pub fn stored(collision: &Collision<'_>) -> Option<Outcome> {
-    let (pad, region) = (collision.pad, collision.region);
-    let lossy = pad.is_some_and(|pad| pad.covering.unloading.retained < 1.0);
-    let rated = pad.is_some_and(|pad| !pad.covering.rate.is_none());
+/// Whether loads without supports follow from the stored energy, and the motion up to the turn where the rate counts.
+fn is_known(pad: Option<&Pad>) -> bool {
     // What unloading returns has a closed form for a flat covering, as far as its bottom.
-    let known = |pad: &Pad| !lossy || matches!(pad.covering.shape, Shape::Flat { .. });
-    if pad.is_some_and(|pad| pad.covering.damping > 0.0 || !known(pad)) {
+    let known = |pad: &Pad| {
+        let flat = matches!(pad.covering.shape, Shape::Flat { .. });
+        pad.covering.unloading.retained == 1.0 || flat
+    };
+    pad.is_none_or(|pad| pad.covering.damping == 0.0 && known(pad))
+}
+
+/// Turns of those of some collisions of free bodies whose motion up to there is needed for their loads.
+#[must_use]
+pub fn turns(collisions: &[&Collision<'_>]) -> Vec<Option<Turn>> {
+    let wanted = |place: &usize| {
+        let pad = collisions[*place].pad;
+        is_rated(pad) && is_known(pad)
+    };
+    let places: Vec<usize> = (0..collisions.len()).filter(wanted).collect();
+    let some: Vec<_> = places.iter().map(|place| collisions[*place]).collect();
+    let mut found = vec![None; collisions.len()];
+    for (place, turn) in places.into_iter().zip(turns_of(&some)) {
+        found[place] = turn;
+    }
+    found
+}
+
+/// Loads of a collision of free bodies without damper that ends before its horizon, with its turn if the rate counts.
+#[must_use]
+pub fn stored(collision: &Collision<'_>, moved: Option<&Turn>) -> Option<Outcome> {
+    let (pad, region) = (collision.pad, collision.region);
+    if !is_known(pad) {
         return None;
     }
-    let turn = turned(collision)?;
+    let lossy = pad.is_some_and(|pad| pad.covering.unloading.retained < 1.0);
+    let rated = is_rated(pad);
+    let turn = turned(collision, moved)?;
     if lossy && pad.is_some_and(|pad| turn.compression > pad.bottom()) {
         return None;
     }

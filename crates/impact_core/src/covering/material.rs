@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::gibson_ashby::GibsonAshby;
-use super::powers::{MOST_EXPONENT, power, powers, raised, within};
+use super::powers::{MOST_EXPONENT, Powers, power, powers, raised, within};
 use super::quadrature::integral_before_pole;
 use super::table::Table;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
@@ -128,6 +128,17 @@ impl Material {
     #[must_use]
     pub fn is_measured(&self) -> bool {
         matches!(self, Self::Table(_))
+    }
+
+    /// The stress as a sum of powers of the strain, if it is one.
+    #[must_use]
+    pub fn powers(&self) -> Option<Powers> {
+        let (factors, exponents) = match *self {
+            Self::Linear { modulus } => ([modulus, 0.0], [1.0; 2]),
+            Self::Rusch { a, p, b, q } => ([a, b], [p, q]),
+            _ => return None,
+        };
+        Some(Powers { factors, exponents })
     }
 
     /// Stress and its slope.
@@ -289,13 +300,7 @@ impl Material {
 /// Work, stress and slope of a sum of two powers.
 #[inline(always)]
 fn rusch<R: Real>(factors: [f64; 2], exponents: [f64; 2], strain: R) -> [R; 3] {
-    let [[first, first_slope], [second, second_slope]] = powers(factors, exponents, strain);
-    let [more, most] = exponents.map(|exponent| R::splat(exponent + 1.0));
-    [
-        strain * (first / more + second / most),
-        first + second,
-        first_slope + second_slope,
-    ]
+    Powers { factors, exponents }.works(strain)
 }
 
 fn check_rusch([a, p, b, q]: [f64; 4]) -> Result<()> {

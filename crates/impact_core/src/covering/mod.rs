@@ -16,7 +16,7 @@ mod work;
 
 pub use gibson_ashby::GibsonAshby;
 pub use material::Material;
-pub use powers::product;
+pub use powers::{Powers, product};
 pub use shape::Shape;
 pub use table::Table;
 
@@ -197,6 +197,7 @@ pub struct Pad {
     pub covering: Covering,
     scale: f64,
     halves: Option<HalfOrders>,
+    powers: Option<Powers>,
     /// Compression at which the backing begins, infinite if there is none.
     bottom: f64,
 }
@@ -212,8 +213,15 @@ impl Pad {
         } else {
             f64::INFINITY
         };
+        let scale = covering.shape.scale(covering.thickness);
+        let powers = match (&covering.shape, &halves) {
+            (Shape::Cylinder { .. }, halves) => halves.as_ref().and_then(HalfOrders::sum),
+            (Shape::Flat { .. }, _) => covering.material.powers(),
+            (Shape::Curved { .. }, _) => covering.material.powers().map(Powers::integral),
+        };
         Self {
-            scale: covering.shape.scale(covering.thickness),
+            scale,
+            powers: powers.map(|powers| powers.times(scale)),
             halves,
             bottom,
             covering,
@@ -293,6 +301,12 @@ impl Pad {
             slope += bottoming.stiffness;
         }
         [value, slope]
+    }
+
+    /// The force as a sum of powers of the strain, as far as the onset of the backing, if it is one.
+    #[must_use]
+    pub fn powers(&self) -> Option<Powers> {
+        self.powers
     }
 
     /// Largest compression at which the force is at most a value; `None` beyond the end of a table.

@@ -75,22 +75,90 @@ fn sloped<R: Real>([factor, exponent]: [f64; 2], x: R, power: R) -> [R; 2] {
 /// negative.
 #[inline(always)]
 pub(super) fn powers<R: Real>(factors: [f64; 2], exponents: [f64; 2], x: R) -> [[R; 2]; 2] {
-    let products = [products_of(exponents[0]), products_of(exponents[1])];
-    let logarithm = if products[0].is_none() || products[1].is_none() {
+    let products = exponents.map(products_of);
+    let logarithm = shared_logarithm(products, x);
+    // Written out: what a closure does is not compiled for the instructions of the caller.
+    let first = [factors[0], exponents[0]];
+    let second = [factors[1], exponents[1]];
+    [
+        one_of(first, products[0], x, logarithm),
+        one_of(second, products[1], x, logarithm),
+    ]
+}
+
+/// The logarithm of `x` if a power of it is no product.
+#[inline(always)]
+fn shared_logarithm<R: Real>(products: [Option<(u32, bool)>; 2], x: R) -> R {
+    if products[0].is_none() || products[1].is_none() {
         logarithm_of(x)
     } else {
         x
-    };
-    let one = |place: usize| {
-        let numbers = [factors[place], exponents[place]];
-        one_of(numbers, products[place], x, logarithm)
-    };
-    [one(0), one(1)]
+    }
 }
 
-/// A power with a factor and its slope, from the logarithm where it is no product. Out of line: in larger bodies of
-/// code the compiler keeps numbers side by side in memory.
-#[inline(never)]
+/// Two powers of the strain whose sum is the force of columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Powers {
+    /// Their factors.
+    pub factors: [f64; 2],
+    /// Their exponents.
+    pub exponents: [f64; 2],
+}
+
+impl Powers {
+    /// Its integral.
+    #[must_use]
+    pub fn integral(self) -> Self {
+        let exponents = self.exponents.map(|exponent| exponent + 1.0);
+        let over = |place: usize| self.factors[place] / exponents[place];
+        Self {
+            factors: [over(0), over(1)],
+            exponents,
+        }
+    }
+
+    /// Its product with a number.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let [first, second] = self.factors;
+        Self {
+            factors: [factor * first, factor * second],
+            ..self
+        }
+    }
+
+    /// Integral of the sum, the sum and its slope.
+    #[inline(always)]
+    pub fn works<R: Real>(&self, x: R) -> [R; 3] {
+        let [more, most] = self.exponents;
+        let (more, most) = (R::splat(more + 1.0), R::splat(most + 1.0));
+        let [[first, first_slope], [second, second_slope]] =
+            powers(self.factors, self.exponents, x);
+        [
+            x * (first / more + second / most),
+            first + second,
+            first_slope + second_slope,
+        ]
+    }
+
+    /// Sums of powers with these exponents and their slopes, side by side.
+    #[inline(always)]
+    pub fn sums<R: Real>(exponents: [f64; 2], factors: [R; 2], x: R) -> [R; 2] {
+        let products = exponents.map(products_of);
+        let logarithm = shared_logarithm(products, x);
+        let power = raised_by(products[0], exponents[0], x, logarithm);
+        let first = sloped([1.0, exponents[0]], x, power);
+        let power = raised_by(products[1], exponents[1], x, logarithm);
+        let second = sloped([1.0, exponents[1]], x, power);
+        [
+            factors[0] * first[0] + factors[1] * second[0],
+            factors[0] * first[1] + factors[1] * second[1],
+        ]
+    }
+}
+
+/// A power with a factor and its slope, from the logarithm where it is no product.
+#[inline(always)]
 fn one_of<R: Real>(
     [factor, exponent]: [f64; 2],
     products: Option<(u32, bool)>,
@@ -100,11 +168,16 @@ fn one_of<R: Real>(
     if factor == 0.0 {
         return [R::zero(); 2];
     }
-    let power = match products {
+    let power = raised_by(products, exponent, x, logarithm);
+    sloped([factor, exponent], x, power)
+}
+
+#[inline(always)]
+fn raised_by<R: Real>(products: Option<(u32, bool)>, exponent: f64, x: R, logarithm: R) -> R {
+    match products {
         Some(products) => by_products(x, products),
         None => exponential_of(logarithm * R::splat(exponent)),
-    };
-    sloped([factor, exponent], x, power)
+    }
 }
 
 /// One number waits less for the functions of the library, several side by side for series.

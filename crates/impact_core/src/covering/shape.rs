@@ -15,7 +15,7 @@
 use std::f64::consts::PI;
 
 use super::material::Material;
-use super::powers::power;
+use super::powers::{Powers, power};
 use super::quadrature::integral_between_poles;
 use crate::error::{Result, positive};
 
@@ -150,6 +150,26 @@ impl HalfOrders {
             }
         };
         Self { powers, rest }
+    }
+
+    /// Order 1/2 as a sum of powers of the strain, if it is one.
+    #[must_use]
+    pub fn sum(&self) -> Option<Powers> {
+        let from_zero = self.rest.is_none() && self.powers.iter().all(|part| part.origin == 0.0);
+        let (first, more) = self.powers.split_first().filter(|_| from_zero)?;
+        let none = Power {
+            factor: 0.0,
+            ..*first
+        };
+        let second = match more {
+            [] => &none,
+            [second] => second,
+            _ => return None,
+        };
+        Some(Powers {
+            factors: [first.factor, second.factor],
+            exponents: [first.exponent, second.exponent],
+        })
     }
 
     /// Orders 1/2 and -1/2 at a strain.

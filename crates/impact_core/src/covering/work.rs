@@ -32,7 +32,16 @@ impl Pad {
     #[inline(always)]
     #[must_use]
     pub fn works<R: Real>(&self, compression: R) -> R {
-        if !self.is_flat() || compression.le(R::zero()).any() {
+        let none = compression.le(R::zero()).any();
+        if let Some(powers) = self.powers
+            && !self.is_flat()
+            && !none
+        {
+            let thickness = R::splat(self.covering.thickness);
+            let [work, ..] = powers.works(compression / thickness);
+            return thickness * work + self.backing(compression)[0];
+        }
+        if !self.is_flat() || none {
             return R::from_fn(|lane| self.work(compression.lane(lane)));
         }
         let thickness = self.covering.thickness;
@@ -47,7 +56,21 @@ impl Pad {
     #[inline(always)]
     #[must_use]
     pub fn work_and_force<R: Real>(&self, compression: R) -> [R; 3] {
-        if !self.is_flat() || compression.le(R::zero()).any() {
+        let none = compression.le(R::zero()).any();
+        if let Some(powers) = self.powers
+            && !self.is_flat()
+            && !none
+        {
+            let thickness = R::splat(self.covering.thickness);
+            let [work, force, slope] = powers.works(compression / thickness);
+            let [stored, more, stiffness] = self.backing(compression);
+            return [
+                thickness * work + stored,
+                force + more,
+                slope / thickness + stiffness,
+            ];
+        }
+        if !self.is_flat() || none {
             return each(compression, |compression| {
                 let [force, slope] = self.force(compression);
                 [self.work(compression), force, slope]

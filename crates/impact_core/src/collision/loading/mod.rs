@@ -11,6 +11,7 @@
 //! with `(eps'/v)^2`, and up to kinks of the law, so that steps end there without a search; then `eps'`, so that the
 //! last one ends at the turn.
 
+mod beside;
 mod plane;
 mod steps;
 mod top;
@@ -20,13 +21,14 @@ use std::cell::Cell;
 
 pub use variable::smooth_power;
 
-use super::curve::{EVALUATIONS, Inside, Step, step};
+use super::curve::{EVALUATIONS, Inside, Step, Steps};
 use super::statics::rest_of;
 use super::{Collision, Region};
-use crate::covering::{Pad, Shape};
+use crate::covering::{Pad, Powers, Shape};
 use crate::roots::Peak;
+use beside::{Asked, WIDTH, Wide, take};
 use plane::{Point, Scales};
-use steps::{Progress, finer_than_usual};
+use steps::{Progress, Reach, finer_than_usual};
 use variable::Variable;
 
 /// Most evaluations of the forces.
@@ -57,6 +59,8 @@ struct Loading<'a> {
     mass: f64,
     scales: Scales,
     curved: bool,
+    /// The force as a sum of powers, if it is one.
+    powers: Option<Powers>,
     /// Whether the force beyond a kink of the law grows like a half power.
     half_powers: bool,
     kinks: Vec<f64>,
@@ -78,13 +82,26 @@ struct Loading<'a> {
 }
 
 impl Loading<'_> {
-    fn walk(&self, variable: Variable, from: &Point, length: f64) -> Step {
+    /// A step to ask for.
+    fn asked(&self, variable: Variable, from: &Point, length: f64) -> Asked {
         // The end of a step is evaluated as well.
         self.evaluations
             .set(self.evaluations.get() + EVALUATIONS + 1);
-        let scales = self.scales_of(variable, from);
-        let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
-        step(rates, (from.at, from.state, from.rates), length, scales)
+        Asked {
+            variable,
+            at: from.at,
+            state: from.state,
+            rates: from.rates,
+            length,
+            scales: self.scales_of(variable, from),
+            exponents: self.powers.map(|powers| powers.exponents),
+        }
+    }
+
+    fn walk(&self, variable: Variable, from: &Point, length: f64) -> Step {
+        let mut taken = Steps::none();
+        take(&[(self, self.asked(variable, from, length))], &mut taken);
+        taken.lane(0)
     }
 
     /// Sizes of the state, for its errors.
@@ -133,54 +150,6 @@ impl Loading<'_> {
         self.piece[1] = f64::INFINITY;
     }
 
-    /// At the touch.
-    fn touch(&self) -> Progress {
-        let variable = self.from_touch;
-        Progress::new(variable, self.point(variable, 0.0, [1.0, 0.0]))
-    }
-
-    fn travel(&mut self) -> Option<Turn> {
-        let mut tops = [Peak::NONE; 2];
-        let mut now = self.touch();
-        while self.evaluations.get() < MOST_EVALUATIONS {
-            self.choose(&mut now);
-            let reach = self.reach(&now);
-            let taken = self.walk(now.variable, &now.point, reach.length);
-            let state = taken.state;
-            let growth = match self.judged(&now, &reach, state, taken.error) {
-                Ok(growth) => growth,
-                Err(factor) => {
-                    now.new = false;
-                    now.length = reach.length * factor;
-                    if now.length <= SHORTEST * (now.point.at + now.length) {
-                        return None;
-                    }
-                    continue;
-                }
-            };
-            if !self.deepens(&now) && state[0] > self.kink {
-                // The step is taken once more, over the compression and up to the kink.
-                now.to_kink = true;
-                continue;
-            }
-            let next = self.point(now.variable, now.point.at + reach.length, state);
-            let shorter = now.variable.room(next.at) / now.variable.room(now.point.at);
-            if next.depth >= self.pad.bound() {
-                return None;
-            }
-            self.offer((now.variable, &taken), [&now.point, &next], &mut tops);
-            now.point = next;
-            now.length = reach.length * growth * shorter;
-            now.new = false;
-            match reach.last {
-                true if self.deepens(&now) => self.pass_kink(&mut now),
-                true => return Some(self.turn(&now.point, tops)),
-                false => (),
-            }
-        }
-        None
-    }
-
     fn turn(&self, point: &Point, [force, pressure]: [Peak; 2]) -> Turn {
         Turn {
             compression: point.depth,
@@ -202,6 +171,116 @@ impl Loading<'_> {
     }
 }
 
+/// A collision on its way to the turn.
+struct Way<'a> {
+    loading: Loading<'a>,
+    now: Progress,
+    tops: [Peak; 2],
+    reach: Reach,
+    /// Whether no step is left to take.
+    ended: bool,
+    turn: Option<Turn>,
+}
+
+impl<'a> Way<'a> {
+    /// At the touch.
+    fn new(loading: Loading<'a>) -> Self {
+        let variable = loading.from_touch;
+        Self {
+            now: Progress::new(variable, loading.point(variable, 0.0, [1.0, 0.0])),
+            tops: [Peak::NONE; 2],
+            reach: Reach::NONE,
+            ended: false,
+            turn: None,
+            loading,
+        }
+    }
+
+    /// The next step.
+    fn ask(&mut self) -> Option<Asked> {
+        self.ended |= self.loading.evaluations.get() >= MOST_EVALUATIONS;
+        if self.ended {
+            return None;
+        }
+        self.loading.choose(&mut self.now);
+        self.reach = self.loading.reach(&self.now);
+        let Progress {
+            variable, point, ..
+        } = &self.now;
+        Some(self.loading.asked(*variable, point, self.reach.length))
+    }
+
+    /// Goes on after a step that was asked for.
+    fn go_on(&mut self, taken: &Steps<Wide>, lane: usize) {
+        let (loading, now, reach) = (&mut self.loading, &mut self.now, &self.reach);
+        let (state, error) = taken.end(lane);
+        let growth = match loading.judged(now, reach, state, error) {
+            Ok(growth) => growth,
+            Err(factor) => {
+                now.new = false;
+                now.length = reach.length * factor;
+                self.ended = now.length <= SHORTEST * (now.point.at + now.length);
+                return;
+            }
+        };
+        if !loading.deepens(now) && state[0] > loading.kink {
+            // The step is taken once more, over the compression and up to the kink.
+            now.to_kink = true;
+            return;
+        }
+        let next = loading.point(now.variable, now.point.at + reach.length, state);
+        let shorter = now.variable.room(next.at) / now.variable.room(now.point.at);
+        if next.depth >= loading.pad.bound() {
+            self.ended = true;
+            return;
+        }
+        let step = || taken.lane(lane);
+        loading.offer((now.variable, &step), [&now.point, &next], &mut self.tops);
+        now.point = next;
+        now.length = reach.length * growth * shorter;
+        now.new = false;
+        match reach.last {
+            true if loading.deepens(now) => loading.pass_kink(now),
+            true => {
+                self.turn = Some(loading.turn(&now.point, self.tops));
+                self.ended = true;
+            }
+            false => (),
+        }
+    }
+}
+
+/// Takes steps of all of them until each has ended.
+fn travel(ways: &mut [Way<'_>]) {
+    let mut taken = Steps::none();
+    loop {
+        let asked = ways.iter_mut().enumerate();
+        let mut asked: Vec<(usize, Asked)> = asked
+            .filter_map(|(place, way)| Some((place, way.ask()?)))
+            .collect();
+        if asked.is_empty() {
+            return;
+        }
+        while let Some((_, first)) = asked.first() {
+            let first = *first;
+            let (alike, others): (Vec<_>, _) = asked
+                .into_iter()
+                .partition(|(_, step)| step.is_like(&first));
+            for group in alike.chunks(WIDTH) {
+                let steps: Vec<_> = group
+                    .iter()
+                    .map(|(place, step)| (&ways[*place].loading, *step))
+                    .collect();
+                take(&steps, &mut taken);
+                for (lane, (place, _)) in group.iter().enumerate() {
+                    ways[*place].go_on(&taken, lane);
+                }
+            }
+            asked = others;
+        }
+    }
+}
+
 /// Power with which the force of covering and region rises at the touch.
 #[must_use]
 pub fn first_exponent(pad: &Pad, region: Region) -> f64 {
@@ -212,10 +291,22 @@ pub fn first_exponent(pad: &Pad, region: Region) -> f64 {
     pad.first_exponent() / bend
 }
 
-/// The turn of a collision of free bodies without damper, and the peaks before it; `None` where the steps do not
-/// get there.
+/// Turns of collisions of free bodies without damper, and the peaks before them; `None` where the steps do not get there.
 #[must_use]
-pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
+pub fn turns_of(collisions: &[&Collision<'_>]) -> Vec<Option<Turn>> {
+    let mut found = vec![None; collisions.len()];
+    let starts = collisions.iter().enumerate();
+    let (places, mut ways): (Vec<usize>, Vec<_>) = starts
+        .filter_map(|(place, collision)| Some((place, Way::new(start(collision)?))))
+        .unzip();
+    travel(&mut ways);
+    for (place, way) in places.into_iter().zip(ways) {
+        found[place] = way.turn;
+    }
+    found
+}
+
+fn start<'a>(collision: &'a Collision<'a>) -> Option<Loading<'a>> {
     let pad = collision.pad?;
     let (mass, speed) = (collision.reduced_mass(), collision.closing_speed);
     let energy = 0.5 * mass * speed * speed;
@@ -239,6 +330,7 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
         },
         curved: !matches!(pad.covering.shape, Shape::Flat { .. }),
         half_powers: matches!(pad.covering.shape, Shape::Cylinder { .. }),
+        powers: pad.powers(),
         kinks: pad.kinks(),
         kink: f64::INFINITY,
         piece: [0.0; 2],
@@ -250,5 +342,5 @@ pub fn turn_of(collision: &Collision<'_>) -> Option<Turn> {
         evaluations: Cell::new(0),
     };
     loading.enter(0.0);
-    loading.travel()
+    Some(loading)
 }

@@ -1,30 +1,33 @@
 //! Forces and rates at a place of the plane of `d` and `eps'`.
 
+use numeric::elementary::{exponential, logarithm};
+use numeric::lanes::Real;
+
 use super::variable::{Variable, deepened, slowed};
 use super::{Loading, Region};
 
 /// Forces at a place of the plane.
 #[derive(Clone, Copy)]
-pub(super) struct Forces {
-    pub(super) force: f64,
-    pub(super) over_depth: f64,
-    pub(super) over_speed: f64,
+pub(super) struct Forces<R> {
+    force: R,
+    over_depth: R,
+    over_speed: R,
     /// `1 + delta' f_d`.
-    pub(super) share: f64,
+    share: R,
     /// `mu eps' + f delta' f_v`.
-    pub(super) inertia: f64,
+    inertia: R,
 }
 
 /// A place of the plane, seen over a variable.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
-    pub(super) depth: f64,
-    pub(super) speed: f64,
+pub(super) struct Place<R> {
+    pub(super) depth: R,
+    pub(super) speed: R,
     /// Rates of both.
-    pub(super) change: [f64; 2],
+    change: [R; 2],
     /// Rates of the state.
-    pub(super) rates: [f64; 2],
-    pub(super) forces: Forces,
+    pub(super) rates: [R; 2],
+    forces: Forces<R>,
 }
 
 /// Reciprocals of sizes.
@@ -56,90 +59,185 @@ pub(super) struct Point {
     pub(super) loads: [[f64; 2]; 2],
 }
 
-impl Loading<'_> {
-    #[inline]
-    fn forces(&self, depth: f64, speed: f64) -> Forces {
+/// A variable of collisions side by side.
+#[derive(Clone, Copy)]
+pub(super) enum Over<R> {
+    Depth { origin: R, first: R, power: i32 },
+    Pace { unit: R, doublings: u32, range: R },
+}
+
+impl<R: Real> Over<R> {
+    /// Of variables of one kind.
+    #[inline(always)]
+    pub(super) fn of(first: Variable, each: impl Fn(usize) -> Variable) -> Self {
+        let number = |of: fn(Variable) -> f64| R::from_fn(|lane| of(each(lane)));
+        match first {
+            Variable::Depth { power, .. } => Self::Depth {
+                origin: number(Variable::start),
+                first: number(Variable::unit),
+                power,
+            },
+            Variable::Pace { doublings, .. } => Self::Pace {
+                unit: number(Variable::unit),
+                doublings,
+                range: number(Variable::start),
+            },
+        }
+    }
+}
+
+/// Numbers of collisions side by side.
+#[derive(Clone, Copy)]
+pub(super) struct Numbers<R> {
+    mass: R,
+    closing_speed: R,
+    per_thickness: R,
+    per_unit: R,
+    per_energy: R,
+    /// Exponent of the rate factor and its slope.
+    exponent: [R; 2],
+    /// Compressions at the ends of the piece of the law.
+    piece: [R; 2],
+}
+
+impl<R: Real> Numbers<R> {
+    /// Numbers of each lane's collision.
+    #[inline(always)]
+    pub(super) fn of<'a>(each: impl Fn(usize) -> &'a Loading<'a>) -> Self {
+        let number = |of: fn(&Loading<'_>) -> f64| R::from_fn(|lane| of(each(lane)));
+        Self {
+            mass: number(|of| of.mass),
+            closing_speed: number(|of| of.collision.closing_speed),
+            per_thickness: number(|of| of.scales.per_thickness),
+            per_unit: number(|of| of.scales.per_unit),
+            per_energy: number(|of| of.scales.per_energy),
+            exponent: [
+                number(|of| of.pad.covering.rate.base),
+                number(|of| of.pad.covering.rate.slope),
+            ],
+            piece: [number(|of| of.piece[0]), number(|of| of.piece[1])],
+        }
+    }
+
+    /// Forces, from force and slope of the columns over compression and strain, and from what the region yields by under a force.
+    #[inline(always)]
+    fn forces(
+        &self,
+        [depth, speed]: [R; 2],
+        columns: impl Fn(R, R) -> [R; 2],
+        yielding: impl Fn(R) -> R,
+    ) -> Forces<R> {
         // A kink belongs to the piece that is passed.
         let inside = depth.max(self.piece[0]).min(self.piece[1]);
-        let Scales {
-            per_thickness,
-            per_unit,
-            ..
-        } = self.scales;
-        let [at_rest, slope] = self.pad.force_by(inside, per_thickness);
-        let rate = self.pad.covering.rate;
-        let inner = 1.0 + speed * per_unit;
-        let exponent = rate.base + rate.slope * (inside * per_thickness);
-        let logarithm = inner.ln();
-        let factor = (exponent * logarithm).exp();
+        let strain = inside * self.per_thickness;
+        let [at_rest, slope] = columns(inside, strain);
+        let one = R::splat(1.0);
+        let inner = one + speed * self.per_unit;
+        let [base, more] = self.exponent;
+        let exponent = base + more * strain;
+        let logarithm = logarithm_of(inner);
+        let factor = exponential_of(exponent * logarithm);
         let force = at_rest * factor;
-        let over_depth = factor * (slope + at_rest * rate.slope * logarithm * per_thickness);
-        let over_speed = force * exponent * per_unit / inner;
-        let inertia = self.mass * speed;
-        let yielding = match self.collision.region {
-            Region::Rigid => {
-                return Forces {
-                    force,
-                    over_depth,
-                    over_speed,
-                    share: 1.0,
-                    inertia,
-                };
-            }
-            Region::Spring { cubic: 0.0, .. } => self.scales.yielding,
-            other => 1.0 / other.force(other.deflection(force))[1],
-        };
+        let over_depth = factor * (slope + at_rest * more * logarithm * self.per_thickness);
+        let over_speed = force * exponent * self.per_unit / inner;
+        let yielding = yielding(force);
         Forces {
             force,
             over_depth,
             over_speed,
-            share: 1.0 + yielding * over_depth,
-            inertia: inertia + force * yielding * over_speed,
+            share: one + yielding * over_depth,
+            inertia: self.mass * speed + force * yielding * over_speed,
         }
     }
 
     /// Place of the plane, its change over a variable, the forces there and the rates of the state.
-    #[inline]
-    pub(super) fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> Place {
-        match variable {
-            Variable::Depth {
+    #[inline(always)]
+    pub(super) fn place(
+        &self,
+        over: Over<R>,
+        at: R,
+        state: [R; 2],
+        columns: impl Fn(R, R) -> [R; 2],
+        yielding: impl Fn(R) -> R,
+    ) -> Place<R> {
+        let ([depth, speed], change) = match over {
+            Over::Depth {
                 origin,
                 first,
                 power,
             } => {
                 let [beyond, change] = deepened(first, power, at);
-                let depth = origin + beyond;
-                let speed = self.collision.closing_speed * state[0].sqrt();
-                let forces = self.forces(depth, speed);
-                let ratio = change * forces.share / forces.inertia;
-                let slower = ratio * forces.force;
-                let lost = -2.0 * self.scales.per_energy * speed * slower;
-                Place {
-                    depth,
-                    speed,
-                    change: [change, -slower],
-                    rates: [lost, self.mass * ratio],
-                    forces,
-                }
+                let speed = self.closing_speed * state[0].sqrt();
+                ([origin + beyond, speed], change)
             }
-            Variable::Pace {
+            Over::Pace {
                 unit,
                 doublings,
                 range,
             } => {
                 let [speed, change] = slowed([unit, range], doublings, at);
-                let forces = self.forces(state[0], speed);
+                ([state[0], speed], change)
+            }
+        };
+        let forces = self.forces([depth, speed], columns, yielding);
+        let (change, rates) = match over {
+            Over::Depth { .. } => {
+                let ratio = change * forces.share / forces.inertia;
+                let slower = ratio * forces.force;
+                let lost = -R::splat(2.0) * self.per_energy * speed * slower;
+                ([change, -slower], [lost, self.mass * ratio])
+            }
+            Over::Pace { .. } => {
                 let ratio = -change / forces.force;
                 let deeper = ratio * forces.inertia / forces.share;
-                Place {
-                    depth: state[0],
-                    speed,
-                    change: [deeper, change],
-                    rates: [deeper, ratio * self.mass],
-                    forces,
-                }
+                ([deeper, change], [deeper, ratio * self.mass])
             }
+        };
+        Place {
+            depth,
+            speed,
+            change,
+            rates,
+            forces,
         }
+    }
+}
+
+/// One number waits less for the functions of the library, several side by side for series.
+#[inline(always)]
+fn logarithm_of<R: Real>(x: R) -> R {
+    if R::WIDTH == 1 {
+        R::splat(x.lane(0).ln())
+    } else {
+        logarithm(x)
+    }
+}
+
+#[inline(always)]
+fn exponential_of<R: Real>(x: R) -> R {
+    if R::WIDTH == 1 {
+        R::splat(x.lane(0).exp())
+    } else {
+        exponential(x)
+    }
+}
+
+impl Loading<'_> {
+    /// What the region yields by, for each newton more of a force.
+    #[inline]
+    pub(super) fn yielding(&self, force: f64) -> f64 {
+        match self.collision.region {
+            Region::Rigid | Region::Spring { cubic: 0.0, .. } => self.scales.yielding,
+            other => 1.0 / other.force(other.deflection(force))[1],
+        }
+    }
+
+    /// A place of the plane.
+    pub(super) fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> Place<f64> {
+        let numbers = Numbers::<f64>::of(|_| self);
+        let columns = |depth, _| self.pad.force_by(depth, self.scales.per_thickness);
+        let over = Over::of(variable, |_| variable);
+        numbers.place(over, at, state, columns, |force| self.yielding(force))
     }
 
     pub(super) fn point(&self, variable: Variable, at: f64, state: [f64; 2]) -> Point {

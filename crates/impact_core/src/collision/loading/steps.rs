@@ -58,6 +58,14 @@ pub(super) struct Reach {
     pub(super) last: bool,
 }
 
+impl Reach {
+    /// None yet.
+    pub(super) const NONE: Self = Self {
+        length: 0.0,
+        last: false,
+    };
+}
+
 impl Loading<'_> {
     /// The variable for the next step.
     pub(super) fn variable(&self, point: &Point, to_kink: bool) -> Variable {

@@ -13,7 +13,12 @@ const RISES: [f64; 2] = [0.5, 0.2];
 
 impl Loading<'_> {
     /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
-    pub fn offer(&self, over: (Variable, &Step), ends: [&Point; 2], tops: &mut [Peak; 2]) {
+    pub fn offer(
+        &self,
+        over: (Variable, &dyn Fn() -> Step),
+        ends: [&Point; 2],
+        tops: &mut [Peak; 2],
+    ) {
         let count = if self.curved { 2 } else { 1 };
         for (load, top) in tops.iter_mut().take(count).enumerate() {
             self.offer_load(over, ends, load, top);
@@ -22,7 +27,7 @@ impl Loading<'_> {
 
     fn offer_load(
         &self,
-        (variable, taken): (Variable, &Step),
+        (variable, step): (Variable, &dyn Fn() -> Step),
         [from, to]: [&Point; 2],
         load: usize,
         top: &mut Peak,
@@ -34,6 +39,7 @@ impl Loading<'_> {
         if !(to.loads[load][1] < 0.0 && (rises || may_rise)) {
             return;
         }
+        let taken = &step();
         let inside = self.inside(variable, taken, [from, to]);
         let (mut low, mut high) = (*from, *to);
         if !rises {

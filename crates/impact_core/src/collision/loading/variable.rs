@@ -1,5 +1,7 @@
 //! What the plane of `d` and `eps'` is integrated over.
 
+use numeric::lanes::Real;
+
 use super::plane::Point;
 use crate::covering::Pad;
 
@@ -88,6 +90,31 @@ impl Variable {
         }
     }
 
+    /// What it begins with, in m, or what `y` falls by.
+    pub(super) fn start(self) -> f64 {
+        match self {
+            Self::Depth { origin, .. } => origin,
+            Self::Pace { range, .. } => range,
+        }
+    }
+
+    /// Compression or speed that it is over.
+    pub(super) fn unit(self) -> f64 {
+        match self {
+            Self::Depth { first, .. } => first,
+            Self::Pace { unit, .. } => unit,
+        }
+    }
+
+    /// Whether steps over both are of one kind, so that they can be taken side by side.
+    pub(super) fn is_like(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Depth { power, .. }, Self::Depth { power: own, .. }) => power == own,
+            (Self::Pace { doublings, .. }, Self::Pace { doublings: own, .. }) => doublings == own,
+            _ => false,
+        }
+    }
+
     /// Rate of `d` at a point.
     pub(super) fn deepening(self, point: &Point) -> f64 {
         match self {
@@ -141,29 +168,30 @@ pub fn smooth_power(exponent: f64) -> i32 {
 }
 
 /// `d` beyond its origin and its rate over `x`.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn deepened(first: f64, power: i32, x: f64) -> [f64; 2] {
-    let x = x.max(NOWHERE);
+pub fn deepened<R: Real>(first: R, power: i32, x: R) -> [R; 2] {
+    let x = x.max(R::splat(NOWHERE));
     if power == 1 {
         return [first * x, first];
     }
     let before = first * (2..power).fold(x, |value, _| value * x);
-    [before * x, f64::from(power) * before]
+    [before * x, R::splat(f64::from(power)) * before]
 }
 
 /// `eps'` and its rate over `w`.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn slowed([unit, range]: [f64; 2], doublings: u32, at: f64) -> [f64; 2] {
-    let at = at.max(NOWHERE);
-    let mut power = 1.0 + range * (1.0 - at * at);
-    let mut rate = -2.0 * range * at * unit;
+pub fn slowed<R: Real>([unit, range]: [R; 2], doublings: u32, at: R) -> [R; 2] {
+    let (one, two) = (R::splat(1.0), R::splat(2.0));
+    let at = at.max(R::splat(NOWHERE));
+    let mut power = one + range * (one - at * at);
+    let mut rate = -two * range * at * unit;
     for _ in 0..doublings {
-        rate *= 2.0 * power;
+        rate *= two * power;
         power *= power;
     }
-    [unit * (power - 1.0), rate]
+    [unit * (power - one), rate]
 }
 
 /// `value^(1/power)`.
