@@ -4,7 +4,7 @@
 //! region together, so the time to the largest one is the integral of `deps/eps'`. That holds on the way back of
 //! every covering, with the work that unloading returns, and on the way in of one without rate.
 
-use numeric::lanes::{Lanes, Real, each};
+use numeric::lanes::{Lanes, Real, each, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::loading::{Turn, first_exponent, smooth_power, turns_of};
@@ -43,7 +43,7 @@ trait Integrand {
     fn at<R: Real>(&self, x: R) -> R;
 }
 
-/// Values of an integrand side by side, compiled once for each instruction set.
+/// Values of an integrand side by side.
 struct Values<'a, I>(&'a I, [Nodes; 2]);
 
 impl<I: Integrand> WithSimd for Values<'_, I> {
@@ -67,7 +67,11 @@ fn kronrod(low: f64, high: f64, integrand: &impl Integrand) -> [f64; 2] {
     let away = Nodes::splat(half) * Nodes::from_fn(node);
     let center = Nodes::splat(middle);
     let nodes = [center - away, center + away];
-    let [before, beyond] = pulp::Arch::new().dispatch(Values(integrand, nodes));
+    let plain = |x: Nodes| Nodes::from_fn(|lane| integrand.at(x.lane(lane)));
+    let [before, beyond] = match vectors() {
+        Some(vectors) => Simd::vectorize(vectors, Values(integrand, nodes)),
+        None => nodes.map(plain),
+    };
     let [mut fine, mut coarse] = MIDDLE.map(|weight| weight * before.lane(NODES.len()));
     for (index, [_, weight, of_gauss]) in NODES.into_iter().enumerate() {
         let both = before.lane(index) + beyond.lane(index);

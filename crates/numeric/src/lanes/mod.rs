@@ -9,11 +9,13 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub
 
 mod planar;
 mod scalar;
+mod vectors;
 mod wide;
 
 pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
 pub use planar::{Planar, widened};
+pub use vectors::{Vectors, vectors};
 pub use wide::Wide;
 
 /// Outcome of a comparison, lane by lane.

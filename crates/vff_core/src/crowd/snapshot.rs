@@ -6,7 +6,7 @@ use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::{Grid, Period};
 use crate::crowd::pedestrian::{Around, Fellows, Pedestrian, Room, Walker};
 use crate::crowd::walls::Wall;
-use crate::lanes::Vector2;
+use crate::lanes::{Vector2, vectors};
 
 /// What is the same for everybody.
 #[derive(Clone, Copy, Debug)]
@@ -64,17 +64,21 @@ impl Snapshot {
         };
         decisions.clear();
         decisions.resize(walkers.len(), Vector2::zeros());
-        pulp::Arch::new().dispatch(Job {
+        let job = Job {
             around: &around,
             walkers,
             model_of,
             decisions,
             room,
-        });
+        };
+        match vectors() {
+            Some(vectors) => pulp::Simd::vectorize(vectors, job),
+            None => job.one_by_one(),
+        }
     }
 }
 
-/// The decisions of everybody, compiled once for each instruction set; their bits are the same for all.
+/// The decisions of everybody: with vectors those of pairs together, else one by one with the same bits.
 struct Job<'a, 'm> {
     around: &'a Around<'a>,
     walkers: &'a mut [Option<Walker>],

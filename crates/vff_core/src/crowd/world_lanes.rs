@@ -11,7 +11,7 @@ use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{Planar, Real};
+use crate::lanes::{Planar, Real, vectors};
 
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;
@@ -55,15 +55,17 @@ impl WorldLanes {
         if !(WORTH..=WIDTH).contains(&worlds.len()) || !worlds.iter().all(everybody_is_there) {
             return;
         }
+        let Some(vectors) = vectors() else { return };
         if !again {
             seat(&mut self.agents, worlds);
         }
         seat_robots(&mut self.agents, worlds);
-        pulp::Arch::new().dispatch(Job {
+        let job = Job {
             model,
             step: worlds[0].part(),
             lanes: self,
-        });
+        };
+        pulp::Simd::vectorize(vectors, job);
         for (lane, world) in worlds.iter_mut().enumerate() {
             let lane = lane % WIDTH;
             let people = world.move_people().iter_mut();

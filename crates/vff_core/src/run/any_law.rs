@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use crate::error::{Failure, Result};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Vectors};
 use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
@@ -13,7 +13,7 @@ use crate::run::Interrupted;
 use crate::run::group::{Group, Keep, SceneGroup};
 use crate::run::options::Options;
 use crate::run::outcome::RunSummary;
-use crate::run::plan::{Plan, Vectors, Width};
+use crate::run::plan::{Plan, Width};
 use crate::run::record::{DescentCounter, Trajectory, TrajectoryRecorder};
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;

@@ -5,13 +5,13 @@ use std::marker::PhantomData;
 use pulp::Simd;
 
 use crate::error::Result;
-use crate::lanes::{Lanes, Real};
+use crate::lanes::{Lanes, Real, Vectors};
 use crate::laws::{Law, LawFamily, SceneLaw};
 use crate::run::Interrupted;
 use crate::run::any_law::{BoxedLaw, ErasedLaw};
 use crate::run::lane_rollout::run_scenes;
 use crate::run::outcome::RunTotals;
-use crate::run::plan::{MAX_GAINS, Plan, Vectors, key_of};
+use crate::run::plan::{MAX_GAINS, Plan, key_of};
 use crate::run::record::Recorder;
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;

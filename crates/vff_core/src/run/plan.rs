@@ -1,6 +1,7 @@
 //! How the runs of a task are carried out: lanes, instructions, teams, what they have in common.
 
 use crate::error::{Failure, Given, Result};
+use crate::lanes::{Vectors, vectors};
 use crate::run::options::Options;
 
 /// Number of gain sets that are stepped side by side.
@@ -65,22 +66,14 @@ pub enum Instructions {
     Baseline,
 }
 
-/// Vectors with which lanes pay. What a processor of x86 has without them would make another copy of
-/// every kernel for machines that are rare: there gain sets and scenes run one after the other, with
-/// the same bits.
-#[cfg(target_arch = "x86_64")]
-pub(crate) type Vectors = pulp::x86::V3;
-/// The baseline of other families has them.
-#[cfg(not(target_arch = "x86_64"))]
-pub(crate) type Vectors = pulp::Scalar;
-
 impl Instructions {
     /// Vectors for lanes, where they may be used.
     pub(crate) fn vectors(self) -> Option<Vectors> {
-        #[cfg(target_arch = "x86_64")]
-        return (self == Self::Widest).then(Vectors::try_new).flatten();
-        #[cfg(not(target_arch = "x86_64"))]
-        return Some(pulp::Scalar);
+        match self {
+            // What x86 has without asking is too little for lanes.
+            Self::Baseline if cfg!(target_arch = "x86_64") => None,
+            Self::Baseline | Self::Widest => vectors(),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Steps of collisions side by side.
 
-use numeric::lanes::{Lanes, Mask, Real};
+use numeric::lanes::{Lanes, Mask, Real, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::Loading;
@@ -11,7 +11,7 @@ use crate::collision::curve::Steps;
 use crate::covering::Powers;
 
 /// Collisions side by side.
-pub(super) const WIDTH: usize = 8;
+const WIDTH: usize = 8;
 pub(super) type Wide = Lanes<WIDTH>;
 
 /// Collisions that take fewer lanes.
@@ -37,14 +37,20 @@ impl Asked {
     }
 }
 
-/// Takes steps that are alike, at most as many as there are lanes, with their collisions.
+/// Most steps that are taken side by side.
+pub(super) fn most() -> usize {
+    if vectors().is_some() { WIDTH } else { FEW }
+}
+
+/// Takes steps that are alike, up to [`most`], with their collisions.
 pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
-    if steps.len() > FEW {
-        pulp::Arch::new().dispatch(Group(steps, taken));
-    } else {
-        let mut few = Steps::none();
-        fill_few(steps, &mut few);
-        *taken = few.widened();
+    match vectors() {
+        Some(vectors) if steps.len() > FEW => Simd::vectorize(vectors, Group(steps, taken)),
+        _ => {
+            let mut few = Steps::none();
+            fill_few(steps, &mut few);
+            *taken = few.widened();
+        }
     }
 }
 
@@ -54,7 +60,7 @@ fn fill_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<FEW>>) {
     fill(steps, taken);
 }
 
-/// Compiled once for each instruction set; the arithmetic is the same, bit for bit.
+/// Steps of many collisions; the arithmetic is the same, bit for bit.
 struct Group<'a, 'b>(&'a [(&'a Loading<'b>, Asked)], &'a mut Steps<Wide>);
 
 impl WithSimd for Group<'_, '_> {

@@ -26,7 +26,7 @@ use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Pad, Powers, Shape};
 use crate::roots::Peak;
-use beside::{Asked, WIDTH, Wide, take};
+use beside::{Asked, Wide, most, take};
 use plane::{Point, Scales};
 use steps::{Progress, Reach, finer_than_usual};
 use variable::Variable;
@@ -266,7 +266,7 @@ fn travel(ways: &mut [Way<'_>]) {
             let (alike, others): (Vec<_>, _) = asked
                 .into_iter()
                 .partition(|(_, step)| step.is_like(&first));
-            for group in alike.chunks(WIDTH) {
+            for group in alike.chunks(most()) {
                 let steps: Vec<_> = group
                     .iter()
                     .map(|(place, step)| (&ways[*place].loading, *step))
