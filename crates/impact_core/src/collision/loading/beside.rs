@@ -48,15 +48,15 @@ pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
         Some(vectors) if steps.len() > FEW => Simd::vectorize(vectors, Group(steps, taken)),
         _ => {
             let mut few = Steps::none();
-            fill_few(steps, &mut few);
+            take_few(steps, &mut few);
             *taken = few.widened();
         }
     }
 }
 
-/// Steps of few collisions: of one that is alone most lanes would be idle.
+/// Takes steps of few collisions: of one that is alone most lanes would be idle.
 #[inline(never)]
-fn fill_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<FEW>>) {
+pub(super) fn take_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<FEW>>) {
     fill(steps, taken);
 }
 

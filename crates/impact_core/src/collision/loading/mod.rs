@@ -26,7 +26,7 @@ use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Pad, Powers, Shape};
 use crate::roots::Peak;
-use beside::{Asked, Wide, most, take};
+use beside::{Asked, most, take, take_few};
 use plane::{Point, Scales};
 use steps::{Progress, Reach, finer_than_usual};
 use variable::Variable;
@@ -210,10 +210,9 @@ impl<'a> Way<'a> {
         Some(self.loading.asked(*variable, point, self.reach.length))
     }
 
-    /// Goes on after a step that was asked for.
-    fn go_on(&mut self, taken: &Steps<Wide>, lane: usize) {
+    /// Goes on after a step that was asked for, which ends at a state with an error.
+    fn go_on(&mut self, (state, error): ([f64; 2], f64), step: &dyn Fn() -> Step) {
         let (loading, now, reach) = (&mut self.loading, &mut self.now, &self.reach);
-        let (state, error) = taken.end(lane);
         let growth = match loading.judged(now, reach, state, error) {
             Ok(growth) => growth,
             Err(factor) => {
@@ -234,8 +233,7 @@ impl<'a> Way<'a> {
             self.ended = true;
             return;
         }
-        let step = || taken.lane(lane);
-        loading.offer((now.variable, &step), [&now.point, &next], &mut self.tops);
+        loading.offer((now.variable, step), [&now.point, &next], &mut self.tops);
         now.point = next;
         now.length = reach.length * growth * shorter;
         now.new = false;
@@ -248,10 +246,22 @@ impl<'a> Way<'a> {
             false => (),
         }
     }
+
+    /// Takes all its steps.
+    fn travel_alone(&mut self) {
+        let mut taken = Steps::none();
+        while let Some(step) = self.ask() {
+            take_few(&[(&self.loading, step)], &mut taken);
+            self.go_on(taken.end(0), &|| taken.lane(0));
+        }
+    }
 }
 
 /// Takes steps of all of them until each has ended.
 fn travel(ways: &mut [Way<'_>]) {
+    if let [alone] = ways {
+        return alone.travel_alone();
+    }
     let mut taken = Steps::none();
     loop {
         let asked = ways.iter_mut().enumerate();
@@ -273,7 +283,7 @@ fn travel(ways: &mut [Way<'_>]) {
                     .collect();
                 take(&steps, &mut taken);
                 for (lane, (place, _)) in group.iter().enumerate() {
-                    ways[*place].go_on(&taken, lane);
+                    ways[*place].go_on(taken.end(lane), &|| taken.lane(lane));
                 }
             }
             asked = others;
