@@ -1,20 +1,20 @@
-//! Laws of any kind whose gain sets can be run, and the kernels that are compiled for them.
+//! Laws of any kind whose gain sets can be run.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
 
 use crate::error::{Failure, Result};
-use crate::lanes::{Lanes, Vectors};
 use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
-use crate::laws::{Command, FieldTerms, Law, LawFamily, SceneLaw, Situation};
+use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
 use crate::robots::differential::Twist;
 use crate::run::Interrupted;
-use crate::run::group::{Group, Keep, SceneGroup};
+use crate::run::group::{Group, Keep, Known, SceneGroup};
+use crate::run::kernels::{Kernels, One};
 use crate::run::options::Options;
 use crate::run::outcome::RunSummary;
-use crate::run::plan::{Plan, Width};
-use crate::run::record::{DescentCounter, Trajectory, TrajectoryRecorder};
+use crate::run::plan::Plan;
+use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;
 use crate::world::map::StaticMap;
@@ -142,7 +142,7 @@ impl<L: Law<f64> + Send> Steering for L {
 
 /// A law behind a pointer, for the loop of runs one after the other, which is compiled once and not
 /// once for each law.
-pub(crate) struct BoxedLaw(pub Box<dyn Steering>);
+struct BoxedLaw(Box<dyn Steering>);
 
 impl Law<f64> for BoxedLaw {
     fn thinks(&self) -> bool {
@@ -219,6 +219,28 @@ pub(crate) trait ErasedLaw: Send + Sync {
 }
 
 impl dyn ErasedLaw + '_ {
+    /// Runs gain sets one after the other. `record`: the Lyapunov function is wanted too.
+    fn one_by_one<C: Recorder<f64> + Default>(
+        &self,
+        group: &Group<'_>,
+        record: bool,
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        let known = Known {
+            dimension: self.gain_names().len(),
+            free_gains: self.free_gains(),
+            map: self.map(),
+        };
+        let mut team = Vec::with_capacity(group.points.len() / known.dimension);
+        for gains in group.points.chunks_exact(known.dimension) {
+            team.push(Member {
+                law: BoxedLaw(self.steering_with(gains, group.scenario, record)?),
+                recorder: C::default(),
+            });
+        }
+        group.run(&mut team, &known, keep)
+    }
+
     /// What it asks for at first, with its own gains.
     pub fn command(
         &self,
@@ -257,109 +279,6 @@ impl dyn ErasedLaw + '_ {
 /// A law and the kernels that are compiled for it.
 struct Driver<F, K>(F, PhantomData<fn() -> K>);
 
-/// Kernels that are compiled for a law.
-pub(crate) trait Kernels<F: LawFamily>: 'static {
-    /// Whether there is one for scenes side by side.
-    const SCENES: bool = false;
-    /// Most obstacles of a scene beside others: one by itself leaves those that are far away alone.
-    const MOST_OBSTACLES: usize = usize::MAX;
-    /// Whether there is one for gain sets side by side.
-    const LANES: bool = false;
-    /// Whether the law has a Lyapunov function, whose descent is counted.
-    const LYAPUNOV: bool = false;
-    /// Runs gain sets side by side, if there is such a kernel.
-    fn run_lanes(
-        _law: &F,
-        _group: &Group<'_>,
-        _lanes: (Vectors, Width),
-        _keep: Keep<'_>,
-    ) -> Result<()> {
-        Ok(())
-    }
-    /// Runs scenes side by side, if there is such a kernel.
-    fn run_scenes(_law: &F, _group: &SceneGroup<'_>, _keep: Keep<'_>) -> Result<()> {
-        Ok(())
-    }
-}
-
-/// One, four and eight gain sets side by side, with and without the Lyapunov function.
-pub(crate) struct EveryWidth;
-
-impl<F: LawFamily> Kernels<F> for EveryWidth
-where
-    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
-{
-    const SCENES: bool = true;
-    const LANES: bool = true;
-    const LYAPUNOV: bool = true;
-
-    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.side_by_side(law, keep)
-    }
-
-    fn run_lanes(
-        law: &F,
-        group: &Group<'_>,
-        (vectors, width): (Vectors, Width),
-        keep: Keep<'_>,
-    ) -> Result<()> {
-        type Counter = DescentCounter<Lanes<8>>;
-        // One job for each kind of run: in one body an unoptimized build would need more stack
-        // than a thread has.
-        match (width, group.plan.descent) {
-            (Width::Four, false) => {
-                group.side_by_side::<F, Lanes<4>, (), false>(vectors, law, keep)
-            }
-            (_, false) => group.side_by_side::<F, Lanes<8>, (), false>(vectors, law, keep),
-            (_, true) => group.side_by_side::<F, Lanes<8>, Counter, true>(vectors, law, keep),
-        }
-    }
-}
-
-/// One and eight gain sets side by side, for laws without a Lyapunov function.
-pub(crate) struct OneAndEight;
-
-impl<F: LawFamily> Kernels<F> for OneAndEight
-where
-    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
-{
-    const SCENES: bool = true;
-    const LANES: bool = true;
-
-    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.side_by_side(law, keep)
-    }
-
-    fn run_lanes(
-        law: &F,
-        group: &Group<'_>,
-        (vectors, _): (Vectors, Width),
-        keep: Keep<'_>,
-    ) -> Result<()> {
-        group.side_by_side::<F, Lanes<8>, (), false>(vectors, law, keep)
-    }
-}
-
-/// Gain sets one after the other, and scenes of a few obstacles side by side.
-pub(crate) struct OneAndScenes;
-
-impl<F: LawFamily> Kernels<F> for OneAndScenes
-where
-    F::Law<Lanes<8>, false>: SceneLaw<Lanes<8>>,
-{
-    const SCENES: bool = true;
-    const MOST_OBSTACLES: usize = 32;
-
-    fn run_scenes(law: &F, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        group.side_by_side(law, keep)
-    }
-}
-
-/// One after the other, for laws that think longer than a robot moves.
-pub(crate) struct One;
-
-impl<F: LawFamily> Kernels<F> for One {}
-
 impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
     fn gain_names(&self) -> &'static [&'static str] {
         self.0.gain_names()
@@ -390,12 +309,13 @@ impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
             plan: &plan,
             ..*group
         };
+        let erased: &dyn ErasedLaw = self;
         match plan.lanes().filter(|_| K::LANES) {
             Some(lanes) => K::run_lanes(&self.0, group, lanes, keep),
             None if plan.descent && K::LYAPUNOV => {
-                group.one_by_one::<DescentCounter<f64>>(self, true, keep)
+                erased.one_by_one::<DescentCounter<f64>>(group, true, keep)
             }
-            None => group.one_by_one::<()>(self, false, keep),
+            None => erased.one_by_one::<()>(group, false, keep),
         }
     }
 

@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::lanes::{Lanes, Real, Vectors};
 use crate::laws::{Law, LawFamily, SceneLaw};
 use crate::run::Interrupted;
-use crate::run::any_law::{BoxedLaw, ErasedLaw};
 use crate::run::lane_rollout::run_scenes;
 use crate::run::outcome::RunTotals;
 use crate::run::plan::{MAX_GAINS, Plan, key_of};
@@ -63,31 +62,9 @@ impl Group<'_> {
         Simd::vectorize(vectors, job)
     }
 
-    /// Runs gain sets one after the other. `record`: the Lyapunov function is wanted too.
-    pub fn one_by_one<C: Recorder<f64> + Default>(
-        &self,
-        law: &dyn ErasedLaw,
-        record: bool,
-        keep: Keep<'_>,
-    ) -> Result<()> {
-        let dimension = law.gain_names().len();
-        let mut team = Vec::with_capacity(self.points.len() / dimension);
-        for gains in self.points.chunks_exact(dimension) {
-            team.push(Member {
-                law: BoxedLaw(law.steering_with(gains, self.scenario, record)?),
-                recorder: C::default(),
-            });
-        }
-        let known = Known {
-            dimension,
-            free_gains: law.free_gains(),
-            map: law.map(),
-        };
-        self.run(&mut team, &known, keep)
-    }
-
+    /// Runs a team with its laws, made for the gain sets in their order.
     #[inline(always)]
-    fn run<R: Real, L: Law<R>, C: Recorder<R>>(
+    pub fn run<R: Real, L: Law<R>, C: Recorder<R>>(
         &self,
         team: &mut [Member<L, C>],
         law: &Known<'_>,
@@ -113,10 +90,10 @@ impl Group<'_> {
 }
 
 /// What runs in a scenario need to know of a law up to its gains.
-struct Known<'a> {
-    dimension: usize,
-    free_gains: &'a [usize],
-    map: Option<&'a StaticMap>,
+pub(crate) struct Known<'a> {
+    pub dimension: usize,
+    pub free_gains: &'a [usize],
+    pub map: Option<&'a StaticMap>,
 }
 
 impl Known<'_> {

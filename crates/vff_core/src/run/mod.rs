@@ -7,6 +7,7 @@ pub mod controller;
 mod episode;
 pub mod follower;
 mod group;
+pub(crate) mod kernels;
 mod lane_rollout;
 pub(crate) mod lane_scenes;
 pub mod metrics;
