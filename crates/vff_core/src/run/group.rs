@@ -52,40 +52,19 @@ impl Group<'_> {
             });
         }
         // A job knows no family: families with the same law share its code.
-        Simd::vectorize(vectors, self.job(&mut team, &known, keep))
+        let job = Job {
+            group: self,
+            team: &mut team,
+            law: &known,
+            keep,
+            width: PhantomData,
+        };
+        Simd::vectorize(vectors, job)
     }
 
     /// Runs a team with its laws, made for the gain sets in their order.
-    pub fn run<R: Real, L: Law<R>, C: Recorder<R>>(
-        &self,
-        team: &mut [Member<L, C>],
-        law: &Known<'_>,
-        keep: Keep<'_>,
-    ) -> Result<()> {
-        let job = self.job(team, law, keep);
-        match self.plan.instructions.vectors() {
-            Some(vectors) => Simd::vectorize(vectors, job),
-            None => pulp::NullaryFnOnce::call(job),
-        }
-    }
-
-    fn job<'a, 'c, R, L, C>(
-        &'a self,
-        team: &'a mut [Member<L, C>],
-        law: &'a Known<'a>,
-        keep: Keep<'c>,
-    ) -> Job<'a, 'a, 'c, R, L, C> {
-        Job {
-            group: self,
-            team,
-            law,
-            keep,
-            width: PhantomData,
-        }
-    }
-
     #[inline(always)]
-    fn step_all<R: Real, L: Law<R>, C: Recorder<R>>(
+    pub fn run<R: Real, L: Law<R>, C: Recorder<R>>(
         &self,
         team: &mut [Member<L, C>],
         law: &Known<'_>,
@@ -216,6 +195,6 @@ impl<R: Real, L: Law<R>, C: Recorder<R>> pulp::NullaryFnOnce for Job<'_, '_, '_,
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        self.group.step_all(self.team, self.law, self.keep)
+        self.group.run(self.team, self.law, self.keep)
     }
 }
