@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Real, Vector2};
-use crate::laws::{Law, Situation, Stop};
+use crate::laws::{Command, Law, Situation, Stop};
 use crate::run::Interrupted;
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
@@ -217,7 +217,7 @@ impl<'a> Block<'a> {
 fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs: &mut Runs<&Scenario, R>,
     member: &mut Member<L, C>,
-    (known, mut relevant): (&[Body], Option<&mut Relevant>),
+    (known, relevant): (&[Body], Option<&mut Relevant>),
     measured: Option<Measured>,
     block: &Block<'_>,
 ) -> Result<()> {
@@ -238,22 +238,12 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         interval: clock.interval,
         stop: block.stop,
     };
-    let command = loop {
-        let bodies = match &mut relevant {
-            Some(relevant) if R::WIDTH == 1 => {
-                let attention = member.law.attention(&situation);
-                relevant.at(runs.scenario, time, attention)
-            }
-            _ => known,
-        };
-        let command = member.law.command(&Situation {
-            bodies,
-            ..situation
-        });
-        // Who is told of everything overlooks nothing.
-        if relevant.is_none() || !member.law.overlooks() {
-            break command;
+    let command = match relevant {
+        // Not in lanes: a kernel that is built for the question is slower where it is never asked.
+        Some(relevant) if R::WIDTH == 1 => {
+            command_of_relevant(&mut member.law, &situation, (runs.scenario, relevant))
         }
+        _ => member.law.command(&situation),
     };
     runs.check_force(command.force, time)?;
     if C::EVERY_STEP {
@@ -265,6 +255,26 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs.look_ahead(&block.scene.frames[0]);
     member.recorder.sample(&command, runs.running);
     Ok(())
+}
+
+/// Command of a law that is told of the obstacles that are relevant to it.
+#[inline(never)]
+fn command_of_relevant<R: Real, L: Law<R>>(
+    law: &mut L,
+    situation: &Situation<'_, R>,
+    (scenario, relevant): (&Scenario, &mut Relevant),
+) -> Command<R> {
+    loop {
+        let attention = law.attention(situation);
+        let bodies = relevant.at(scenario, situation.time, attention);
+        let command = law.command(&Situation {
+            bodies,
+            ..*situation
+        });
+        if !law.overlooks() {
+            return command;
+        }
+    }
 }
 
 /// Steps of a group under the held force.
