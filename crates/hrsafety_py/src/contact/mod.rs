@@ -111,6 +111,14 @@ pub fn contact_words() -> [Vec<&'static str>; 3] {
     ]
 }
 
+/// What rows are asked for.
+#[derive(Clone, Copy, PartialEq)]
+enum RowsOf {
+    Collisions,
+    Speeds,
+    Thicknesses,
+}
+
 /// Results of many rows: `kind` is ``"collide"``, ``"speed"`` or ``"thickness"``.
 #[pyfunction]
 #[pyo3(signature = (kind, shared, numbers, rows, *, gravity, threads, progress))]
@@ -131,10 +139,10 @@ pub fn contact_rows<'py>(
         nodes: false,
         injury: gravity,
     };
-    let names: &[&str] = match kind {
-        "collide" => &LOADS,
-        "speed" => &SPEEDS,
-        "thickness" => &THICKNESSES,
+    let (names, kind): (&[&str], _) = match kind {
+        "collide" => (&LOADS, RowsOf::Collisions),
+        "speed" => (&SPEEDS, RowsOf::Speeds),
+        "thickness" => (&THICKNESSES, RowsOf::Thicknesses),
         other => return Err(unknown("kind", other).into()),
     };
     // Zeros are not written before a thread fills its part.
@@ -160,9 +168,9 @@ pub fn contact_rows<'py>(
                 progress: &|more| control.count(more),
             };
             match kind {
-                "collide" => collide_rows(&setup, &given, wanted, (work, room)),
-                "speed" => speed_rows(&setup, &given, work, room),
-                _ => thickness_rows(&setup, &given, work, room),
+                RowsOf::Collisions => collide_rows(&setup, &given, wanted, (work, room)),
+                RowsOf::Speeds => speed_rows(&setup, &given, work, room),
+                RowsOf::Thicknesses => thickness_rows(&setup, &given, work, room),
             }
         };
         watched(py, Report::new(progress.as_ref(), rows), work)?;
@@ -176,7 +184,7 @@ pub fn contact_rows<'py>(
     fields.value("status_code", &codes[0])?;
     let has = |bit: u8| word.iter().map(|code| code & bit != 0).collect();
     fields.vector::<bool>("rising", has(RISING))?;
-    if kind == "collide" {
+    if kind == RowsOf::Collisions {
         fields.vector::<bool>("bottomed", has(BOTTOMED))?;
     } else {
         let governs = word.iter().map(|code| code & !RISING).collect();
