@@ -255,9 +255,10 @@ def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) ->
         # Most values are plausible, and most are one number: neither takes an array.
         if type(value) is float and not (value < least or value > most):
             continue
-        numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
+        numbers = np.asarray(value, dtype=np.float64)
         if numbers.size and numbers.min() >= least and numbers.max() <= most:
             continue
+        numbers = numbers.ravel()
         outside = np.flatnonzero((numbers < least) | (numbers > most))
         if len(outside):
             found = f"{float(numbers[outside[0]]):g} {unit}".rstrip()

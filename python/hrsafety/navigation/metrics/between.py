@@ -115,6 +115,8 @@ def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) 
     Between
         The number of steps, and how deep.
     """
+    if not wall_clearance < np.inf:
+        return Between(0, np.inf)
     own, _ = until_arrival(episode, arrival_time)
     ways = np.diff(own, axis=0)
     moves = np.hypot(*ways.T) > 2.0 * wall_clearance
