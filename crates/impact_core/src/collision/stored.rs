@@ -67,7 +67,9 @@ fn kronrod(low: f64, high: f64, integrand: &impl Integrand) -> [f64; 2] {
     let away = Nodes::splat(half) * Nodes::from_fn(node);
     let center = Nodes::splat(middle);
     let nodes = [center - away, center + away];
-    let plain = |x: Nodes| Nodes::from_fn(|lane| integrand.at(x.lane(lane)));
+    // Of two lanes: one number by itself takes other functions of the library, with other bits.
+    let at = |x: f64| integrand.at(Lanes::<2>::splat(x)).lane(0);
+    let plain = |x: Nodes| Nodes::from_fn(|lane| at(x.lane(lane)));
     let [before, beyond] = match vectors() {
         Some(vectors) => Simd::vectorize(vectors, Values(integrand, nodes)),
         None => nodes.map(plain),

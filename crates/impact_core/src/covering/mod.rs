@@ -17,6 +17,7 @@ mod work;
 pub use gibson_ashby::GibsonAshby;
 pub use material::Material;
 pub use powers::{Powers, product};
+pub(crate) use powers::{exponential_of, logarithm_of};
 pub use shape::Shape;
 pub use table::Table;
 

@@ -182,7 +182,7 @@ fn raised_by<R: Real>(products: Option<(u32, bool)>, exponent: f64, x: R, logari
 
 /// One number waits less for the functions of the library, several side by side for series.
 #[inline(always)]
-fn logarithm_of<R: Real>(x: R) -> R {
+pub(crate) fn logarithm_of<R: Real>(x: R) -> R {
     if R::WIDTH == 1 {
         R::splat(x.lane(0).ln())
     } else {
@@ -190,8 +190,9 @@ fn logarithm_of<R: Real>(x: R) -> R {
     }
 }
 
+/// As [`logarithm_of`].
 #[inline(always)]
-fn exponential_of<R: Real>(x: R) -> R {
+pub(crate) fn exponential_of<R: Real>(x: R) -> R {
     if R::WIDTH == 1 {
         R::splat(x.lane(0).exp())
     } else {

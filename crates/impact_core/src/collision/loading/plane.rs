@@ -1,10 +1,10 @@
 //! Forces and rates at a place of the plane of `d` and `eps'`.
 
-use numeric::elementary::{exponential, logarithm};
 use numeric::lanes::Real;
 
 use super::variable::{Variable, deepened, slowed};
 use super::{Loading, Region};
+use crate::covering::{exponential_of, logarithm_of};
 
 /// Forces at a place of the plane.
 #[derive(Clone, Copy)]
@@ -200,25 +200,6 @@ impl<R: Real> Numbers<R> {
             rates,
             forces,
         }
-    }
-}
-
-/// One number waits less for the functions of the library, several side by side for series.
-#[inline(always)]
-fn logarithm_of<R: Real>(x: R) -> R {
-    if R::WIDTH == 1 {
-        R::splat(x.lane(0).ln())
-    } else {
-        logarithm(x)
-    }
-}
-
-#[inline(always)]
-fn exponential_of<R: Real>(x: R) -> R {
-    if R::WIDTH == 1 {
-        R::splat(x.lane(0).exp())
-    } else {
-        exponential(x)
     }
 }
 
