@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from hrsafety.contact.catalogs import CatalogMaterial, load_materials
     from hrsafety.contact.chance import Exceedance, probability
     from hrsafety.contact.covering import Column, Covering, Region
+    from hrsafety.contact.least_thickness import LeastThickness, thickness
     from hrsafety.contact.margins import ContactMargins, RegionSpeed, contact_margins, contact_speed_limit
     from hrsafety.contact.materials import Avalle, GibsonAshby, Linear, Material, Rusch, StressTable, material
     from hrsafety.contact.sensitivities import sensitivity
@@ -19,11 +20,9 @@ if TYPE_CHECKING:
     from hrsafety.contact.speed import (
         AllowedSpeed,
         AllowedSpeeds,
-        LeastThickness,
         allowed_speed,
         allowed_speeds,
         free_from_fixed_force,
-        thickness,
     )
 
 __all__ = [
@@ -70,12 +69,11 @@ if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for
             "hrsafety.contact.catalogs": "CatalogMaterial load_materials",
             "hrsafety.contact.chance": "Exceedance probability",
             "hrsafety.contact.covering": "Column Covering Region",
+            "hrsafety.contact.least_thickness": "LeastThickness thickness",
             "hrsafety.contact.margins": "ContactMargins RegionSpeed contact_margins contact_speed_limit",
             "hrsafety.contact.materials": "Avalle GibsonAshby Linear Material Rusch StressTable material",
             "hrsafety.contact.sensitivities": "sensitivity",
             "hrsafety.contact.simulation": "ContactBatch ContactImpact batch simulate",
-            "hrsafety.contact.speed": (
-                "AllowedSpeed AllowedSpeeds LeastThickness allowed_speed allowed_speeds free_from_fixed_force thickness"
-            ),
+            "hrsafety.contact.speed": "AllowedSpeed AllowedSpeeds allowed_speed allowed_speeds free_from_fixed_force",
         },
     )
