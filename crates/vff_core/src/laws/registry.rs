@@ -13,7 +13,7 @@ use crate::laws::tree::RapidlyExploringRandomTree;
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle};
 use crate::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud, VirtualForceField};
 use crate::run::AnyLaw;
-use crate::run::kernels::{EveryWidth, One, OneAndEight, OneAndScenes};
+use crate::run::lanes::kernels::{EveryWidth, One, OneAndEight, OneAndScenes};
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {

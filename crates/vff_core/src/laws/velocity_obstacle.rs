@@ -7,7 +7,7 @@ mod cover;
 mod free;
 mod lines;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod view;
 
 use std::cell::Cell;

@@ -5,7 +5,7 @@ use numeric::threads::{on_threads, try_each};
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::group::Group;
+use crate::run::lanes::group::Group;
 use crate::run::metrics::{Weights, score};
 use crate::run::nominal::{NominalRuns, Ways};
 use crate::run::options::Options;

@@ -7,7 +7,7 @@ use numeric::threads::try_map;
 use crate::error::Result;
 use crate::run::Interrupted;
 use crate::run::any_law::ErasedLaw;
-use crate::run::group::Group;
+use crate::run::lanes::group::Group;
 use crate::run::metrics::Nominal;
 use crate::run::outcome::RunTotals;
 use crate::run::plan::{Key, Plan, key_of};

@@ -10,10 +10,10 @@ use crate::world::scenario::{PlacedObstacle, Rules};
 const INTERVAL: f64 = 0.06;
 
 /// Numbers between two bounds, the same in every run.
-struct Draws(u64);
+pub(crate) struct Draws(pub(crate) u64);
 
 impl Draws {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;

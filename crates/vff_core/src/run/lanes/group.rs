@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::lanes::{Lanes, Real, Vectors};
 use crate::laws::{Law, LawFamily, SceneLaw};
 use crate::run::Interrupted;
-use crate::run::lane_rollout::run_scenes;
+use crate::run::lanes::rollout::run_scenes;
 use crate::run::outcome::RunTotals;
 use crate::run::plan::{MAX_GAINS, Plan, key_of};
 use crate::run::record::Recorder;

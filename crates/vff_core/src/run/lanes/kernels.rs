@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::lanes::{Lanes, Vectors};
 use crate::laws::{LawFamily, SceneLaw};
-use crate::run::group::{Group, Keep, SceneGroup};
+use crate::run::lanes::group::{Group, Keep, SceneGroup};
 use crate::run::plan::Width;
 use crate::run::record::DescentCounter;
 

@@ -5,7 +5,7 @@ use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Real, Vector2, Wide};
 use crate::laws::{SceneLaw, Situation, Stop};
 use crate::run::Interrupted;
-use crate::run::lane_scenes::{FeltObstacles, LaneObstacle, LaneScenes};
+use crate::run::lanes::scenes::{FeltObstacles, LaneObstacle, LaneScenes};
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::rollout::{rk4_held, semi_implicit_euler};
 use crate::run::runs::Runs;

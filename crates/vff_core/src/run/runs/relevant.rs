@@ -174,6 +174,7 @@ mod tests {
     use super::*;
     use crate::laws::planning::Planner;
     use crate::laws::planning::outline::Legs;
+    use crate::laws::velocity_obstacle::tests::Draws;
     use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
     use crate::laws::{Situation, Stop};
     use crate::robots::HolonomicRobot;
@@ -185,21 +186,10 @@ mod tests {
 
     type Vector = Vector2<f64>;
 
-    /// Numbers between two bounds, the same in every run.
-    struct Draws(u64);
-
-    impl Draws {
-        fn between(&mut self, low: f64, high: f64) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-        }
-
-        fn within(&mut self, radius: f64) -> Vector {
-            let angle = self.between(0.0, std::f64::consts::TAU);
-            Vector::new(angle.cos(), angle.sin()) * self.between(0.0, radius)
-        }
+    /// A place within a radius in m.
+    fn within(draws: &mut Draws, radius: f64) -> Vector {
+        let angle = draws.between(0.0, std::f64::consts::TAU);
+        Vector::new(angle.cos(), angle.sin()) * draws.between(0.0, radius)
     }
 
     fn scenario(draws: &mut Draws, case: usize) -> Scenario {
@@ -212,11 +202,11 @@ mod tests {
         };
         let mut obstacles = Vec::new();
         while obstacles.len() < [16, 32, 96][case / 9 % 3] {
-            let [x, y] = draws.within(spread).into();
+            let [x, y] = within(draws, spread).into();
             if x.hypot(y) < 1.0 {
                 continue;
             }
-            let velocity = draws.within(fast).into();
+            let velocity = within(draws, fast).into();
             let motion = match obstacles.len() % 8 {
                 0 => Motion::moving([x, y], velocity, [0.05, -0.02], None),
                 1 => Motion::between([x, y], velocity, [0.5, 1.5]),
@@ -290,7 +280,7 @@ mod tests {
                 // Robots that are pushed off their way look anew.
                 let push = if period % 9 == 8 { 0.3 } else { 0.0 };
                 velocity = Vector::from(wanted);
-                position += velocity * 0.06 + draws.within(push);
+                position += velocity * 0.06 + within(&mut draws, push);
             }
         }
         assert!(3 * told < 2 * all, "{told} of {all}");
@@ -303,9 +293,9 @@ mod tests {
         for _ in 0..20_000 {
             let radius = draws.between(0.0, 0.5);
             let outlook = Outlook {
-                center: draws.within(1.0),
+                center: within(&mut draws, 1.0),
                 radius: draws.between(0.0, 0.3),
-                place: draws.within(3.0),
+                place: within(&mut draws, 3.0),
                 off: draws.between(0.0, 0.2),
                 ahead: 0.025,
                 span: draws.between(0.0, 4.0),
@@ -313,8 +303,8 @@ mod tests {
                 way: 0.1,
                 haste: 0.12,
             };
-            let center = draws.within(30.0);
-            let velocity = draws.within(2.0);
+            let center = within(&mut draws, 30.0);
+            let velocity = within(&mut draws, 2.0);
             let disc = Discs {
                 center,
                 velocity,
@@ -326,7 +316,7 @@ mod tests {
             left_out += 1;
             for _ in 0..20 {
                 let time = draws.between(0.0, outlook.span);
-                let place = outlook.place + outlook.center * time + draws.within(outlook.off);
+                let place = outlook.place + outlook.center * time + within(&mut draws, outlook.off);
                 let seen = center + velocity * (time + outlook.ahead) - place;
                 let kept = radius + outlook.clearance;
                 assert!(seen.norm() > kept + outlook.way + outlook.haste * velocity.norm());
