@@ -1,7 +1,7 @@
 //! Many runs over all cores: results by index, the same for any number of threads.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use crate::threads::{on_threads, team, try_map};
 
@@ -54,15 +54,13 @@ fn results_of<T: Send>(
                 results.push(run(index)?);
                 Ok(())
             })?;
-            // Nobody else takes this lock: a thread that panics ends the whole batch.
-            if let Ok(mut place) = found[block].lock() {
-                *place = results;
-            }
+            *found[block].lock().unwrap_or_else(PoisonError::into_inner) = results;
             Ok(())
         })?;
         let found = found.into_iter().map(Mutex::into_inner);
+        // Nothing is lost, whatever a thread did while it held the lock.
         Ok(found
-            .flat_map(std::result::Result::unwrap_or_default)
+            .flat_map(|results| results.unwrap_or_else(PoisonError::into_inner))
             .collect())
     })
 }

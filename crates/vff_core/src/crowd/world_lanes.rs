@@ -23,6 +23,8 @@ pub(super) struct WorldLanes {
     decisions: Vec<Vectors>,
     ways: Vec<Vectors>,
     programs: VelocityPrograms,
+    /// Whether the agents are those of the last call.
+    seated: bool,
 }
 
 /// The model of everybody in a world whose people can decide side by side with those of others that differ from it
@@ -52,13 +54,15 @@ impl WorldLanes {
     pub fn advance<'a>(&mut self, model: &Model, worlds: &mut [&'a mut Simulation], again: bool) {
         let everybody_is_there =
             |world: &&'a mut Simulation| world.people().iter().all(PersonState::is_present);
+        let seated = std::mem::take(&mut self.seated);
         if !(WORTH..=WIDTH).contains(&worlds.len()) || !worlds.iter().all(everybody_is_there) {
             return;
         }
         let Some(vectors) = vectors() else { return };
-        if !again {
+        if !(again && seated) {
             seat(&mut self.agents, worlds);
         }
+        self.seated = true;
         seat_robots(&mut self.agents, worlds);
         let job = Job {
             model,
@@ -67,6 +71,7 @@ impl WorldLanes {
         };
         pulp::Simd::vectorize(vectors, job);
         for (lane, world) in worlds.iter_mut().enumerate() {
+            // Changes nothing but that no bound is checked.
             let lane = lane % WIDTH;
             let people = world.move_people().iter_mut();
             for (person, agent) in people.zip(&self.agents.all) {
@@ -94,6 +99,7 @@ impl pulp::NullaryFnOnce for Job<'_> {
             decisions,
             ways,
             programs,
+            ..
         } = self.lanes;
         agents.look_ahead();
         decisions.clear();

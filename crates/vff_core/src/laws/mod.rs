@@ -162,7 +162,8 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     }
 
     /// Whether the last command counts for nothing, since obstacles may matter that it was not told of: it
-    /// must be asked again which ones those are.
+    /// must be asked again which ones those are. Never of a law that was told of all, to which it must come after
+    /// a few questions at most.
     fn overlooks(&self) -> bool {
         false
     }

@@ -80,7 +80,7 @@ pub trait Sensor: Send {
     /// Watches the scene at the start of a motion step.
     fn watch(&mut self, _truth: &Truth<'_>) {}
 
-    /// Tells of the robot at a sample.
+    /// Tells of the robot at a sample: at every one, or at none.
     fn locate(&mut self, _truth: &Truth<'_>) -> Option<Located> {
         None
     }
