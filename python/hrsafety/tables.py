@@ -35,6 +35,7 @@ Columns = dict[str, Column]
 SHOWN_ROWS = 5
 """Rows that a table shows when it is printed."""
 _SHOWN_COLUMNS = 8
+_WARNING = ("code", "subject", "message")
 SHOWN_WARNINGS = 4
 """Warnings that a table shows when it is printed."""
 
@@ -146,9 +147,9 @@ class Table:
         """Write a CSV file, whole or not at all.
 
         Numbers are written with all their digits. A cell is empty where there is no number, and
-        ``inf`` where it is infinite; flags are ``true`` or ``false``. Warnings of the result stand in a
-        second file beside it, ``runs.warnings.csv`` for ``runs.csv``; where there are none, one of an
-        earlier result is removed.
+        ``inf`` where it is infinite; flags are ``true`` or ``false``. Warnings of the result are written
+        first, into a second file beside it, ``runs.csv.warnings.csv`` for ``runs.csv``; where there are none,
+        that of an earlier result is removed.
 
         Parameters
         ----------
@@ -163,15 +164,22 @@ class Table:
         Raises
         ------
         InvalidParameterError
-            If the path is none, or its folder does not exist.
+            If the path is none, its folder does not exist, or the place of the warnings is taken by a file
+            of something else.
         """
-        place = write_csv(path, self.columns())
-        beside = place.with_suffix(".warnings.csv")
+        place = _place(path)
+        beside = place.with_name(f"{place.name}.warnings.csv")
         doubts = [dataclasses.astuple(each) for each in getattr(self, "warnings", ())]
+        ours = not beside.exists() or _first_line(beside) == ",".join(_WARNING)
+        if doubts and not ours:
+            rule = f"leave {beside.name} to the warnings, which is a file of something else"
+            raise InvalidParameterError("path", rule, str(place), "choose another name")
+        # Rows never stand without the warnings of theirs.
         if doubts:
-            code, subject, message = (np.array(words) for words in zip(*doubts, strict=True))
-            write_csv(beside, {"code": code, "subject": subject, "message": message})
-        else:
+            columns = (np.array(words) for words in zip(*doubts, strict=True))
+            write_csv(beside, dict(zip(_WARNING, columns, strict=True)))
+        write_csv(place, self.columns())
+        if not doubts and ours:
             beside.unlink(missing_ok=True)
         return place
 
@@ -220,6 +228,11 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
         text.flush()
         text.detach()
     return place
+
+
+def _first_line(place: Path) -> str:
+    with place.open(encoding="utf-8", errors="replace") as file:
+        return file.readline().rstrip()
 
 
 def _short(value: object) -> str:

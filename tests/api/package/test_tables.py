@@ -143,16 +143,27 @@ def test_polars_reads_the_file_back(tmp_path: Path) -> None:
 def test_warnings_are_written_beside_the_rows(tmp_path: Path) -> None:
     doubted = nav.simulate_many(dataclasses.replace(CROSSING, heading=90.0), LAW)
     path = doubted.to_csv(tmp_path / "runs.csv")
-    beside = tmp_path / "runs.warnings.csv"
+    beside = tmp_path / "runs.csv.warnings.csv"
     with beside.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert rows == [dataclasses.asdict(each) for each in doubted.warnings]
     assert rows[0]["code"] == "implausible"
     assert doubted.to_pandas().attrs == {"warnings": rows}
+    nav.simulate_many(CROSSING, LAW).to_csv(tmp_path / "runs.txt")
+    assert beside.exists(), "warnings of a file of another name"
     plain = nav.simulate_many(CROSSING, LAW)
     assert plain.to_csv(path) == path
     assert not beside.exists(), "warnings of an earlier result"
     assert plain.to_pandas().attrs == {}
+
+
+def test_a_file_of_something_else_in_the_place_of_the_warnings_is_kept(tmp_path: Path) -> None:
+    beside = tmp_path / "runs.csv.warnings.csv"
+    beside.write_text("mine\n", encoding="utf-8")
+    nav.simulate_many(CROSSING, LAW).to_csv(tmp_path / "runs.csv")
+    with pytest.raises(InvalidParameterError, match=r"leave runs\.csv\.warnings\.csv to the warnings"):
+        nav.simulate_many(dataclasses.replace(CROSSING, heading=90.0), LAW).to_csv(tmp_path / "runs.csv")
+    assert beside.read_text(encoding="utf-8") == "mine\n"
 
 
 def test_trajectory_has_the_columns_of_the_command_line(tmp_path: Path) -> None:
