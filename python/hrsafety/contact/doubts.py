@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety.contact.covering import Covering, shape_flags
@@ -64,32 +65,41 @@ _QUANTITIES = {
 }
 
 
-def flagged(flags: Mapping[str, Any], pad: Covering | None = None) -> Doubts:
+def flagged(flags: Mapping[str, Any], pad: Covering | None = None, numbers: Mapping[str, Any] | None = None) -> Doubts:
     """Return a warning for each flag that holds, with the number of rows where there are several.
 
-    Of an unfinished solution the covering tells why.
+    Of unfinished solutions the covering tells why they may be so, with the numbers of their rows.
     """
     found = []
     for name, flag in flags.items():
         rows = np.asarray(flag)
         held = int(np.count_nonzero(rows))
         if held:
-            doubt = _unfinished(pad) if name == "unfinished" else _FLAGS[name]
+            doubt = _unfinished(pad, numbers, rows) if name == "unfinished" and pad and numbers else _FLAGS[name]
             found.append(doubt if rows.ndim == 0 else replace(doubt, message=_counted(held, rows.size, doubt.message)))
     return tuple(found)
 
 
-def _unfinished(pad: Covering | None) -> ResultWarning:
-    """Return what leaves a solution without its end."""
+def _unfinished(pad: Covering, numbers: Mapping[str, Any], held: npt.NDArray[np.bool_]) -> ResultWarning:
+    """Return what may leave the solutions of these rows without their end."""
+
+    def of_rows(name: str) -> npt.NDArray[np.float64]:
+        found: npt.NDArray[np.float64] = np.broadcast_to(np.asarray(numbers[name], dtype=np.float64), held.shape)[held]
+        return found
+
     causes = []
-    if pad is not None and isinstance(pad.material, GibsonAshby) and pad.material.exponent < 1.0:
+    if isinstance(pad.material, GibsonAshby):
+        place = list(pad.material.keys.values()).index("exponent")
+        if (of_rows(f"material_{place}") < 1.0).any():
+            causes.append(
+                "with an exponent below 1 the law stores a limited energy up to its lock, and a collision with more "
+                "never turns: a thicker or larger covering, or a backing (bottom) from a strain below the lock, bears "
+                "more"
+            )
+    if (of_rows("damping") > 0.0).any():
         causes.append(
-            "with an exponent below 1 the law stores a limited energy up to its lock, and a collision with more never "
-            "turns: a thicker or larger covering, or a backing (bottom) from a strain below the lock, bears more"
-        )
-    if pad is not None and pad.damping > 0.0:
-        causes.append(
-            "a damper that relaxes within microseconds beside a stiff column takes too many steps: leave it out"
+            "a damper that relaxes within microseconds beside a stiff column may take too many steps: a larger one "
+            "relaxes more slowly, and without any the loads are others"
         )
     doubt = _FLAGS["unfinished"]
     return replace(doubt, message=f"{_UNKNOWN}: {'; '.join(causes)}") if causes else doubt

@@ -91,7 +91,7 @@ def many(
         numbers=found,
         status=_status(words, codes, there, covering, count),
         flags=flags,
-        warnings=(*flagged(told | flags, covering), *implausible_numbers(covering, region, given, count)),
+        warnings=(*flagged(told | flags, covering, given), *implausible_numbers(covering, region, given, count)),
         given=given,
     )
 

@@ -244,7 +244,7 @@ def simulate(
         peak_body_acceleration_g=None if acceleration is None else acceleration / GRAVITY,
         bottomed=found["bottomed"],
         rising=found["rising"],
-        warnings=(*flagged(flags, pad), *implausible_numbers(pad, str(shared["region"]), values)),
+        warnings=(*flagged(flags, pad, values), *implausible_numbers(pad, str(shared["region"]), values)),
         time=found["time"],
         **{name: found[name] for name in motion},
     )

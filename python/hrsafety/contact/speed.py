@@ -177,7 +177,7 @@ def allowed_speed(
         covering_compression=known(found["covering_compression"]),
         warnings=(
             *not_checked(missing),
-            *flagged(flags, pad),
+            *flagged(flags, pad, values),
             *implausible_numbers(pad, str(shared["region"]), values),
         ),
         robot_speed=None if speed is None else max(speed - walking, 0.0),

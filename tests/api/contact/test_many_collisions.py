@@ -99,7 +99,17 @@ def test_a_damper_that_is_too_fast_beside_a_backing_ends_without_a_panic() -> No
     given: dict[str, Any] = {"robot_mass": 29.44593126, "body_mass": 54.86603947, "region": 10069.141}
     hit = contact.simulate(closing_speed=1.0100077, covering=pad, tolerance=1e-3, **given)
     assert hit.status == "unfinished"
-    assert "leave it out" in hit.warnings[0].message
+    assert "a damper that relaxes within microseconds" in hit.warnings[0].message
+
+
+def test_why_a_row_has_no_end_is_told_from_its_own_numbers() -> None:
+    law = contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9, exponent=1.0)
+    pad = contact.Covering(material=law, thickness=0.02, area=4e-3)
+    given: dict[str, Any] = {"robot_mass": 20.0, "body_mass": 50.0, "closing_speed": [0.1, 2.7], "covering": pad}
+    rows = contact.batch(exponent=[1.0, 0.6], **given)
+    assert rows.status.tolist() == ["released", "unfinished"]
+    assert "limited energy up to its lock" in rows.warnings[0].message
+    assert "damper" not in rows.warnings[0].message
 
 
 def test_a_flat_covering_has_no_half_width() -> None:

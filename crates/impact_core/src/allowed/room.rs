@@ -3,7 +3,7 @@
 use numeric::parallel::Work;
 use numeric::threads::{on_threads, try_each};
 
-use crate::error::Result;
+use crate::error::{Failure, Given, Result};
 
 /// Rows of a task; the bits of a row do not depend on it.
 const BLOCK: usize = 256;
@@ -43,6 +43,13 @@ impl Room<'_> {
         work: Work<'_>,
         fill: impl Fn(&mut Piece<'_, N>) -> Result<()> + Sync + Send,
     ) -> Result<()> {
+        let rows = self.status.len();
+        let fits = |column: &&mut [f64]| column.len() == rows;
+        if self.numbers.len() != N || self.word.len() != rows || !self.numbers.iter().all(fits) {
+            let rule = format!("have {N} columns of one length");
+            let given = Given::Count(self.numbers.len() as u64);
+            return Err(Failure::invalid("room", rule, given));
+        }
         let mut columns = self.numbers.into_iter();
         let mut columns: [_; N] =
             std::array::from_fn(|_| columns.next().unwrap_or_default().chunks_mut(BLOCK));

@@ -256,11 +256,7 @@ pub fn collide_rows(
             let mut outcomes = simulate_all(&valid, wanted, work.interrupted).into_iter();
             for (place, collision) in places.zip(&collisions) {
                 let found = match collision {
-                    Ok(_) => outcomes
-                        .next()
-                        .as_ref()
-                        .map(loads)
-                        .ok_or(Failure::Interrupted),
+                    Ok(_) => Ok(loads(&outcomes.next().ok_or(Failure::Interrupted)?)),
                     Err(failure) => Err(failure.clone()),
                 };
                 piece.put(place, kinds.codes(setup, found));
