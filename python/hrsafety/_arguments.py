@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from typing_extensions import TypeIs
+
 Array = npt.NDArray[np.float64]
 Pair = tuple[float, float]
 Kind = TypeVar("Kind")
@@ -80,7 +82,8 @@ def number(name: str, value: object) -> float:
     """Return ``value`` as a float, or say what it should have been."""
     if type(value) is float:  # nearly always
         return value
-    if isinstance(value, (bool, np.bool_, str, bytes)):
+    # Instants and durations of NumPy in ns pass for plain numbers, a billion times too large.
+    if isinstance(value, (bool, np.bool_, str, bytes, np.datetime64, np.timedelta64)):
         raise InvalidParameterError(name, "be a number", value)
     refuse_masked(name, value)
     try:
@@ -132,11 +135,16 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
+def _is_whole(value: object) -> TypeIs[int | np.integer[Any]]:
+    """Return whether ``value`` is an integer; to Python truth values are some, to NumPy durations are."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
+
+
 def count(name: str, value: object, *, least: int = 1, most: int = MOST_COUNT) -> int:
     """Return ``value`` if it is an integer within the bounds, or say that it should have been."""
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+    if not _is_whole(value) or not least <= value <= most:
         # The largest count of all is no news to who gave a word.
-        wide = most == MOST_COUNT and not (isinstance(value, (int, np.integer)) and value > most)
+        wide = most == MOST_COUNT and not (_is_whole(value) and value > most)
         rule = f"be an integer of at least {least}" if wide else f"be an integer from {least} to {most}"
         raise InvalidParameterError(name, rule, value)
     return int(value)
@@ -157,10 +165,9 @@ def whole_steps(name: str, duration: float, step: float, most: int) -> float:
 
 def checked_seed(name: str, value: object) -> int:
     """Return ``value`` if random numbers can start from it, or say what it should have been."""
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
-    if not whole or not 0 <= value < 2**64:  # type: ignore[operator]  # it is whole
+    if not _is_whole(value) or not 0 <= value < 2**64:
         raise InvalidParameterError(name, "be an integer from 0 to 2**64 - 1", value)
-    return int(value)  # type: ignore[call-overload, no-any-return]  # it is whole
+    return int(value)
 
 
 def word(name: str, value: object, words: Sequence[str]) -> str:

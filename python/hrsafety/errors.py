@@ -86,7 +86,12 @@ def _words(value: object) -> str:
     """Return a value as it is printed, cut when long; Python refuses to print integers of thousands of digits."""
     if isinstance(value, int) and abs(value) >= 10**40:
         return f"an integer of {value.bit_length()} bits"
-    shown = repr(value) if isinstance(value, str) else re.sub(_OF_NUMPY, r"\1", repr(value))
+    try:
+        shown = repr(value)
+    except Exception:  # of a class that cannot be printed, or nested too deeply: the rule is told in any case
+        return f"an object of class {type(value).__name__}"
+    if not isinstance(value, str):
+        shown = re.sub(_OF_NUMPY, r"\1", shown)
     if len(shown) <= LONGEST_SHOWN:
         return shown
     return f"{re.sub(_HALF, '', shown[:LONGEST_SHOWN])}..."

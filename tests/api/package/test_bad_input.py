@@ -25,7 +25,7 @@ from api.spoiled import (
     names,
     spoiled,
 )
-from hrsafety import InvalidParameterError, ShapeError
+from hrsafety import InvalidParameterError, ShapeError, reactive
 from hrsafety import navigation as nav
 
 # Constructors with arguments that are right; each test then spoils one of them.
@@ -287,3 +287,30 @@ def test_numbers_of_numpy_are_shown_as_numbers() -> None:
     cases = ((np.float64(1.5), "1.5"), ([np.float32(0.5), np.int8(3)], "[0.5, 3]"), ("np.int8(3)", "'np.int8(3)'"))
     for value, shown in cases:
         assert str(InvalidParameterError("radius", "be a number", value)) == f"radius must be a number, got {shown}"
+
+
+@pytest.mark.parametrize("unit", ["ns", "s"])
+@pytest.mark.parametrize("kind", [np.timedelta64, np.datetime64])
+def test_an_instant_of_numpy_is_no_number(kind: type, unit: str) -> None:
+    """NumPy turns those in ns into plain numbers: a second became a billion seconds."""
+    moment = kind(10**9, unit)
+    for name in ("time_limit", "seed"):
+        with pytest.raises(InvalidParameterError, match=name):
+            nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), **{name: moment})
+    with pytest.raises(InvalidParameterError, match="rays"):
+        reactive.Sonar(rays=moment)
+
+
+class _Unprintable:
+    def __repr__(self) -> str:
+        raise RuntimeError("nothing to show")
+
+
+def test_what_cannot_be_printed_still_gets_its_rule() -> None:
+    with pytest.raises(InvalidParameterError, match="mass must be a number, got an object of class _Unprintable"):
+        nav.HolonomicRobot(mass=_Unprintable())
+    nested: list[object] = []
+    for _ in range(100_000):
+        nested = [nested]
+    with pytest.raises(InvalidParameterError, match="mass must be a number, got an object of class list"):
+        nav.HolonomicRobot(mass=nested)
