@@ -33,6 +33,9 @@ LONGEST_SHOWN = 200
 """Characters of a path that a message shows."""
 
 
+MOST_AXES = 16
+"""Axes of an array: NumPy lays at most 32 beside each other, of which results need some themselves."""
+
 # Looked up once: studies construct parameters by the million.
 assign = object.__setattr__
 
@@ -266,6 +269,8 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
         raise InvalidParameterError(name, rule, value) from None
     if array.dtype.kind not in "fiu":
         raise InvalidParameterError(name, rule, value)
+    if array.ndim > MOST_AXES:
+        raise InvalidParameterError(name, f"have at most {MOST_AXES} axes", Shown(f"{array.ndim} axes"))
     # The cores read whole floats at their places in memory: other arrays are copied.
     whole = np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
     return whole if whole.flags.aligned else whole.copy()

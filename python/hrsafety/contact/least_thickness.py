@@ -89,6 +89,7 @@ def thickness(
     if isinstance(covering, Mapping) and "thickness" not in covering:
         covering = {**covering, "thickness": 0.01}
     pad = covering_of(covering)
+    speed = positive("speed", speed)
     shared, values = contact_row(
         robot_mass=robot_mass,
         body_mass=body_mass,
@@ -96,7 +97,7 @@ def thickness(
         covering=pad,
         tolerance=TOLERANCE,
         max_strain=max_strain,
-        closing_speed=positive("speed", speed),
+        closing_speed=speed,
     )
     values |= limits_of(limits)
     value, status = _hrsafety.contact_thickness(shared, in_order(values))

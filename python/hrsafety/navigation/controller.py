@@ -277,8 +277,10 @@ class Controller:
         """Return the places of those who left; nobody can have left who is measured in the same update."""
         names = sequence("gone", "be names in a list, a tuple or a set", gone)
         for name in names:
-            if not isinstance(name, Hashable):
-                raise InvalidParameterError("gone", "hold names as they stand in people", name)
+            try:
+                hash(name)  # a tuple, or a number of NumPy with fields, may hold what has none
+            except TypeError:
+                raise InvalidParameterError("gone", "hold names as they stand in people", name) from None
             if isinstance(seen, Mapping) and name in seen:
                 raise InvalidParameterError("gone", "name nobody who is measured in the same update", name)
         return [self._names[name] for name in names if name in self._names]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from api.spoiled import (
     names,
     spoiled,
 )
-from hrsafety import InvalidParameterError, ShapeError, reactive
+from hrsafety import InvalidParameterError, ShapeError, contact, impact, reactive
 from hrsafety import navigation as nav
 
 # Constructors with arguments that are right; each test then spoils one of them.
@@ -314,3 +315,32 @@ def test_what_cannot_be_printed_still_gets_its_rule() -> None:
         nested = [nested]
     with pytest.raises(InvalidParameterError, match="mass must be a number, got an object of class list"):
         nav.HolonomicRobot(mass=nested)
+
+
+def test_numbers_of_other_kinds_are_taken_as_numbers() -> None:
+    """Some were checked, and then computed with as they were given."""
+    half = Decimal("0.5")
+    assert len(nav.robots.WheelReference.sine(duration=5, period=half).angle) == 10
+    pad = contact.Covering(material=contact.Linear(modulus=1e5), thickness=0.02, area=4e-3)
+    case: dict[str, Any] = {"robot_mass": 16.0, "body_mass": 0.6, "region": 75e3, "limits": {"force": 280.0}}
+    exact = contact.thickness(speed=0.5, covering=pad, **case)
+    assert contact.thickness(speed=half, covering=pad, **case) == exact  # type: ignore[arg-type]  # what is tried
+
+
+def test_arrays_of_too_many_axes_are_refused_by_name() -> None:
+    speed = np.ones((1,) * 40)
+    with pytest.raises(InvalidParameterError, match="closing_speed must have at most 16 axes, got 40 axes"):
+        contact.batch(closing_speed=speed, robot_mass=16.0, body_mass=0.6, region=75e3)
+
+
+def test_names_without_a_hash_are_refused_by_name() -> None:
+    controller = nav.Controller(nav.VirtualForceField(), nav.HolonomicRobot(), (5.0, 0.0))
+    for name in (np.zeros(1, [("a", "f8")])[0], ([],)):
+        with pytest.raises(InvalidParameterError, match="gone must hold names"):
+            controller.update(0.0, (0.0, 0.0), (0.0, 0.0), gone=[name])
+
+
+def test_drops_that_hold_rows_of_unequal_length_are_refused_by_name() -> None:
+    uneven = [[[0.0], [0.0, 1.0]]]
+    with pytest.raises(InvalidParameterError, match="drop_time must be a signal"):
+        impact.identify_foam([0.0, 1.0], [0.0, 1.0], uneven, uneven, 1.5)

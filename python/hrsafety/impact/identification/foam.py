@@ -351,7 +351,11 @@ def _signals(name: str, value: object) -> list[Array]:
         raise InvalidParameterError(name, rule, value)
     if isinstance(value, (str, bytes)) or not isinstance(value, (Sequence, np.ndarray)) or len(value) == 0:
         raise InvalidParameterError(name, rule, value)
-    if np.ndim(value[0]) == 0:
+    try:
+        alone = np.ndim(value[0]) == 0
+    except ValueError:  # rows of different lengths
+        raise InvalidParameterError(name, rule, value) from None
+    if alone:
         return [vector(name, value)]
     return [vector(f"{name}[{index}]", each) for index, each in enumerate(value)]
 

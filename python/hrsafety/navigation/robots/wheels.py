@@ -224,7 +224,8 @@ class WheelReference:
         """
         rate = 2.0 * np.pi * positive("frequency", frequency)
         length = positive("duration", duration)
-        rows = round(whole_steps("duration", length, positive("period", period), MOST_SAMPLES))
+        period = positive("period", period)
+        rows = round(whole_steps("duration", length, period, MOST_SAMPLES))
         if not np.isfinite(rate * length) or not np.isfinite(number("speed", speed) * rate):
             raise InvalidParameterError("frequency", "give a finite phase and a finite acceleration", frequency)
         phase = rate * period * np.arange(rows)

@@ -10,10 +10,13 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
-from hrsafety.navigation.warnings.shields import ASSUMES_LESS, of_order, of_shield, shield_of
+from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_order, of_shield, shield_of
 from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["of_commands", "of_run", "of_runs", "of_scenes"]
+
+UNKNOWN_MAP = "unknown_map"
+"""Code of a law that does not know the walls of the laws that it is compared with."""
 
 
 def of_run(
@@ -96,7 +99,21 @@ def of_runs(
     found = (
         (name, [each for law in kept for each in of_run(scenario, law, built, motion_step)]) for name, scenario in named
     )
-    return gathered(found, "scenarios")
+    return (*gathered(found, "scenarios"), *_of_maps(kept, built))
+
+
+def _of_maps(laws: Sequence[Law], built: AsBuilt | None) -> Iterator[ResultWarning]:
+    """Warn of laws that go through the walls of the others: a run counts contacts with the maps that it knows."""
+    maps = [maps_of(law) for law in laws]
+    seen = () if built is None else [getattr(sensor, "map", None) for sensor in built.sensors]  # that of a lidar
+    for index, known in enumerate(maps):
+        if any(wall not in (*known, *seen) for others in maps for wall in others):
+            message = (
+                f"laws[{index}] does not know the map of another law: its runs go through those walls, and no contact "
+                "with them is counted; put it into nav.SafeNavigation with the same map="
+            )
+            yield ResultWarning(UNKNOWN_MAP, f"laws[{index}].map", message)
+            return
 
 
 def of_scenes(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,7 +22,20 @@ from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.warnings.scenarios import own_speed, pieces
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["ASSUMES_LESS", "SEES_LESS", "Motion", "Mover", "of_order", "of_shield", "of_surroundings", "shield_of"]
+if TYPE_CHECKING:
+    from hrsafety.navigation.maps.static_map import StaticMap
+
+__all__ = [
+    "ASSUMES_LESS",
+    "SEES_LESS",
+    "Motion",
+    "Mover",
+    "maps_of",
+    "of_order",
+    "of_shield",
+    "of_surroundings",
+    "shield_of",
+]
 
 ASSUMES_LESS = "shield_assumes_less"
 SEES_LESS = "shield_sees_less"
@@ -118,6 +132,16 @@ def shield_of(law: object) -> tuple[Shield | None, bool]:
         shield, walls = shield or law.shield, walls or law.map is not None
         law = law.law
     return shield, walls
+
+
+def maps_of(law: object) -> list[StaticMap]:
+    """Return the maps that a law and the laws within it know."""
+    found: list[StaticMap] = []
+    while isinstance(law, SafeNavigation):
+        if law.map is not None:
+            found.append(law.map)
+        law = law.law
+    return found
 
 
 def of_order(law: object, owner: str = "law") -> Iterator[ResultWarning]:
