@@ -215,8 +215,12 @@ RANGES: dict[str, Range] = {
     "contact_area": Range(1e-6, 0.3, "m^2", "1 mm^2 to the back of a person", "mm^2 or cm^2 given for m^2"),
     "contact_radius": Range(1e-4, 100.0, "m", "an edge to nearly flat", "mm or cm given for m"),
     "covering_stress": Range(300.0, 1e10, "Pa", "the softest foams to hard plastics", "kPa or MPa given for Pa"),
+    "covering_strain": Range(0.0, 1.0, "", "nothing is pressed to less than nothing", "percent given for shares"),
     "force_limit": Range(5.0, 5000.0, "N", "ISO/TS 15066 has 65 to 440", "kN given for N"),
     "pressure_limit": Range(1e4, 1e8, "Pa", "ISO/TS 15066 has 1.1 to 6 MPa", "N/cm^2 or N/mm^2 given for Pa"),
+    "person_distance": Range(0.0, 100.0, "m", "farther than any safety sensor sees", "mm or cm given for m"),
+    "robot_deceleration": Range(0.0, 100.0, "m/s^2", "ten times gravity", "mm/s^2 given for m/s^2"),
+    "point_of_link": Range(-10.0, 10.0, "m", "longer than links of industrial arms", "mm or cm given for m"),
     "damping_ratio": Range(
         0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"
     ),

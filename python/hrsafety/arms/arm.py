@@ -16,7 +16,16 @@ from hrsafety._arguments import Array, count, flag, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety._records import dataclass
 from hrsafety.arms.facts import Facts
-from hrsafety.arms.inputs import armature_of, broadcast, locked_of, motors_of, poses_of, urdf_text, vectors_of
+from hrsafety.arms.inputs import (
+    armature_of,
+    broadcast,
+    doubts_of_point,
+    locked_of,
+    motors_of,
+    poses_of,
+    urdf_text,
+    vectors_of,
+)
 from hrsafety.arms.masses import RULES, Extremes, PointMasses, mass_by_rule
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.errors import InvalidParameterError
@@ -237,7 +246,7 @@ class Arm(Facts):
             iso_mass=self.iso_mass,
             extremes=_extremes(states),
             mobility=states["mobility"],
-            warnings=self.warnings,
+            warnings=(*self.warnings, *doubts_of_point(points)),
         )
 
     def extremes(

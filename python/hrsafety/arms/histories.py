@@ -11,7 +11,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, vector, word
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.inputs import poses_of, vectors_of
+from hrsafety.arms.inputs import doubts_of_point, poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plausibility import ResultWarning
@@ -181,7 +181,7 @@ def along(
         margin=None if limit is None or force is None else limit.force_margin(force),
         verdict=None if limit is None or force is None else limit.force_verdict(force),
         limit=limit,
-        warnings=arm.warnings,
+        warnings=(*arm.warnings, *doubts_of_point(point)),
     )
 
 

@@ -13,7 +13,7 @@ from hrsafety._bounds import MOST_POINT_STATES
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.histories import plane_of
-from hrsafety.arms.inputs import vectors_of
+from hrsafety.arms.inputs import doubts_of_point, vectors_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, unit_suffix
@@ -163,7 +163,7 @@ def workspace(
         mass=mass,
         direction=along,
         iso_mass=arm.iso_mass,
-        warnings=arm.warnings,
+        warnings=(*arm.warnings, *doubts_of_point(point)),
     )
 
 

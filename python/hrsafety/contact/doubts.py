@@ -133,6 +133,7 @@ def implausible_numbers(
                 values[name], quantities[name] = numbers[f"material_{place}"], "covering_stress"
         if isinstance(law, StressTable):
             values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
+            values["strain"], quantities["strain"] = float(np.max(law.strain)), "covering_strain"
     judged = {name: _judged(value, quantities.get(name, name), threads) for name, value in values.items()}
     return implausible(judged, quantities)
 

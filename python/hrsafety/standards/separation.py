@@ -12,12 +12,15 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.plausibility import ResultWarning, implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
 
 WALKING_SPEED = 1.6
 """Speed of a person in m/s whose speed is not measured."""
+
+_QUANTITIES = {"distance": "person_distance", "deceleration": "robot_deceleration"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -219,6 +222,8 @@ class SpeedCurve(Table):
         Whether the distance allows more than the largest measured speed, which is then the speed.
     status : str
         ``"permitted"`` where contact has an allowed speed, ``"not_permitted"`` where it has none.
+    warnings : tuple of ResultWarning
+        Numbers that are hardly meant in their unit.
     """
 
     distance: Array
@@ -227,6 +232,7 @@ class SpeedCurve(Table):
     capped: npt.NDArray[np.bool_]
     outside_table: npt.NDArray[np.bool_]
     status: str = field(default="permitted")
+    warnings: tuple[ResultWarning, ...] = ()
 
     def columns(self) -> Columns:
         """Return the table as columns.
@@ -315,6 +321,7 @@ def speed_over_distance(
         capped=speed > most,
         outside_table=beyond & (apart >= contact) & (speed <= most),
         status="not_permitted" if contact_speed is None else "permitted",
+        warnings=implausible({"distance": given, "deceleration": braked}, _QUANTITIES),
     )
 
 

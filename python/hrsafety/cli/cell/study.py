@@ -106,7 +106,11 @@ def studied(cell: Cell, shown: Report | None = None) -> Study:
         "probability": [_named(each) | chance_of(cell, each.planned, each.chosen) for each in judged],
     }
     return Study(
-        fields=fields, impacts=impacts, curves=curves, speeds=speeds, warnings=tuple(_warnings(cell, judged, impacts))
+        fields=fields,
+        impacts=impacts,
+        curves=curves,
+        speeds=speeds,
+        warnings=(*_warnings(cell, judged, impacts), *(() if speeds is None else speeds.warnings)),
     )
 
 
