@@ -11,7 +11,7 @@ import numpy.typing as npt
 from gymnasium import spaces
 
 from hrsafety._arguments import checked_seed, numbers, word
-from hrsafety.errors import ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.worlds import Task
@@ -109,6 +109,8 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         info : dict
             Outcome and clearance.
         """
+        if options is not None and not isinstance(options, Mapping):
+            raise InvalidParameterError("options", "be a mapping or None", options)
         super().reset(seed=seed, options=None if options is None else dict(options))
         if seed is None and not self._seeded:
             seed = int(self.np_random.integers(2**63))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from hrsafety._arguments import checked_seed, word
+from hrsafety._arguments import checked_seed, sequence, word
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
@@ -126,15 +126,20 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         if seed is None:
             return []
         if isinstance(seed, (int, np.integer)):
-            last = checked_seed("seed", int(seed)) + self.num_envs - 1
-            checked_seed("seed + num_envs - 1", last)
-            return list(range(int(seed), last + 1))
-        if len(seed) != self.num_envs:
-            raise ShapeError("seed", f"({self.num_envs},)", (len(seed),))
-        return [None if each is None else checked_seed(f"seed[{index}]", each) for index, each in enumerate(seed)]
+            first = checked_seed("seed", seed)
+            last = checked_seed("seed + num_envs - 1", first + self.num_envs - 1)
+            return list(range(first, last + 1))
+        given = sequence("seed", "be an integer, or one for each environment", seed)
+        if len(given) != self.num_envs:
+            raise ShapeError("seed", f"({self.num_envs},)", (len(given),))
+        return [None if each is None else checked_seed(f"seed[{index}]", each) for index, each in enumerate(given)]
 
     def _mask(self, options: dict[str, Any] | None) -> Flags | None:
-        if options is None or "reset_mask" not in options:
+        if options is None:
+            return None
+        if not isinstance(options, Mapping):
+            raise InvalidParameterError("options", "be a mapping or None", options)
+        if "reset_mask" not in options:
             return None
         mask = options["reset_mask"]
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (self.num_envs,):

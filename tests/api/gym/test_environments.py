@@ -258,3 +258,16 @@ def test_a_picture_shows_the_world(name: str) -> None:
     assert later.shape == picture.shape
     assert not np.array_equal(later, picture)
     env.close()
+
+
+@pytest.mark.parametrize("seed", [True, 1.5, np.timedelta64(1, "ns"), "abc"])
+def test_a_seed_of_many_that_is_none_is_refused_by_name(seed: Any) -> None:
+    envs = gymnasium.make_vec(CIRCLE, num_envs=3)
+    with pytest.raises(InvalidParameterError, match="seed"):
+        envs.reset(seed=seed)
+
+
+def test_options_that_are_no_mapping_are_refused_by_name() -> None:
+    for env in (one_person(), gymnasium.make_vec(CIRCLE, num_envs=3)):
+        with pytest.raises(InvalidParameterError, match="options must be a mapping or None, got 3"):
+            env.reset(options=3)  # type: ignore[arg-type, call-overload]  # what is tried
