@@ -63,6 +63,11 @@ depth = np.linspace(0.0, 0.01, 2_000_000)
 force = 24e3 * depth + np.sin(np.arange(len(depth)))
 """
 CELLS = "cells = np.random.default_rng(0).random((6000, 6000)) < 1e-4"
+ROOM = """
+corners = ((0.0, 0.0), (0.3, 0.0), (0.3, 0.3), (0.0, 0.3))
+room = nav.StaticMap.from_polygons([[(x + i, y + j) for i, j in corners] for x in range(60) for y in range(60)])
+places = np.random.default_rng(0).uniform(0.0, 60.0, (10_000_000, 2))
+"""
 WHEEL = """
 wheel = nav.HOLONOMIC_WHEELS[0]
 """
@@ -89,6 +94,8 @@ JOBS = {
     "boundary": (PARTS, BOUNDARY),
     "distances of cells": (CELLS, "[nav.maps.distance_transform(cells) for _ in range(20)]"),
     "a map of cells": (CELLS, "[nav.maps.StaticMap.from_grid(cells, resolution=0.05) for _ in range(40)]"),
+    "distances of points": (ROOM, "room.clearance(places)"),
+    "rays": (ROOM, "room.ray((0.65, 0.65), places[:, 0])"),
     "static tests": (STATIC, "[impact.fit_static(force, depth) for _ in range(1000)]"),
     "open-loop tests": (WHEEL, "[nav.open_loop_tests(wheel, duration=3000.0, repeats=1) for _ in range(100)]"),
     "wheel": (WHEEL + TESTED, "[nav.identify_wheel(tests) for _ in range(1000)]"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.standing import Rectangle
 
 __all__ = ["Cells", "Wall"]
+
+_PART = 16_384  # rows of which the answers take milliseconds
 
 Outline = tuple[tuple[float, float], ...]
 
@@ -109,3 +112,9 @@ def checked_place(name: str, given: object) -> tuple[float, float]:
 def checked_points(given: npt.ArrayLike) -> Array:
     array = numbers("point", given)
     return checked_finite("point", points("point", array.reshape(1, -1) if array.ndim == 1 else array))
+
+
+def in_parts(ask: Callable[[Array], object], rows: Array) -> Array:
+    """Return the answers for many rows, asked part by part: between them Ctrl-C is answered."""
+    starts = range(0, max(len(rows), 1), _PART)
+    return np.concatenate([np.asarray(ask(rows[start : start + _PART])) for start in starts])

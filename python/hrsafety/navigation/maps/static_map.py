@@ -26,6 +26,7 @@ from hrsafety.navigation.maps.parts import (
     checked_wall,
     corners_of,
     counted,
+    in_parts,
     items,
     outline,
 )
@@ -312,8 +313,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If the points are no points.
         """
-        several = checked_points(point)
-        found = self._native.clearance(several)
+        found = in_parts(self._native.clearance, checked_points(point))
         return float(found[0]) if np.ndim(point) == 1 else found
 
     def segment_clearance(self, start: npt.ArrayLike, end: npt.ArrayLike) -> float:
@@ -354,7 +354,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If the points are no points.
         """
-        found = self._native.nearest(checked_points(point))
+        found = in_parts(self._native.nearest, checked_points(point))
         return found[0] if np.ndim(point) == 1 else found
 
     def ray(self, start: npt.ArrayLike, bearing: npt.ArrayLike) -> Any:
@@ -378,7 +378,7 @@ class StaticMap(Parameters):
             If an argument is not finite.
         """
         bearings = checked_finite("bearing", numbers("bearing", bearing))
-        found = np.asarray(self._native.ray(checked_place("start", start), bearings.ravel().tolist()))
+        found = in_parts(lambda part: self._native.ray(checked_place("start", start), part.tolist()), bearings.ravel())
         return float(found[0]) if bearings.ndim == 0 else found.reshape(bearings.shape)
 
     def boundary_points(self, point: npt.ArrayLike, *, reach: float, kappa: float = 0.5) -> Array:
