@@ -195,6 +195,8 @@ def readable(name: str, path: str | PathLike[str]) -> Path:
             raise InvalidParameterError(name, rule, given, "this is a folder")
         if path.exists():
             raise InvalidParameterError(name, rule, given, "this is no regular file")
+        if path.is_symlink():
+            raise InvalidParameterError(name, rule, given, "this is a link that leads to no file")
     except OSError as error:
         raise InvalidParameterError(name, rule, Shown(f"{given} ({error.strerror})")) from None
     raise InvalidParameterError(name, rule, given, _neighbour(path))

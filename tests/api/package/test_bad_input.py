@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import sys
 from collections.abc import Callable
 from decimal import Decimal
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +28,7 @@ from api.spoiled import (
     names,
     spoiled,
 )
-from hrsafety import InvalidParameterError, ShapeError, contact, impact, reactive
+from hrsafety import InvalidParameterError, ShapeError, contact, impact, reactive, scenarios
 from hrsafety import navigation as nav
 
 # Constructors with arguments that are right; each test then spoils one of them.
@@ -344,3 +346,12 @@ def test_drops_that_hold_rows_of_unequal_length_are_refused_by_name() -> None:
     uneven = [[[0.0], [0.0, 1.0]]]
     with pytest.raises(InvalidParameterError, match="drop_time must be a signal"):
         impact.identify_foam([0.0, 1.0], [0.0, 1.0], uneven, uneven, 1.5)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_a_link_that_leads_nowhere_is_called_so(tmp_path: Path) -> None:
+    """The name of the link itself was what may have been meant."""
+    for name, target in (("circle.toml", "circle.toml"), ("old.toml", "gone.toml")):
+        (tmp_path / name).symlink_to(target)
+        with pytest.raises(InvalidParameterError, match="a link that leads to no file"):
+            scenarios.load(tmp_path / name)
