@@ -3,10 +3,12 @@
 
 use numeric::error::{Failure, Given, Result};
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyUnicodeEncodeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::arguments::Arguments;
+
+use crate::errors::CoreError;
 
 /// The keyword arguments of a call.
 #[derive(Default)]
@@ -40,6 +42,9 @@ impl<'py> Keywords<'py> {
             if error.is_instance_of::<PyTypeError>(items.py()) {
                 let words = error.value(items.py());
                 PyTypeError::new_err(format!("argument '{name}': {words}"))
+            } else if error.is_instance_of::<PyUnicodeEncodeError>(items.py()) {
+                let given = Given::Found("a lone surrogate in it".into());
+                CoreError::from(Failure::invalid(name, "be text that UTF-8 can hold", given)).into()
             } else {
                 error
             }

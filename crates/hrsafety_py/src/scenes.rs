@@ -3,6 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
+use numeric::error::{Failure, Result};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -10,8 +11,9 @@ use vff_core::world::arrays::SceneArrays;
 use vff_core::world::random_scenes::{random_crowd, random_traffic};
 use vff_core::world::scenario::{self, Mover, Rules};
 
-use crate::errors::{CoreError, CoreResult};
+use crate::errors::CoreError;
 use crate::parameters::{HolonomicRobot, Scenario, mover_of};
+use crate::watch::{Report, here};
 
 /// Scenarios that crossed the boundary once.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -65,13 +67,9 @@ impl Scenarios {
         obstacles: usize,
         robot: PyRef<'_, HolonomicRobot>,
         seeds: Vec<u64>,
-    ) -> CoreResult<Self> {
+    ) -> PyResult<Self> {
         let robot = robot.0;
-        let made = py.detach(|| {
-            let draw = |seed: &u64| random_traffic(obstacles, robot, *seed);
-            seeds.iter().map(draw).collect::<Result<_, _>>()
-        });
-        Ok(Self(Arc::new(made?)))
+        drawn(py, &seeds, |seed| random_traffic(obstacles, robot, seed))
     }
 
     /// Random crowd of a number of people for each seed.
@@ -79,11 +77,7 @@ impl Scenarios {
     #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn random_crowd(people: usize, robot: &Bound<'_, PyAny>, seeds: Vec<u64>) -> PyResult<Self> {
         let mover: Mover = mover_of(robot)?;
-        let made = robot.py().detach(|| {
-            let draw = |seed: &u64| random_crowd(people, mover, *seed);
-            seeds.iter().map(draw).collect::<Result<_, _>>()
-        });
-        Ok(Self(Arc::new(made.map_err(CoreError::from)?)))
+        drawn(robot.py(), &seeds, |seed| random_crowd(people, mover, seed))
     }
 
     fn __len__(&self) -> usize {
@@ -125,6 +119,24 @@ impl Scenarios {
     fn seeds(&self) -> Vec<u64> {
         self.0.iter().map(scenario::Scenario::seed).collect()
     }
+}
+
+/// One scenario for each seed; signals are answered in between.
+fn drawn(
+    py: Python<'_>,
+    seeds: &[u64],
+    draw: impl Fn(u64) -> Result<scenario::Scenario> + Send + Sync,
+) -> PyResult<Scenarios> {
+    let made = here(py, Report::none(), |control| {
+        let one = |seed: &u64| {
+            if control.interrupted() {
+                return Err(Failure::Interrupted);
+            }
+            draw(*seed)
+        };
+        seeds.iter().map(one).collect::<Result<_>>()
+    });
+    Ok(Scenarios(Arc::new(made?)))
 }
 
 /// Scenarios as a function takes them: those of one object, or a list.

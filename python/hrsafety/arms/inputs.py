@@ -37,6 +37,11 @@ def doubts_of_point(point: object) -> tuple[ResultWarning, ...]:
 def urdf_text(source: object) -> tuple[str, str]:
     """Return the text of a URDF, and what names it in messages: a file, or the text itself."""
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        try:
+            source.encode()
+        except UnicodeEncodeError:
+            rule = "be text that UTF-8 can hold"
+            raise InvalidParameterError("path_or_text", rule, Shown("a lone surrogate in it")) from None
         return source.lstrip("\ufeff \t\r\n"), ""
     if not isinstance(source, (str, os.PathLike)):
         raise InvalidParameterError("path_or_text", "be a path or the text of a URDF", source)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Callable
 from typing import Any
@@ -21,7 +22,7 @@ from api.spoiled import (
     names,
     spoiled_calls,
 )
-from hrsafety import InvalidParameterError, ShapeError
+from hrsafety import InvalidParameterError, ShapeError, arms, reactive
 from hrsafety import navigation as nav
 
 SCENE = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1)])
@@ -168,3 +169,17 @@ def test_measurement_needs_a_held_force() -> None:
     noisy = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), measurement=nav.Measurement())
     with pytest.raises(InvalidParameterError):
         nav.simulate(noisy, LAW, hold=False)
+
+
+@pytest.mark.parametrize(
+    ("build", "argument"),
+    [
+        (lambda word: reactive.VirtualImpedance(form=word), "form"),
+        (lambda word: dataclasses.replace(nav.HOLONOMIC_WHEELS[0], feedback=word), "feedback"),
+        (lambda word: arms.Arm.from_urdf(f"<robot name='{word}'></robot>"), "path_or_text"),
+    ],
+)
+def test_text_that_no_file_can_hold_is_refused_by_name(build: Any, argument: str) -> None:
+    with pytest.raises(InvalidParameterError, match="be text that UTF-8 can hold") as caught:
+        build("\ud800")
+    assert names(caught.value) == argument

@@ -76,6 +76,9 @@ tests = nav.open_loop_tests(wheel, duration=2000.0, repeats=1)
 """
 BOUNDARY = "impact.foam_stiffness_upper(parts[0], damping=np.linspace(0.0, 300.0, 400_000), closing_speed=1.25)"
 
+SEEDS = "from hrsafety import scenarios\nseeds = range(1_000_000)"
+LEARNERS = "from hrsafety import gym, scenarios\nworld = scenarios.circle_crossing(0)"
+
 # Every piece of work takes many seconds, so the signal always arrives while it runs.
 JOBS = {
     "long runs": (LONG, SIMULATE.format(options="threads=2")),
@@ -96,6 +99,9 @@ JOBS = {
     "a map of cells": (CELLS, "[nav.maps.StaticMap.from_grid(cells, resolution=0.05) for _ in range(40)]"),
     "distances of points": (ROOM, "room.clearance(places)"),
     "rays": (ROOM, "room.ray((0.65, 0.65), places[:, 0])"),
+    "scenes of people drawn": (SEEDS, "[scenarios.random_crowd_batch(seeds, people=8) for _ in range(5)]"),
+    "scenes of traffic drawn": (SEEDS, "[scenarios.random_traffic_batch(seeds, obstacles=8) for _ in range(5)]"),
+    "environments made": (LEARNERS, "[gym.CrowdVectorEnv(world, num_envs=100_000).reset(seed=0) for _ in range(20)]"),
     "static tests": (STATIC, "[impact.fit_static(force, depth) for _ in range(1000)]"),
     "open-loop tests": (WHEEL, "[nav.open_loop_tests(wheel, duration=3000.0, repeats=1) for _ in range(100)]"),
     "wheel": (WHEEL + TESTED, "[nav.identify_wheel(tests) for _ in range(1000)]"),

@@ -16,7 +16,7 @@ use crate::errors::CoreError;
 use crate::keywords::Keywords;
 use crate::parameters::word;
 use crate::run::stepped::Stepped;
-use crate::watch::{Report, watched};
+use crate::watch::{Report, here, watched};
 
 /// Agents that are stepped without a look at signals: a tenth of a second at most.
 const UNWATCHED: usize = 50_000;
@@ -162,9 +162,11 @@ impl CrowdEnvironments {
         let settings = settings_of(world, &given)?;
         given.done()?;
         let agents = world.core().people.len() + world.core().robots.len();
-        let all = py.detach(|| Environments::new(settings, count, seed, threads));
+        let all = here(py, Report::none(), |control| {
+            Environments::new(settings, count, seed, threads, &|| control.interrupted())
+        });
         Ok(Self {
-            all: Stepped::new(all.map_err(CoreError::from)?, BUSY),
+            all: Stepped::new(all?, BUSY),
             short: count.saturating_mul(agents) <= UNWATCHED,
         })
     }
@@ -183,7 +185,9 @@ impl CrowdEnvironments {
         mut arrays: Arrays<'_>,
     ) -> PyResult<()> {
         let (mask, outputs) = (mask.as_slice()?, arrays.outputs()?);
-        self.work(py, |all, _| all.reset(&seeds, mask, outputs))
+        self.work(py, |all, interrupted| {
+            all.reset(&seeds, mask, outputs, interrupted)
+        })
     }
 
     /// Steps all of them.

@@ -61,12 +61,13 @@ impl Environments {
     /// So many environments at the start of their first episodes; the seeds count up from the first one.
     ///
     /// # Errors
-    /// A setting breaks a rule, or there is no room for everybody.
+    /// A setting breaks a rule, there is no room for everybody, or the caller asked to stop.
     pub fn new(
         settings: Settings,
         count: usize,
         seed: u64,
         threads: Option<usize>,
+        interrupted: Interrupted<'_>,
     ) -> Result<Self> {
         if !(1..=MOST_ENVIRONMENTS).contains(&count) {
             return Err(Failure::invalid(
@@ -79,7 +80,7 @@ impl Environments {
         check_size(&settings.world, count)?;
         let seeds = (0..count as u64).map(|index| seed.wrapping_add(index));
         let each: Result<Vec<Environment>> = seeds
-            .map(|seed| Environment::new(&settings, seed))
+            .map(|seed| attended(interrupted, || Environment::new(&settings, seed)))
             .collect();
         Ok(Self {
             each: each?,
@@ -103,12 +104,13 @@ impl Environments {
     /// Starts episodes: of all, or where the mask says so; the first ones of other seeds where there are any.
     ///
     /// # Errors
-    /// There is no room for everybody.
+    /// The caller asked to stop, or there is no room for everybody.
     pub fn reset(
         &mut self,
         seeds: &[Option<u64>],
         mask: &[bool],
         outputs: Outputs<'_>,
+        interrupted: Interrupted<'_>,
     ) -> Result<()> {
         let settings = &self.settings;
         let chosen = |index: usize| mask.get(index).copied().unwrap_or(true);
@@ -116,7 +118,9 @@ impl Environments {
         let work = |rows: &mut [(usize, Row<'_>)], shared: &mut Shared| {
             rows.iter_mut().try_for_each(|(index, row)| {
                 if chosen(*index) {
-                    row.environment.reset(settings, seed_of(*index))?;
+                    attended(interrupted, || {
+                        row.environment.reset(settings, seed_of(*index))
+                    })?;
                     *row.started = true;
                 }
                 row.show(settings, shared);
@@ -161,6 +165,14 @@ impl Environments {
         let mut states = self.each.iter().map(Environment::state);
         states.position(|state| state != State::Running)
     }
+}
+
+/// Work unless the caller asked to stop.
+fn attended<T>(interrupted: Interrupted<'_>, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    work()
 }
 
 /// Refuses environments that would not fit into memory.
