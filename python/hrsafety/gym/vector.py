@@ -213,11 +213,14 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
     def _scores(self, ended: Flags) -> dict[str, Any]:
         """Return a column of each metric, 0 for those whose episode is under way, and who has one."""
         kinds: dict[str, type] = {"number": np.float64, "count": np.int64, "flag": np.bool_}
+        those = np.flatnonzero(ended)
+        scores = self._all.scores[those].T
         found: dict[str, Any] = {}
-        for metric, column in zip(METRICS.values(), self._all.scores.T, strict=True):
+        for metric, column in zip(METRICS.values(), scores, strict=True):
             values: npt.NDArray[Any] = np.zeros(self.num_envs, dtype=kinds[metric.kind])
-            values[ended] = column[ended]
-            found |= {metric.name: values, f"_{metric.name}": ended.copy()}
+            values[those] = column
+            found[metric.name] = values
+            found[f"_{metric.name}"] = ended.copy()
         return found
 
     def _final(self, ended: Flags) -> npt.NDArray[Any]:

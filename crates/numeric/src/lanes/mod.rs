@@ -82,6 +82,11 @@ pub trait Real:
     fn from_fn(value: impl FnMut(usize) -> f64) -> Self;
     /// Value of one lane.
     fn lane(self, index: usize) -> f64;
+    /// Value of one lane, where the number is in memory: no copy of the other lanes is made.
+    #[inline(always)]
+    fn at(&self, index: usize) -> f64 {
+        self.lane(index)
+    }
     /// The number with one lane replaced.
     #[must_use]
     fn replace(self, index: usize, value: f64) -> Self;
@@ -349,6 +354,10 @@ impl<const N: usize> Real for Lanes<N> {
         self.0[index]
     }
     #[inline(always)]
+    fn at(&self, index: usize) -> f64 {
+        self.0[index]
+    }
+    #[inline(always)]
     fn replace(mut self, index: usize, value: f64) -> Self {
         self.0[index] = value;
         self
@@ -412,7 +421,7 @@ mod tests {
         let mut numbers = Lanes::<8>::from_fn(|lane| lane as f64);
         numbers.set(3, -1.0);
         assert_eq!(numbers, numbers.replace(3, -1.0));
-        assert_eq!((numbers.lane(2), numbers.lane(3)), (2.0, -1.0));
+        assert_eq!((numbers.at(2), numbers.lane(3)), (2.0, -1.0));
         let (mut mask, mut truth) = (LaneMask::<8>::none(), false);
         mask.set(5);
         truth.set(0);

@@ -4,14 +4,14 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::agent_lanes::{AgentLanes, Each, FEW, Vectors, WIDTH};
+use crate::crowd::agent_lanes::{AgentLanes, FEW, Vectors, WIDTH};
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{Planar, Real, vectors};
+use crate::lanes::{Real, Vector2, vectors};
 
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;
@@ -75,8 +75,8 @@ impl WorldLanes {
             let lane = lane % WIDTH;
             let people = world.move_people().iter_mut();
             for (person, agent) in people.zip(&self.agents.all) {
-                person.position = Planar::<Each>::lane(agent.position, lane).into();
-                person.velocity = Planar::<Each>::lane(agent.velocity, lane).into();
+                let of = |vectors: &Vectors| Vector2::new(vectors.x.at(lane), vectors.y.at(lane));
+                (person.position, person.velocity) = (of(&agent.position), of(&agent.velocity));
             }
         }
     }
