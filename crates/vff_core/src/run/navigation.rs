@@ -149,7 +149,7 @@ impl<L: Listener> Episode<Navigation<L>> {
             runs: Runs::new(
                 Arc::clone(&scenario),
                 clock,
-                bodies,
+                bodies.iter().copied(),
                 Maps::of(&scenario, law.and_then(AnyLaw::map), &built.sensors),
             ),
             reading,

@@ -8,7 +8,7 @@ use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::{Dormant, Relevant, Runs};
-use crate::run::scene::{Scene, World, bodies_at};
+use crate::run::scene::{Scene, World, bodies_at, body_at};
 use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
 use crate::world::geometry::{Body, RobotState};
@@ -49,10 +49,11 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let staged = options.is_staged();
     debug_assert!(R::WIDTH == 1 || !staged, "stages have no lanes");
     let mut sensor = SampledScene::new(scenario);
-    let mut seen = bodies_at(scenario, 0.0);
     let mut groups: Vec<Runs<&Scenario, R>> = Vec::with_capacity(team.len());
     // Those that are led come when they part.
-    let first = Runs::new(scenario, clock, &seen, maps.clone());
+    let bodies = scenario.obstacles.iter();
+    let bodies = bodies.map(|placed| body_at(placed, 0.0, &mut 0));
+    let first = Runs::new(scenario, clock, bodies, maps.clone());
     groups.resize(if led { 1 } else { team.len() }, first);
     // A group by itself that keeps no rows needs the obstacles between two samples only where they
     // are near; several groups share them.
@@ -62,6 +63,11 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     let mut dormant = single
         .then(|| Dormant::new(scenario, clock, |placed| team[0].law.felt_within(placed)))
         .flatten();
+    // Memory for all of them costs more than a look at those that are near.
+    let mut seen = match &dormant {
+        Some(_) => Vec::new(),
+        None => bodies_at(scenario, 0.0),
+    };
     let steps = clock.steps_per_sample.min(STEPS_PER_BLOCK);
     let mut scene = match &mut dormant {
         Some(dormant) => dormant.scene(&mut groups[0], steps),

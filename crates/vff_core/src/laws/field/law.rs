@@ -168,7 +168,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             max_acceleration: scenario.robot.max_acceleration,
             control_period: scenario.rules.control_period,
             latched: vec![R::zero(); count],
-            slots: Vec::with_capacity(count),
+            slots: Vec::new(),
             dissipation: Dissipation::zero(),
         }
     }

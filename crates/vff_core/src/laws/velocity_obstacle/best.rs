@@ -316,6 +316,7 @@ impl<'a> Best<'a> {
     }
 
     /// Whether one obstacle forbids a part of a line.
+    #[inline(always)]
     fn covers(&mut self, line: usize, ends: [Vector; 2]) -> bool {
         let VelocityObstaclePlanner {
             cones, settings, ..

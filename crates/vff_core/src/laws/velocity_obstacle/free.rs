@@ -25,13 +25,19 @@ pub(super) fn is_far(
 }
 
 impl Cone {
+    /// Whether a velocity leads far beside it, as most do: without a root.
+    #[inline(always)]
+    fn is_beside(&self, velocity: Vector) -> bool {
+        let legs = self.legs.as_ref();
+        legs.is_some_and(|legs| !legs.may_hold(velocity - self.tip))
+    }
+
     pub(super) fn time_to_contact(&self, velocity: Vector, edged: &[Outline]) -> f64 {
         let relative = velocity - self.tip;
-        if let Some(legs) = &self.legs {
-            // Most are far beside, which takes no root.
-            if !legs.may_hold(relative) || !legs.hold(relative) {
-                return f64::INFINITY;
-            }
+        if let Some(legs) = &self.legs
+            && !legs.hold(relative)
+        {
+            return f64::INFINITY;
         }
         match self.base {
             ConeBase::Disc(center, radius) if self.legs.is_some() => {
@@ -48,6 +54,7 @@ impl Cone {
 impl VelocityObstaclePlanner {
     pub(super) fn time_to_contact(&self, velocity: Vector) -> f64 {
         let times = self.cones.iter();
+        let times = times.filter(|cone| !cone.is_beside(velocity));
         let times = times.map(|cone| cone.time_to_contact(velocity, &self.edged));
         times.fold(f64::INFINITY, f64::min)
     }
@@ -73,6 +80,9 @@ impl VelocityObstaclePlanner {
         velocity: Vector,
     ) -> bool {
         let late = |cone: &Cone| {
+            if cone.is_beside(velocity) {
+                return true;
+            }
             let time = cone.time_to_contact(velocity, &self.edged);
             time == f64::INFINITY || time > self.settings.horizon
         };

@@ -97,7 +97,7 @@ impl<'a, R: Real + Wide<R>> Relay<'a, R> {
         let scenes = LaneScenes::all_in(first);
         let (obstacles, bodies) = (0..count).map(|_| LaneObstacle::absent()).unzip();
         let bodies: Vec<Body<R>> = bodies;
-        let mut runs = Runs::new(scenes, clock, &bodies, Maps::default());
+        let mut runs = Runs::new(scenes, clock, bodies.iter().copied(), Maps::default());
         runs.running = R::Mask::none();
         Self {
             scenes,

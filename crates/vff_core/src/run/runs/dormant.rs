@@ -5,7 +5,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::means::Means;
+use super::at_ends::AtEnds;
 use super::path::{Passage, Path};
 use super::relevant::Relevant;
 use super::{BOUND_MARGIN, Runs};
@@ -35,10 +35,10 @@ const AWAKE: usize = usize::MAX;
 
 /// What bounds the distance to an obstacle.
 #[derive(Clone, Copy, Debug)]
-struct Bound {
+pub(super) struct Bound {
     /// Distance in m beyond which it is neither felt nor touched, and room for rounding in it.
     felt: f64,
-    margin: f64,
+    pub(super) margin: f64,
     /// Most by which the distance changes in a motion step, in m.
     stride: f64,
     /// Square of the distance beyond which it may be left alone, in m^2.
@@ -71,13 +71,13 @@ impl Dormant {
         if obstacles.len() < FEWEST {
             return None;
         }
-        let from_anywhere = |placed: &PlacedObstacle| felt_within(placed) == f64::INFINITY;
-        let told_all = obstacles.iter().any(from_anywhere);
-        let felt = |placed| if told_all { 0.0 } else { felt_within(placed) };
-        let bound = |placed| Bound::of(placed, scenario, &clock, felt(placed));
+        let felt: Vec<f64> = obstacles.iter().map(felt_within).collect();
+        let told_all = felt.contains(&f64::INFINITY);
+        let felt = felt.iter().map(|felt| if told_all { 0.0 } else { *felt });
+        let bound = |(placed, felt)| Bound::of(placed, scenario, &clock, felt);
         Some(Self {
             clock,
-            bounds: obstacles.iter().map(bound).collect(),
+            bounds: obstacles.iter().zip(felt).map(bound).collect(),
             since: vec![AWAKE; obstacles.len()],
             alarms: BinaryHeap::new(),
             path: Path::from(scenario.start),
@@ -160,7 +160,7 @@ impl Dormant {
             return;
         }
         self.path.measure();
-        self.count(index, runs, None);
+        self.count(index, runs);
         self.since[index] = AWAKE;
         let slot = scene.told.partition_point(|other| *other < index);
         scene.insert(slot, index, &body);
@@ -175,7 +175,16 @@ impl Dormant {
             ..
         } = self.clock;
         // All steps until then are within the bound, and so is the sample then.
-        let alarm = (step.saturating_add(self.bounds[index].steps(distance))) / period * period;
+        let until = step.saturating_add(self.bounds[index].steps(distance));
+        // Most need no alarm.
+        if until
+            >= end
+                .max(step + FEWEST_PERIODS * period)
+                .saturating_add(period)
+        {
+            return true;
+        }
+        let alarm = until / period * period;
         if alarm < step + FEWEST_PERIODS * period {
             return false;
         }
@@ -205,23 +214,42 @@ impl Dormant {
         if asleep > 0 {
             self.path.measure();
         }
-        let means = (asleep >= FEWEST_FOR_MEANS).then(|| self.path.means());
+        if asleep >= FEWEST_FOR_MEANS {
+            self.count_at_ends(runs);
+        }
         for index in 0..self.since.len() {
-            if self.since[index] != AWAKE {
-                self.count(index, runs, means.as_ref());
+            let since = self.since[index];
+            if since != AWAKE && since <= self.path.last() {
+                self.count(index, runs);
                 self.since[index] = self.path.last() + 1;
             }
         }
     }
 
+    /// Counts all steps of those obstacles that have been left alone on all of the path and were nearest at one of
+    /// its ends.
+    fn count_at_ends<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
+        let mut found = Vec::with_capacity(self.since.len());
+        AtEnds {
+            path: &self.path,
+            clock: &self.clock,
+            means: &self.path.means(),
+            obstacles: &runs.scenario.obstacles,
+            since: &self.since,
+            bounds: &self.bounds,
+            found: &mut found,
+        }
+        .find();
+        for (index, squared) in found {
+            let least = &mut runs.min_distance_squared[index];
+            *least = least.min(R::splat(squared));
+            self.since[index] = self.path.last() + 1;
+        }
+    }
+
     /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look
     /// at each of them would have found. The path has been measured.
-    fn count<R: Real>(
-        &mut self,
-        index: usize,
-        runs: &mut Runs<&Scenario, R>,
-        means: Option<&Means>,
-    ) {
+    fn count<R: Real>(&mut self, index: usize, runs: &mut Runs<&Scenario, R>) {
         let (first, last) = (self.since[index] - 1, self.path.last());
         if first >= last {
             return;
@@ -232,7 +260,6 @@ impl Dormant {
             path: &self.path,
             placed: &runs.scenario.obstacles[index],
             clock: &self.clock,
-            means: means.filter(|_| first == self.path.first()),
             stride: bound.stride,
             margin: bound.margin,
             nearest: least.sqrt(),

@@ -1,7 +1,7 @@
 //! Mean velocities of a robot on its path: they tell of most far obstacles that the robot was nearest to
 //! them where it began, or where it ended.
 
-use crate::lanes::Vector2;
+use crate::lanes::{Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 
@@ -27,18 +27,14 @@ impl Range {
     }
 
     /// Whether all of them, less another velocity, go along a direction by more than a share of its length.
-    #[inline]
-    fn goes(&self, along: Vector, less: Vector, share: f64) -> bool {
+    #[inline(always)]
+    fn goes<R: Real>(&self, along: Vector2<R>, less: Vector2<R>, share: R) -> R::Mask {
         let least = |axis: usize| {
-            let end = if along[axis] < 0.0 {
-                self.high
-            } else {
-                self.low
-            };
-            along[axis] * (end[axis] - less[axis])
+            let [low, high] = [self.low[axis], self.high[axis]].map(R::splat);
+            let end = R::select(along[axis].lt(R::zero()), high, low);
+            along[axis] * (end - less[axis])
         };
-        let [x, y] = [along.x.abs(), along.y.abs()];
-        least(0) + least(1) > share * (x + y)
+        (share * (along.x.abs() + along.y.abs())).lt(least(0) + least(1))
     }
 }
 
@@ -109,12 +105,18 @@ impl Means {
         Vector::new(self.axis.dot(&vector), self.axis.perp(&vector))
     }
 
-    /// Whether all places on the way are farther from an obstacle than one of the ends is, by more than a
-    /// margin in m: it is seen from the ends as given, and moves by a way in each step.
-    #[inline]
-    pub fn nearest_at_an_end(&self, [first, last]: [Vector; 2], step: Vector, margin: f64) -> bool {
-        let step = self.along(step);
-        let (away, toward) = (self.along(first), self.along(last));
-        self.from_begin.goes(away, step, margin) || self.to_end.goes(-toward, step, margin)
+    /// Of which obstacles all places on the way are farther than one of the ends is, by more than a
+    /// margin in m: they are seen from the ends as given, and move by a way in each step.
+    #[inline(always)]
+    pub fn nearest_at_an_end<R: Real>(
+        &self,
+        ends: [Vector2<R>; 2],
+        step: Vector2<R>,
+        margin: R,
+    ) -> R::Mask {
+        let axis = Vector2::<R>::splat(self.axis.into());
+        let along = |vector: Vector2<R>| Vector2::new(axis.dot(&vector), axis.perp(&vector));
+        let (step, [away, toward]) = (along(step), ends.map(along));
+        self.from_begin.goes(away, step, margin) | self.to_end.goes(-toward, step, margin)
     }
 }

@@ -1,6 +1,7 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
 mod account;
+mod at_ends;
 mod dormant;
 mod ends;
 mod means;
@@ -83,10 +84,16 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
 }
 
 impl<W: World<R>, R: Real> Runs<W, R> {
-    pub fn new(scenario: W, clock: Clock, bodies: &[Body<W::Number>], maps: Maps) -> Self {
+    /// With the obstacles at the start.
+    pub fn new(
+        scenario: W,
+        clock: Clock,
+        bodies: impl ExactSizeIterator<Item = Body<W::Number>>,
+        maps: Maps,
+    ) -> Self {
         let mut runs = Self::at_start(scenario, clock, bodies.len(), maps);
-        for (index, body) in bodies.iter().enumerate() {
-            runs.watch(index, body, W::Number::zero(), runs.running);
+        for (index, body) in bodies.enumerate() {
+            runs.watch(index, &body, W::Number::zero(), runs.running);
         }
         runs.watch_walls(R::zero(), runs.running);
         runs.remember();

@@ -13,6 +13,12 @@ type Vector = Vector2<f64>;
 /// Motion steps of the shortest piece that is known to be nearly straight.
 const SHORTEST: usize = 8;
 
+/// Fewest motion steps for which it pays to look first where the robot is about nearest.
+const APPROACHED: usize = 8 * SHORTEST;
+
+/// Most motion steps on each side of the nearest one that are looked at one by one.
+const FEW: f64 = SHORTEST as f64;
+
 /// Motion steps between two marks of a path, as a power of two of [`SHORTEST`].
 const MARKED: usize = 2;
 
@@ -67,7 +73,7 @@ impl Path {
         self.bends.clear();
     }
 
-    fn at(&self, step: usize) -> Vector {
+    pub fn at(&self, step: usize) -> Vector {
         self.places[step - self.begin].into()
     }
 
@@ -155,8 +161,6 @@ pub(super) struct Passage<'a> {
     pub path: &'a Path,
     pub placed: &'a PlacedObstacle,
     pub clock: &'a Clock,
-    /// Of all of the path, where that is what is looked at.
-    pub means: Option<&'a Means>,
     /// Most by which the distance changes in a motion step, and room for rounding, in m.
     pub stride: f64,
     pub margin: f64,
@@ -184,6 +188,44 @@ fn is_farther(from: Vector, (way, steps): (Vector, f64), distance: f64) -> bool 
     across * across > low * square
 }
 
+/// After how many steps a straight way at constant speed from one place to another is nearest to zero.
+#[inline]
+fn foot(from: Vector, to: Vector, steps: usize) -> f64 {
+    let way = to - from;
+    -from.dot(&way) / way.dot(&way) * steps as f64
+}
+
+/// The step next to a number of them, between two.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+fn step_at(place: f64, [first, last]: [usize; 2]) -> usize {
+    ((place + 0.5) as usize).clamp(first, last)
+}
+
+/// Motion of a disc that is always present and moves straight on, or stands.
+#[inline]
+pub(super) fn straight_disc(placed: &PlacedObstacle) -> Option<&Piece> {
+    match placed.obstacle.shape {
+        Shape::Disc { .. } => placed.obstacle.motion.straight(),
+        Shape::Rectangle { .. } => None,
+    }
+}
+
+/// First and last of the steps of a straight way at constant speed that may be nearer than a distance, and more,
+/// where they are few.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+fn nearer_steps(from: Vector, (way, steps): (Vector, usize), distance: f64) -> Option<[usize; 2]> {
+    let square = way.dot(&way);
+    let across = from.perp(&way);
+    let share = steps as f64 / square;
+    let left = distance * distance * square - across * across;
+    let half = left.max(0.0).sqrt() * share + 1.0;
+    let foot = -from.dot(&way) * share;
+    // Not where a number is not one.
+    (half <= FEW).then(|| [foot - half, foot + half].map(|step| step as usize))
+}
+
 /// An obstacle as seen from the robot after a motion step.
 #[derive(Clone, Copy)]
 struct Sample {
@@ -197,9 +239,7 @@ struct Sample {
 impl Passage<'_> {
     /// Looks at all steps of which any may be nearer than the nearest one.
     pub fn look(&mut self, first: usize, last: usize) {
-        if matches!(self.placed.obstacle.shape, Shape::Disc { .. })
-            && let Some(motion) = self.placed.obstacle.motion.straight()
-        {
+        if let Some(motion) = straight_disc(self.placed) {
             return self.look_straight(motion, first, last);
         }
         // What comes nearer is nearest at last.
@@ -221,11 +261,7 @@ impl Passage<'_> {
     fn look_straight(&mut self, motion: &Piece, first: usize, last: usize) {
         let end = self.sees(motion, last);
         let (mut step, mut from) = (first, self.sees(motion, first));
-        let way = Vector::from(motion.velocity) * self.clock.step;
-        let at_an_end = |means: &Means| means.nearest_at_an_end([from, end], way, self.margin);
-        if self.means.is_some_and(at_an_end) {
-            return;
-        }
+        self.approach(motion, (first, from), (last, end));
         while step < last {
             let next = step + self.path.piece(step, last);
             let to = if next == last {
@@ -236,6 +272,24 @@ impl Passage<'_> {
             self.between_straight(motion, (step, from), (next, to));
             (step, from) = (next, to);
         }
+    }
+
+    /// Looks at steps near the nearest one, so that few others may be nearer still: where the straight way is nearest,
+    /// and where one is that goes on as the robot moves there.
+    fn approach(
+        &mut self,
+        motion: &Piece,
+        (first, from): (usize, Vector),
+        (last, to): (usize, Vector),
+    ) {
+        if last - first <= APPROACHED {
+            return;
+        }
+        let place = foot(from, to, last - first) + first as f64;
+        let begin = step_at(place, [first, last - SHORTEST]);
+        let ends = [begin, begin + SHORTEST].map(|step| self.sees(motion, step));
+        let place = foot(ends[0], ends[1], SHORTEST) + begin as f64;
+        self.sees(motion, step_at(place, [first, last]));
     }
 
     fn between_straight(
@@ -256,6 +310,12 @@ impl Passage<'_> {
                 bend == 0.0 && motion.velocity == [0.0; 2] && still
             };
             if is_farther(from, (to - from, steps as f64), low) || stands() {
+                return;
+            }
+            if let Some([begin, end]) = nearer_steps(from, (to - from, steps), low) {
+                for step in begin.max(1)..=end.min(steps - 1) {
+                    self.sees(motion, first + step);
+                }
                 return;
             }
         }

@@ -120,18 +120,24 @@ impl Tracks {
     /// Discs from one on, at an instant in s; the last one again where there are no more.
     #[inline(always)]
     fn group(&self, first: usize, time: f64) -> Discs<Group> {
-        let last = self.radius.len() - 1;
-        let number = |of: &[f64]| match of.get(first..first + GROUP) {
-            Some(numbers) => Group::from_fn(|lane| numbers[lane]),
-            None => Group::from_fn(|lane| of[(first + lane).min(last)]),
-        };
-        let pair = |[x, y]: &[Vec<f64>; 2]| Vector2::new(number(x), number(y));
-        let velocity = pair(&self.velocity);
+        let [[x, y], [u, v]] = [&self.center, &self.velocity];
+        let velocity = Vector2::new(group_of(u, first), group_of(v, first));
+        let start = Vector2::new(group_of(x, first), group_of(y, first));
         Discs {
-            center: pair(&self.center) + velocity * Group::splat(time),
+            center: start + velocity * Group::splat(time),
             velocity,
-            radius: number(&self.radius),
+            radius: group_of(&self.radius, first),
         }
+    }
+}
+
+/// Numbers from one on.
+#[inline(always)]
+fn group_of(numbers: &[f64], first: usize) -> Group {
+    let whole: Option<&[f64; GROUP]> = numbers[first..].first_chunk();
+    match whole {
+        Some(numbers) => Group::from_fn(|lane| numbers[lane]),
+        None => Group::from_fn(|lane| numbers[(first + lane).min(numbers.len() - 1)]),
     }
 }
 
