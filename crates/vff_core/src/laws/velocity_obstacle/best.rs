@@ -269,7 +269,7 @@ impl<'a> Best<'a> {
                 [one.lane(lane).into(), other.lane(lane).into()]
             };
             let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
-            if to_goal && self.covers(index, of_lane(parts)) {
+            if to_goal && self.covers(index, of_lane(parts), forever) {
                 continue;
             }
             let promise = if to_goal {
@@ -312,17 +312,17 @@ impl<'a> Best<'a> {
     /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
     fn is_covered(&mut self, line: &Promising) -> bool {
         let part = self.better_part(line);
-        part.is_some_and(|ends| self.covers(line.index, ends))
+        part.is_some_and(|ends| self.covers(line.index, ends, false))
     }
 
     /// Whether one obstacle forbids a part of a line.
     #[inline(always)]
-    fn covers(&mut self, line: usize, ends: [Vector; 2]) -> bool {
+    fn covers(&mut self, line: usize, ends: [Vector; 2], asked: bool) -> bool {
         let VelocityObstaclePlanner {
             cones, settings, ..
         } = self.planner;
         let Room { near, covers, .. } = &mut self.room;
-        covers.cover((cones, near), (line, ends), settings.horizon)
+        covers.cover((cones, near), (line, ends, asked), settings.horizon)
     }
 
     /// What the velocities between two are worth at most.

@@ -90,22 +90,24 @@ impl Covers {
     }
 
     /// Whether one of the chosen discs forbids everything between two velocities of a line, and what is as near
-    /// to that as roundings are: what a disc forbids is convex.
+    /// to that as roundings are: what a disc forbids is convex. `known` said no before where it was `asked`.
     #[inline(always)]
     pub fn cover(
         &mut self,
         (cones, chosen): (&[Cone], &[usize]),
-        (line, ends): (usize, [Vector; 2]),
+        (line, ends, asked): (usize, [Vector; 2], bool),
         horizon: f64,
     ) -> bool {
         let soon = |index: usize| {
             let soon = |end: &Vector| cones[index].time_to_contact(*end, &[]) <= SOON * horizon;
             horizon == f64::INFINITY || ends.iter().all(soon)
         };
-        let known = self.known.get(line).copied().unwrap_or(usize::MAX);
-        let disc = cones.get(known).and_then(Cover::of);
-        if disc.is_some_and(|disc| disc.holds(ends) && soon(known)) {
-            return true;
+        if !asked {
+            let known = self.known.get(line).copied().unwrap_or(usize::MAX);
+            let disc = cones.get(known).and_then(Cover::of);
+            if disc.is_some_and(|disc| disc.holds(ends) && soon(known)) {
+                return true;
+            }
         }
         if !self.ready {
             self.take(cones, chosen);
