@@ -180,7 +180,9 @@ impl<R: Real> Group<R> {
             solved.space.head[index] = solved.space.pair[index % 2].head();
             let fall = Step::ending(&solved.space.pair, index).piece(Node::fall);
             let ends = alive & fall.values[1].lt(zero);
-            end.note(ends, fall);
+            if ends.any() {
+                end.note(ends, fall);
+            }
             alive = alive & !ends;
             solved.look::<POWERS>(alive, index);
             alive = alive & time.lt(horizon);
