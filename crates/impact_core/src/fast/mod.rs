@@ -48,8 +48,9 @@ pub const CELL_ANGLE: f64 = 0.75;
 /// shapes may hide something.
 pub const FINE_CELL_ANGLE: f64 = 0.3;
 
-/// A valley this near to zero, over the largest acceleration, may reach it: the fourth derivative
-/// of the response, over 384, is what the cubic over a cell is wrong by.
+/// A valley this near to zero, over the largest acceleration, may reach it in cells of
+/// [`CELL_ANGLE`]: the fourth derivative of the response, over 384, is what the cubic over a cell is
+/// wrong by. It goes with the fourth power of the length of a cell.
 const FLAT: f64 = 4e-3;
 
 /// A group of impacts.
@@ -121,6 +122,8 @@ pub struct Solved<'a, S, R: Real> {
     space: &'a mut Workspace<R>,
     /// The largest acceleration at a node so far.
     highest: R,
+    /// What the cubic over a cell may be wrong by, over that.
+    flat: f64,
     /// Lanes with more than one valley of the acceleration.
     ragged: R::Mask,
     /// Lanes whose acceleration has a flank that flattens and steepens again.
@@ -142,6 +145,7 @@ impl<R: Real> Group<R> {
         valid: R::Mask,
     ) -> Solved<'a, S, R> {
         let (zero, one) = (R::zero(), R::splat(1.0));
+        let square = (self.cell_angle / CELL_ANGLE) * (self.cell_angle / CELL_ANGLE);
         space.found.clear();
         let mut solved = Solved {
             simd,
@@ -152,6 +156,7 @@ impl<R: Real> Group<R> {
             nodes: 0,
             space,
             highest: zero,
+            flat: FLAT * (square * square),
             ragged: R::Mask::none(),
             shelf: R::Mask::none(),
             humps: self.humps,
@@ -180,7 +185,9 @@ impl<R: Real> Group<R> {
             solved.space.head[index] = solved.space.pair[index % 2].head();
             let fall = Step::ending(&solved.space.pair, index).piece(Node::fall);
             let ends = alive & fall.values[1].lt(zero);
-            end.note(ends, fall);
+            if ends.any() {
+                end.note(ends, fall);
+            }
             alive = alive & !ends;
             solved.look::<POWERS>(alive, index);
             alive = alive & time.lt(horizon);
@@ -266,7 +273,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let fall = step.piece(Node::fall);
         let bend = step.piece(|node| [node.acceleration[1], node.acceleration[2]]);
         self.highest = self.highest.max(fall.values[0]);
-        let slack = R::splat(FLAT) * self.highest;
+        let slack = R::splat(self.flat) * self.highest;
         let ([dips, _], _) = touching(inside, &fall, slack);
         self.accepted = self.accepted & !dips;
         let ([above, below], beyond) = touching(inside, &bend, zero);

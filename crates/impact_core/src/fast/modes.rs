@@ -12,7 +12,7 @@
 //! are refused.
 
 use super::apart::apart;
-use super::arithmetic::Each;
+use super::arithmetic::{Each, MapWith};
 use super::factors::{Split, factors};
 use crate::series::Plant;
 use numeric::elementary::{cosine_and_sine, exponential};
@@ -42,6 +42,10 @@ pub struct Modes<S, R: Real> {
     frequency: [R; 2],
     /// Pairs of real roots.
     real: [R::Mask; 2],
+    /// Faster one of real roots.
+    faster: [R; 2],
+    /// Slower one of real roots, `alpha` of complex ones.
+    slower: [R; 2],
 }
 
 /// `C` and `S` of both pairs at a time.
@@ -156,30 +160,22 @@ impl<S: Simd, R: Real> Modes<S, R> {
     fn basis_here(&self, time: R) -> Basis<R> {
         let mut basis = [R::zero(); 4];
         for pair in 0..2 {
-            let decay = exponential(-(self.decay[pair] * time));
-            let [cosine, sine] = cosine_and_sine(self.frequency[pair] * time);
-            basis[2 * pair] = decay * cosine;
-            basis[2 * pair + 1] = decay * sine / self.frequency[pair];
-        }
-        for pair in 0..2 {
-            if self.real[pair].any() {
-                let [cosine, sine] = self.of_real_roots(pair, time);
-                basis[2 * pair] = R::select(self.real[pair], cosine, basis[2 * pair]);
-                basis[2 * pair + 1] = R::select(self.real[pair], sine, basis[2 * pair + 1]);
+            let (real, frequency) = (self.real[pair], self.frequency[pair]);
+            let decay = exponential(-(self.slower[pair] * time));
+            let [cosine, sine] = cosine_and_sine(frequency * time);
+            let mut scaled = [decay * cosine, decay * sine];
+            if real.any() {
+                let half = R::splat(0.5);
+                let fast = exponential(-(self.faster[pair] * time));
+                scaled = [half * (decay + fast), half * (decay - fast)]
+                    .map_with(scaled, |real_roots, other| {
+                        R::select(real, real_roots, other)
+                    });
             }
+            basis[2 * pair] = scaled[0];
+            basis[2 * pair + 1] = scaled[1] / frequency;
         }
         basis
-    }
-
-    #[inline(always)]
-    fn of_real_roots(&self, pair: usize, time: R) -> [R; 2] {
-        let half = R::splat(0.5);
-        let (decay, frequency) = (self.decay[pair], self.frequency[pair]);
-        // The slower root is the product over the faster one.
-        let faster = decay + frequency;
-        let slow = exponential(-(self.modulus[pair] / faster * time));
-        let fast = exponential(-(faster * time));
-        [half * (slow + fast), half * (slow - fast) / frequency]
     }
 
     /// The functions at a time, turned on by as much as they turn from first contact to another.
@@ -347,14 +343,22 @@ fn modes<S: Simd, R: Real>(
         & decay[0].ge(zero)
         & decay[1].ge(zero)
         & modulus[1].gt(zero);
+    let frequency = square.each(|value| value.abs().sqrt());
+    let real = square.each(|value| value.lt(zero));
+    let faster = decay.map_with(frequency, |decay, frequency| decay + frequency);
+    // The slower root is the product over the faster one.
+    let slower =
+        [0, 1].each(|pair: usize| R::select(real[pair], modulus[pair] / faster[pair], decay[pair]));
     let modes = Modes {
         simd,
         length,
         decay,
         modulus,
         square,
-        frequency: square.each(|value| value.abs().sqrt()),
-        real: square.each(|value| value.lt(zero)),
+        frequency,
+        real,
+        faster,
+        slower,
     };
     (modes, scaled, accepted)
 }

@@ -188,6 +188,9 @@ impl<R: Real> Tops<R> {
             self.odd = self.odd | (again & self.places[1].found);
             self.places[1].note(again, *piece);
         }
-        self.places[0].note(top & !again, *piece);
+        let first = top & !again;
+        if first.any() {
+            self.places[0].note(first, *piece);
+        }
     }
 }

@@ -248,10 +248,14 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let half = R::splat(0.5) * peak;
         for index in 0..self.nodes {
             let [left, right] = [index, index + 1].each(|node: usize| self.space.head[node][1]);
+            let rises = left.lt(half) & right.ge(half);
+            let falls = left.ge(half) & right.lt(half);
+            if !(rises | falls).any() {
+                continue;
+            }
             let place = R::splat(index as f64) + (half - left) / (right - left);
             let inside = place.lt(self.end);
-            let rises = inside & left.lt(half) & right.ge(half);
-            let falls = inside & left.ge(half) & right.lt(half);
+            let (rises, falls) = (inside & rises, inside & falls);
             start = R::select(rises, place, start);
             end = R::select(falls, place, end);
         }
