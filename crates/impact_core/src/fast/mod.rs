@@ -50,7 +50,7 @@ pub const FINE_CELL_ANGLE: f64 = 0.3;
 
 /// A valley this near to zero, over the largest acceleration, may reach it in cells of
 /// [`CELL_ANGLE`]: the fourth derivative of the response, over 384, is what the cubic over a cell is
-/// wrong by. It goes with the fourth power of the length of a cell.
+/// wrong by. It grows with the fourth power of the length of a cell.
 const FLAT: f64 = 4e-3;
 
 /// A group of impacts.

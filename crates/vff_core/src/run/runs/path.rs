@@ -275,7 +275,7 @@ impl Passage<'_> {
     }
 
     /// Looks at steps near the nearest one, so that few others may be nearer still: where the straight way is nearest,
-    /// and where one is that goes on as the robot moves there.
+    /// and where one is that keeps the motion the robot has there.
     fn approach(
         &mut self,
         motion: &Piece,
