@@ -4,7 +4,7 @@ use std::ops::Deref;
 use std::slice;
 use std::sync::Arc;
 
-use numeric::error::{Failure, Result};
+use numeric::error::{Result, proceed};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -130,9 +130,7 @@ fn drawn(
 ) -> PyResult<Scenarios> {
     let made = here(py, Report::none(), |control| {
         let one = |seed: &u64| {
-            if control.interrupted() {
-                return Err(Failure::Interrupted);
-            }
+            proceed(&|| control.interrupted())?;
             draw(*seed)
         };
         seeds.iter().map(one).collect::<Result<_>>()

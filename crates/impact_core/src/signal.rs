@@ -20,7 +20,7 @@ pub use windows::{
     Level, contiguous_level, contiguous_level_until, moving_average, moving_average_until,
 };
 
-use crate::error::{Failure, Given, Result};
+use crate::error::{Failure, Given, Result, proceed};
 use numeric::threads::Interrupted;
 
 /// Share of the window by which rounding of the sample times may lengthen it: 150 intervals of
@@ -45,7 +45,7 @@ impl<'a> Signal<'a> {
     ) -> Result<Self> {
         check_length("time", time)?;
         for start in (0..time.len()).step_by(CHECK) {
-            pause(interrupted)?;
+            proceed(interrupted)?;
             // Neighbors across the border belong to both.
             let end = time.len().min(start + CHECK + 1);
             check_rising("time", &time[start..end])?;
@@ -58,7 +58,7 @@ impl<'a> Signal<'a> {
             ));
         }
         for part in acceleration_g.chunks(CHECK) {
-            pause(interrupted)?;
+            proceed(interrupted)?;
             check_finite("acceleration_g", part)?;
         }
         Ok(Self {
@@ -83,7 +83,7 @@ impl<'a> Signal<'a> {
         let mut result = vec![0.0; self.time.len()];
         let mut pairs = self.time.windows(2).zip(self.value.windows(2));
         for part in result[1..].chunks_mut(CHECK) {
-            pause(interrupted)?;
+            proceed(interrupted)?;
             for (place, (times, values)) in part.iter_mut().zip(&mut pairs) {
                 let increment = 0.5 * (values[0] + values[1]) * (times[1] - times[0]);
                 let next = sum + increment;
@@ -97,15 +97,6 @@ impl<'a> Signal<'a> {
     }
 }
 
-/// Goes on unless the caller asks to stop.
-fn pause(interrupted: Interrupted<'_>) -> Result<()> {
-    if interrupted() {
-        Err(Failure::Interrupted)
-    } else {
-        Ok(())
-    }
-}
-
 /// One value for each index, unless the caller asks to stop.
 fn collected<T>(
     count: usize,
@@ -114,7 +105,7 @@ fn collected<T>(
 ) -> Result<Vec<T>> {
     let mut result = Vec::with_capacity(count);
     for start in (0..count).step_by(CHECK) {
-        pause(interrupted)?;
+        proceed(interrupted)?;
         result.extend((start..count.min(start + CHECK)).map(&mut value));
     }
     Ok(result)
@@ -128,7 +119,7 @@ fn collected<T>(
 pub fn check_step(time: &[f64], window: f64, interrupted: Interrupted<'_>) -> Result<()> {
     let limit = window * (1.0 + WINDOW_SLACK);
     for start in (0..time.len()).step_by(CHECK) {
-        pause(interrupted)?;
+        proceed(interrupted)?;
         let part = &time[start..time.len().min(start + CHECK + 1)];
         let long = |pair: &[f64]| pair[1] - pair[0] > limit;
         if !part.windows(2).fold(false, |any, pair| any | long(pair)) {

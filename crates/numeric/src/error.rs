@@ -69,6 +69,18 @@ pub enum Failure {
 /// Asked now and then whether to stop.
 pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
 
+/// An error if the caller asked to stop.
+///
+/// # Errors
+/// [`Failure::Interrupted`] if so.
+#[inline]
+pub fn proceed(interrupted: Interrupted<'_>) -> Result<()> {
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    Ok(())
+}
+
 /// Result of the cores.
 pub type Result<T> = std::result::Result<T, Failure>;
 

@@ -5,9 +5,9 @@ mod tests;
 
 use super::cells::Cells;
 use super::search::{Best, Block, Leaf, higher, lower, search_until};
-use super::{CHECK, collected, pause};
+use super::{CHECK, collected};
 use super::{Signal, WINDOW_SLACK};
-use crate::error::{Result, positive};
+use crate::error::{Result, positive, proceed};
 use numeric::threads::Interrupted;
 
 /// Samples in one undivided block.
@@ -65,7 +65,7 @@ pub fn hic_until(
     let signal = Signal::new_until(time, acceleration_g, interrupted)?;
     positive("window", window)?;
     let peak = highest(acceleration_g);
-    pause(interrupted)?;
+    proceed(interrupted)?;
     if peak <= 0.0 {
         return Ok(HeadInjury {
             value: 0.0,
@@ -133,7 +133,7 @@ fn longest_window(time: &[f64], limit: f64, interrupted: Interrupted<'_>) -> Res
     let mut start = 0;
     let mut longest = 0.0_f64;
     for part in time.chunks(CHECK) {
-        pause(interrupted)?;
+        proceed(interrupted)?;
         for &end in part {
             while end - time[start] > limit {
                 start += 1;
@@ -160,7 +160,7 @@ fn seed(time: &[f64], integral: &[f64], window: f64, interrupted: Interrupted<'_
     };
     let mut reach = 0;
     for from in (0..last).step_by(time.len().div_ceil(SEEDS)) {
-        pause(interrupted)?;
+        proceed(interrupted)?;
         while reach < last && time[reach + 1] - time[from] <= window {
             reach += 1;
         }
@@ -169,7 +169,7 @@ fn seed(time: &[f64], integral: &[f64], window: f64, interrupted: Interrupted<'_
         }
     }
     for _ in 0..ROUNDS {
-        pause(interrupted)?;
+        proceed(interrupted)?;
         let before = (start, end);
         for from in (0..end).rev() {
             if time[end] - time[from] > window {

@@ -1,7 +1,7 @@
 //! Loads of a recorded impact, from signals that are linear between their samples.
 
-use super::{Signal, check_finite, contiguous_level_until, hic_until, moving_average_until, pause};
-use crate::error::{Failure, Given, Result, finite, positive};
+use super::{Signal, check_finite, contiguous_level_until, hic_until, moving_average_until};
+use crate::error::{Failure, Given, Result, finite, positive, proceed};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS, Loads, Metrics, Status};
 use crate::parameters::Foam;
 use numeric::threads::Interrupted;
@@ -69,7 +69,7 @@ impl Recording<'_> {
         let velocity = cut(self.manipulator_velocity);
         let own = part.cut(self.acceleration_g);
         let mut loads = acceleration(&time, &own, self.gravity, interrupted)?;
-        pause(interrupted)?;
+        proceed(interrupted)?;
         loads.peak_contact_force = force.as_deref().map_or(f64::NAN, largest);
         loads.max_compression = compression.as_deref().map_or(f64::NAN, largest);
         if let Some(force) = &force {

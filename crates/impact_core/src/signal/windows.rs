@@ -6,8 +6,8 @@
 
 use std::collections::VecDeque;
 
-use super::{CHECK, Signal, WINDOW_SLACK, pause};
-use crate::error::{Failure, Given, Result, positive};
+use super::{CHECK, Signal, WINDOW_SLACK};
+use crate::error::{Failure, Given, Result, positive, proceed};
 use numeric::threads::Interrupted;
 
 /// Value of a criterion and the window it belongs to.
@@ -45,7 +45,7 @@ pub fn moving_average_until(
     let mut best = Level::at(f64::NEG_INFINITY, 0.0, width);
     for (index, piece) in Pieces::new(signal, width).enumerate() {
         if index % CHECK == 0 {
-            pause(interrupted)?;
+            proceed(interrupted)?;
         }
         let mut starts = [piece.earliest, piece.latest, piece.earliest];
         let [from, to] = [piece.start_slope, piece.end_slope];
@@ -90,7 +90,7 @@ pub fn contiguous_level_until(
     let mut entered = 0;
     for (index, piece) in Pieces::new(signal, width).enumerate() {
         if index % CHECK == 0 {
-            pause(interrupted)?;
+            proceed(interrupted)?;
         }
         while entered < piece.end_cell {
             entered += 1;

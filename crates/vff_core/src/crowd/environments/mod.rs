@@ -19,7 +19,7 @@ use crate::crowd::environments::block::{BLOCK, BlockStep};
 use crate::crowd::environments::row::{METRICS, Row};
 use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
 use crate::crowd::world_lanes;
-use crate::error::{Failure, Given, Result};
+use crate::error::{Failure, Given, Result, proceed};
 use crate::run::Interrupted;
 use numeric::threads::{on_threads, team, try_each};
 
@@ -80,7 +80,10 @@ impl Environments {
         check_size(&settings.world, count)?;
         let seeds = (0..count as u64).map(|index| seed.wrapping_add(index));
         let each: Result<Vec<Environment>> = seeds
-            .map(|seed| attended(interrupted, || Environment::new(&settings, seed)))
+            .map(|seed| {
+                proceed(interrupted)?;
+                Environment::new(&settings, seed)
+            })
             .collect();
         Ok(Self {
             each: each?,
@@ -118,9 +121,8 @@ impl Environments {
         let work = |rows: &mut [(usize, Row<'_>)], shared: &mut Shared| {
             rows.iter_mut().try_for_each(|(index, row)| {
                 if chosen(*index) {
-                    attended(interrupted, || {
-                        row.environment.reset(settings, seed_of(*index))
-                    })?;
+                    proceed(interrupted)?;
+                    row.environment.reset(settings, seed_of(*index))?;
                     *row.started = true;
                 }
                 row.show(settings, shared);
@@ -165,14 +167,6 @@ impl Environments {
         let mut states = self.each.iter().map(Environment::state);
         states.position(|state| state != State::Running)
     }
-}
-
-/// Work unless the caller asked to stop.
-fn attended<T>(interrupted: Interrupted<'_>, work: impl FnOnce() -> Result<T>) -> Result<T> {
-    if interrupted() {
-        return Err(Failure::Interrupted);
-    }
-    work()
 }
 
 /// Refuses environments that would not fit into memory.

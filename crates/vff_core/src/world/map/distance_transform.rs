@@ -1,7 +1,7 @@
 //! Exact Euclidean distance transform, Felzenszwalb and Huttenlocher (2012), in whole numbers.
 
-use crate::error::{Failure, Given, Interrupted, Result, at_most};
-use crate::world::map::grid::{MOST_CELLS, going_on};
+use crate::error::{Failure, Given, Interrupted, Result, at_most, proceed};
+use crate::world::map::grid::MOST_CELLS;
 
 /// Larger than any squared distance of cells, and small enough to be added to one.
 const NOTHING: i64 = i64::MAX / 4;
@@ -25,12 +25,12 @@ pub fn squared_distances(
     let rows = occupied.len() / columns;
     let mut squares = vec![NOTHING; occupied.len()];
     for column in 0..columns {
-        going_on(interrupted)?;
+        proceed(interrupted)?;
         within_column(occupied, &mut squares, column, columns, rows);
     }
     let mut envelope = Envelope::with_room(columns);
     for row in squares.chunks_exact_mut(columns) {
-        going_on(interrupted)?;
+        proceed(interrupted)?;
         envelope.lower(row);
     }
     let distance = |square: i64| {

@@ -2,7 +2,9 @@
 
 use nalgebra::Vector2;
 
-use crate::error::{Failure, Given, Interrupted, Result, at_most, finite, finite_pair, positive};
+use crate::error::{
+    Failure, Given, Interrupted, Result, at_most, finite, finite_pair, positive, proceed,
+};
 use crate::world::frame::Frame;
 use crate::world::map::capsule::Capsule;
 
@@ -110,7 +112,7 @@ impl Cells {
     ) -> Result<()> {
         // Edges between a cell and the one to its left, and between it and the one below it.
         for column in 0..=self.columns {
-            going_on(interrupted)?;
+            proceed(interrupted)?;
             let differs = |row: usize| {
                 let left = column > 0 && self.occupied(column - 1, row);
                 let right = column < self.columns && self.occupied(column, row);
@@ -121,7 +123,7 @@ impl Cells {
             });
         }
         for row in 0..=self.rows {
-            going_on(interrupted)?;
+            proceed(interrupted)?;
             let differs = |column: usize| {
                 let below = row > 0 && self.occupied(column, row - 1);
                 let above = row < self.rows && self.occupied(column, row);
@@ -133,14 +135,6 @@ impl Cells {
         }
         Ok(())
     }
-}
-
-/// An error if the caller asked to stop.
-pub(super) fn going_on(interrupted: Interrupted<'_>) -> Result<()> {
-    if interrupted() {
-        return Err(Failure::Interrupted);
-    }
-    Ok(())
 }
 
 /// Calls with the first and the end of every run of places that hold.
