@@ -378,7 +378,8 @@ class StaticMap(Parameters):
             If an argument is not finite.
         """
         bearings = checked_finite("bearing", numbers("bearing", bearing))
-        found = in_parts(lambda part: self._native.ray(checked_place("start", start), part.tolist()), bearings.ravel())
+        begin = checked_place("start", start)
+        found = in_parts(lambda part: self._native.ray(begin, part.tolist()), bearings.ravel())
         return float(found[0]) if bearings.ndim == 0 else found.reshape(bearings.shape)
 
     def boundary_points(self, point: npt.ArrayLike, *, reach: float, kappa: float = 0.5) -> Array:
