@@ -181,6 +181,17 @@ def word(name: str, value: object, words: Sequence[str]) -> str:
     return value
 
 
+def checked_text(name: str, value: object, rule: str) -> str:
+    """Return ``value`` if it is text that files and the cores can hold, or say what it should have been."""
+    if not isinstance(value, str):
+        raise InvalidParameterError(name, rule, value)
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise InvalidParameterError(name, "be text that UTF-8 can hold", value) from None
+    return value
+
+
 def readable(name: str, path: str | PathLike[str]) -> Path:
     """Return the path if a file stands there, or say what does and which file may have been meant."""
     from pathlib import Path  # for those who read files; it takes as long to load as all that a run needs

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, count, flag, sequence, thread_count, word
+from hrsafety._arguments import Array, checked_text, count, flag, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety._records import dataclass
 from hrsafety.arms.facts import Facts
@@ -78,8 +78,7 @@ class Arm(Facts):
 
     def __post_init__(self) -> None:
         """Read the URDF and check everything."""
-        if not isinstance(self.urdf, str):
-            raise InvalidParameterError("urdf", "be the text of a URDF", self.urdf)
+        checked_text("urdf", self.urdf, "be the text of a URDF")
         self._set(
             payloads=payloads_of(list(sequence("payloads", "be a tuple of Payload", self.payloads))),
             armature=motors_of(self.armature),

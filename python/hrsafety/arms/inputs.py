@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety._arguments import Array, meant, number, numbers, readable, sequence
+from hrsafety._arguments import Array, checked_text, meant, number, numbers, readable, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -37,12 +37,7 @@ def doubts_of_point(point: object) -> tuple[ResultWarning, ...]:
 def urdf_text(source: object) -> tuple[str, str]:
     """Return the text of a URDF, and what names it in messages: a file, or the text itself."""
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        try:
-            source.encode()
-        except UnicodeEncodeError:
-            rule = "be text that UTF-8 can hold"
-            raise InvalidParameterError("path_or_text", rule, Shown("a lone surrogate in it")) from None
-        return source.lstrip("\ufeff \t\r\n"), ""
+        return checked_text("path_or_text", source, "be the text of a URDF").lstrip("\ufeff \t\r\n"), ""
     if not isinstance(source, (str, os.PathLike)):
         raise InvalidParameterError("path_or_text", "be a path or the text of a URDF", source)
     path = readable("path_or_text", Path(source))
@@ -63,10 +58,7 @@ def locked_of(given: object) -> tuple[str, ...]:
     if given is None:
         return ()
     found = (given,) if isinstance(given, str) else tuple(sequence("locked", "be names of joints", given))
-    for name in found:
-        if not isinstance(name, str):
-            raise InvalidParameterError("locked", "be names of joints", name)
-    return found
+    return tuple(checked_text("locked", name, "be names of joints") for name in found)
 
 
 def armature_of(given: object, joint_names: Sequence[str]) -> tuple[tuple[str, float], ...]:
@@ -74,7 +66,8 @@ def armature_of(given: object, joint_names: Sequence[str]) -> tuple[tuple[str, f
     if given is None:
         return ()
     if isinstance(given, Mapping):
-        return tuple((_name("armature", name), _inertia(name, value)) for name, value in given.items())
+        rule = "have names of joints as keys"
+        return tuple((checked_text("armature", name, rule), _inertia(name, value)) for name, value in given.items())
     values = numbers("armature", given)
     if values.shape not in {(), (len(joint_names),)}:
         raise ShapeError("armature", f"({len(joint_names)},)", values.shape)
@@ -88,13 +81,7 @@ def motors_of(given: object) -> tuple[tuple[str, float], ...]:
     pairs = [sequence("armature", rule, each) for each in sequence("armature", rule, given)]
     if not all(len(each) == 2 and isinstance(each[0], str) for each in pairs):
         raise InvalidParameterError("armature", rule, given)
-    return tuple((name, _inertia(name, value)) for name, value in pairs)
-
-
-def _name(argument: str, name: object) -> str:
-    if not isinstance(name, str):
-        raise InvalidParameterError(argument, "have names of joints as keys", name)
-    return name
+    return tuple((checked_text("armature", name, rule), _inertia(name, value)) for name, value in pairs)
 
 
 def _inertia(name: object, value: object) -> float:

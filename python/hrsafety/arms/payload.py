@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hrsafety._arguments import Parameters, finite, not_negative, numbers
+from hrsafety._arguments import Parameters, checked_text, finite, not_negative, numbers
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
@@ -48,8 +48,7 @@ class Payload(Parameters):
 
     def __post_init__(self) -> None:
         """Check everything that does not need the arm."""
-        if not isinstance(self.link, str):
-            raise InvalidParameterError("link", "be the name of a link", self.link)
+        checked_text("link", self.link, "be the name of a link")
         self._set(mass=not_negative("mass", self.mass))
         center = numbers("center", self.center)
         if center.shape != (3,):

@@ -177,6 +177,10 @@ def test_measurement_needs_a_held_force() -> None:
         (lambda word: reactive.VirtualImpedance(form=word), "form"),
         (lambda word: dataclasses.replace(nav.HOLONOMIC_WHEELS[0], feedback=word), "feedback"),
         (lambda word: arms.Arm.from_urdf(f"<robot name='{word}'></robot>"), "path_or_text"),
+        (lambda word: arms.Arm(f"<robot name='{word}'></robot>"), "urdf"),
+        (lambda word: arms.Arm.example(locked=[word]), "locked"),
+        (lambda word: arms.Arm.example(armature={word: 1.0}), "armature"),
+        (lambda word: arms.Payload(link=word, mass=1.0), "link"),
     ],
 )
 def test_text_that_no_file_can_hold_is_refused_by_name(build: Any, argument: str) -> None:
