@@ -377,8 +377,7 @@ class StaticMap(Parameters):
         InvalidParameterError
             If an argument is not finite.
         """
-        bearings = checked_finite("bearing", numbers("bearing", bearing))
-        begin = checked_place("start", start)
+        begin, bearings = checked_place("start", start), checked_finite("bearing", numbers("bearing", bearing))
         found = in_parts(lambda part: self._native.ray(begin, part.tolist()), bearings.ravel())
         return float(found[0]) if bearings.ndim == 0 else found.reshape(bearings.shape)
 
