@@ -3,6 +3,7 @@
 use super::Collision;
 use super::mechanics::{Carried, Local, Mechanics, Past, SPEED, State, TOTAL};
 use super::step::{Step, step};
+use crate::covering::Kinks;
 
 /// What can happen within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +37,7 @@ const EVENTS: [Event; 6] = [
 #[derive(Clone, Debug)]
 pub struct Marks {
     /// Kinks in order.
-    pub kinks: Vec<f64>,
+    pub kinks: Kinks,
     /// Number of kinks below.
     pub piece: usize,
     /// Largest compression at a reversal, if unloading differs, and whether the motion is below it.

@@ -13,7 +13,7 @@ use super::statics::rest_of;
 use super::step::{Step, step};
 use super::stored::{stored, turns};
 use super::{Collision, Region};
-use crate::covering::Pad;
+use crate::covering::{Kinks, Pad};
 use crate::roots::Peak;
 use loads::PEAKS;
 
@@ -190,7 +190,7 @@ impl<'a, const N: usize> Run<'a, N> {
         let pad = collision.pad;
         Self {
             marks: Marks {
-                kinks: pad.map_or_else(Vec::new, Pad::kinks),
+                kinks: pad.map_or_else(Kinks::new, Pad::kinks),
                 piece: 0,
                 largest: None,
                 end: pad

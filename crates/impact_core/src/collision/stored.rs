@@ -11,7 +11,7 @@ use super::loading::{Turn, first_exponent, smooth_power, turns_of};
 use super::outcome::{Outcome, Status};
 use super::statics::rest_of;
 use super::{Collision, Region};
-use crate::covering::{Pad, Shape, product};
+use crate::covering::{Kinks, Pad, Shape, product};
 use crate::roots::Peak;
 
 /// Positive nodes of Kronrod's rule of 15 points on [-1, 1] with their weights, and those of Gauss's rule of 7.
@@ -177,7 +177,7 @@ impl Column<'_> {
 
     /// Time to a largest compression.
     fn time(&self, largest: f64, mass: f64, size: f64, tolerance: f64) -> Option<f64> {
-        let mut marks = self.pad.map_or_else(Vec::new, Pad::kinks);
+        let mut marks = self.pad.map_or_else(Kinks::new, Pad::kinks);
         marks.retain(|kink| *kink < largest);
         let early = FIRST_MARK[0] * largest..=FIRST_MARK[1] * largest;
         if !marks.first().is_some_and(|kink| early.contains(kink)) {

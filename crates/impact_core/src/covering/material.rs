@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use super::Kinks;
 use super::gibson_ashby::GibsonAshby;
 use super::powers::{MOST_EXPONENT, Powers, power, powers, raised, within};
 use super::quadrature::integral_before_pole;
@@ -278,10 +279,10 @@ impl Material {
 
     /// Strains at which the law has a kink, in order.
     #[must_use]
-    pub fn kinks(&self) -> Vec<f64> {
+    pub fn kinks(&self) -> Kinks {
         match self {
-            Self::Linear { .. } | Self::Rusch { .. } | Self::Avalle { .. } => Vec::new(),
-            Self::GibsonAshby(law) => vec![law.yield_strain(), law.plateau_end()],
+            Self::Linear { .. } | Self::Rusch { .. } | Self::Avalle { .. } => Kinks::new(),
+            Self::GibsonAshby(law) => Kinks::from_slice(&[law.yield_strain(), law.plateau_end()]),
             Self::Table(table) => table.kinks(),
         }
     }

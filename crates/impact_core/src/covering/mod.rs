@@ -23,6 +23,10 @@ pub use table::Table;
 
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use shape::HalfOrders;
+use smallvec::SmallVec;
+
+/// Where a law has kinks: mostly so few that a collision asks for no memory, which threads would wait for.
+pub type Kinks = SmallVec<[f64; 8]>;
 
 /// Argument in [0, infinity) at which a rising function from (0, 0) reaches a value.
 #[must_use]
@@ -352,8 +356,8 @@ impl Pad {
 
     /// Kinks of the force as compressions in order, the onset of the backing among them.
     #[must_use]
-    pub fn kinks(&self) -> Vec<f64> {
-        let mut all: Vec<f64> = self.covering.material.kinks();
+    pub fn kinks(&self) -> Kinks {
+        let mut all = self.covering.material.kinks();
         for strain in &mut all {
             *strain *= self.covering.thickness;
         }

@@ -1,5 +1,6 @@
 //! Measured stress over strain, linear between its points.
 
+use super::Kinks;
 use crate::error::{Failure, Given, Result, at_most};
 
 /// Most points of a table.
@@ -62,8 +63,8 @@ impl Table {
 
     /// Strains of the points between first and last.
     #[must_use]
-    pub fn kinks(&self) -> Vec<f64> {
-        self.strain[1..self.strain.len() - 1].to_vec()
+    pub fn kinks(&self) -> Kinks {
+        Kinks::from_slice(&self.strain[1..self.strain.len() - 1])
     }
 
     /// Points as pairs of strain and slope of the stress from there on.

@@ -24,7 +24,7 @@ pub use variable::smooth_power;
 use super::curve::{EVALUATIONS, Inside, Step, Steps};
 use super::statics::rest_of;
 use super::{Collision, Region};
-use crate::covering::{Pad, Powers, Shape};
+use crate::covering::{Kinks, Pad, Powers, Shape};
 use crate::roots::Peak;
 use beside::{Asked, most, take, take_few};
 use plane::{Point, Scales};
@@ -63,7 +63,7 @@ struct Loading<'a> {
     powers: Option<Powers>,
     /// Whether the force beyond a kink of the law grows like a half power.
     half_powers: bool,
-    kinks: Vec<f64>,
+    kinks: Kinks,
     /// The next one.
     kink: f64,
     /// Compressions at the ends of the piece of the law.
