@@ -189,6 +189,9 @@ impl TwoWheels {
             return self.twist;
         };
         let wanted = spread(kinematics.wheel_speeds([self.twist.speed, self.twist.turn_rate]));
+        // The next step would forget where the wheels of a known pose seem to lead, but a commanded
+        // velocity is taken up before.
+        let counts = !self.exact || matches!(self.steering, Steering::Velocity(_));
         let period = wheels.period;
         let (mut pose, mut known, mut twist) = (self.pose, self.known, Twist::default());
         let turned = |speeds: [f64; WHEELS]| {
@@ -198,9 +201,11 @@ impl TwoWheels {
         wheels.step(wanted, |rolling, speeds| {
             twist = turned(rolling);
             pose = pose.after(twist, period);
-            known = known.after(turned(speeds), period);
+            if counts {
+                known = known.after(turned(speeds), period);
+            }
         });
-        (self.pose, self.known) = (pose, known);
+        (self.pose, self.known) = (pose, if counts { known } else { pose });
         twist
     }
 

@@ -1,7 +1,7 @@
 //! One wheel under its controller.
 
 use super::controller::{Estimator, Known};
-use super::drive::WheelDrive;
+use super::drive::{WheelDrive, nearest_count};
 use super::dynamics::{HeldStep, WheelState};
 use super::reference::WheelWish;
 
@@ -33,6 +33,8 @@ pub struct WheelLoop {
     step: HeldStep,
     state: WheelState,
     estimator: Estimator,
+    /// Angle of a count of the encoder in rad, if it has one.
+    resolution: Option<f64>,
 }
 
 impl WheelLoop {
@@ -54,6 +56,7 @@ impl WheelLoop {
             step: HeldStep::new(&drive.dynamics, drive.period),
             state,
             estimator: Estimator::new(&drive.controller, drive.period, known),
+            resolution: drive.encoder.map(|encoder| encoder.resolution()),
         }
     }
 
@@ -64,10 +67,14 @@ impl WheelLoop {
     }
 
     /// One wheel control period: reads the encoder, forms the command for the wish of this moment
-    /// and holds its current for the period.
+    /// and holds its current for the period. In place, since a robot throws most of the sample away.
+    #[inline(always)]
     pub fn step(&mut self, wish: &WheelWish) -> WheelSample {
         let drive = &self.drive;
-        let read_angle = drive.read(self.state.angle);
+        let angle = self.state.angle;
+        let read_angle = self
+            .resolution
+            .map_or(angle, |resolution| nearest_count(angle, resolution));
         let known = self.estimator.known(read_angle);
         let gain = drive.motor.amplifier_gain;
         let command = drive.controller.command(wish, &known, gain);

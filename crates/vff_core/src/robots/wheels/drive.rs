@@ -7,6 +7,9 @@ use super::dynamics::WheelDynamics;
 use super::reference::WheelWish;
 use crate::error::{Result, positive};
 
+/// Share of a limit below which rounding cannot reach it.
+const CLEAR: f64 = 1.0 - 1e-9;
+
 /// Motor with its current amplifier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
@@ -35,9 +38,22 @@ impl Motor {
     /// Current in A that a wanted current becomes at a wheel speed: what the supply can drive
     /// against the induced voltage, `|R i + k_e theta'| <= U`, within the limit of the amplifier.
     /// The winding's inductance is neglected.
+    #[inline]
     #[must_use]
     pub fn limited(&self, current: f64, speed: f64) -> f64 {
         let induced = self.back_emf * speed;
+        // Clear of both limits by more than rounding: no need to divide.
+        let needed = (self.resistance * current).abs() + induced.abs();
+        if needed < CLEAR * self.supply_voltage && current.abs() <= self.current_limit {
+            return current;
+        }
+        self.limited_near(current, induced)
+    }
+
+    /// As `limited`, for an induced voltage in V.
+    #[cold]
+    #[inline(never)]
+    fn limited_near(&self, current: f64, induced: f64) -> f64 {
         let most = (self.supply_voltage - induced) / self.resistance;
         let least = (-self.supply_voltage - induced) / self.resistance;
         let driven = between(current, least, most);
@@ -87,10 +103,31 @@ impl Encoder {
     /// Angle that is read, in rad: the nearest whole count.
     #[must_use]
     pub fn read(&self, angle: f64) -> f64 {
-        let resolution = self.resolution();
-        (angle / resolution).round() * resolution
+        nearest_count(angle, self.resolution())
     }
 }
+
+/// Multiple of a resolution that is nearest to an angle, both in rad.
+#[inline]
+pub(super) fn nearest_count(angle: f64, resolution: f64) -> f64 {
+    rounded(angle / resolution) * resolution
+}
+
+/// As `f64::round`, which without SSE 4.1 is a call; the sign of zero included.
+#[inline]
+fn rounded(value: f64) -> f64 {
+    if value.abs() >= EXACT_INTEGERS || value.is_nan() {
+        return value;
+    }
+    #[allow(clippy::cast_possible_truncation)] // below 2^52
+    let whole = value as i64 as f64;
+    let rest = value - whole;
+    let away = if rest.abs() >= 0.5 { 1.0_f64 } else { 0.0 };
+    (whole.abs() + away).copysign(value)
+}
+
+/// From here on every number is whole.
+const EXACT_INTEGERS: f64 = 4_503_599_627_370_496.0;
 
 /// One wheel with its loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,6 +197,54 @@ mod tests {
         assert!((motor.voltage(most, fast) - motor.supply_voltage).abs() < 1e-12);
         assert_eq!(motor.limited(-200.0, fast), -motor.current_limit);
         assert!(motor.limited(f64::NAN, 0.0).is_nan());
+    }
+
+    #[test]
+    fn a_clear_current_is_what_the_limits_leave_of_it() {
+        let motor = holonomic_wheels()[0].motor;
+        let by_limits = |current: f64, speed: f64| {
+            let induced = motor.back_emf * speed;
+            let most = (motor.supply_voltage - induced) / motor.resistance;
+            let least = (-motor.supply_voltage - induced) / motor.resistance;
+            let driven = between(current, least, most);
+            between(driven, -motor.current_limit, motor.current_limit)
+        };
+        let fastest = motor.supply_voltage / motor.back_emf;
+        for step in -1200..=1200 {
+            let speed = fastest * f64::from(step) / 1000.0;
+            let edge = (motor.supply_voltage - motor.back_emf * speed) / motor.resistance;
+            for current in [
+                edge,
+                edge.next_up(),
+                edge.next_down(),
+                -edge,
+                0.4 * edge,
+                0.0,
+                3.0,
+            ] {
+                let limited = motor.limited(current, speed);
+                assert_eq!(limited.to_bits(), by_limits(current, speed).to_bits());
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_those_of_the_library() {
+        let halves = (-4000..4000).map(|step| 0.25 * f64::from(step));
+        let large = [
+            4e15,
+            4.5e15,
+            4.6e15,
+            1e300,
+            0.499_999_999_999_999_94,
+            1e-320,
+        ];
+        for value in halves.chain(large).chain(large.map(|value| -value)) {
+            for value in [value, value.next_up(), value.next_down(), f64::INFINITY] {
+                assert_eq!(rounded(value).to_bits(), value.round().to_bits(), "{value}");
+            }
+        }
+        assert!(rounded(f64::NAN).is_nan());
     }
 
     #[test]

@@ -57,6 +57,9 @@ pub struct SonarArray {
     mounts: Vec<Frame>,
     beam: Beam,
     ranging: Ranging,
+    /// `ranging.scale()` and `ranging.reach()`, asked for at every echo.
+    scale: f64,
+    reach: f64,
     firing: Firing,
 }
 
@@ -75,10 +78,13 @@ impl SonarArray {
             let owner = format!("sensors[{index}]");
             mount.checked().map_err(|error| error.within(&owner))?;
         }
+        let ranging = ranging.checked()?;
         Ok(Self {
             mounts,
             beam,
-            ranging: ranging.checked()?,
+            ranging,
+            scale: ranging.scale(),
+            reach: ranging.reach(),
             firing,
         })
     }
@@ -115,8 +121,7 @@ impl SonarArray {
             return f64::INFINITY;
         };
         let pose = body.carrying(mount);
-        let reach = self.ranging.reach();
-        let mut distance = self.beam.nearest(&pose, shapes, reach);
+        let mut distance = self.beam.nearest(&pose, shapes, self.reach);
         if self.firing == Firing::TogetherWithCrossTalk {
             for (index, other) in self.mounts.iter().enumerate() {
                 if index != sensor {
@@ -124,7 +129,7 @@ impl SonarArray {
                 }
             }
         }
-        self.ranging.reading(distance)
+        self.ranging.scaled(distance * self.scale)
     }
 
     /// New readings of the sensors that fire in a step, in m, infinite without echo; those of the

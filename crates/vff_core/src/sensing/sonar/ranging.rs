@@ -87,7 +87,12 @@ impl Ranging {
     #[inline]
     #[must_use]
     pub fn reading(&self, distance: f64) -> f64 {
-        let reading = distance * self.scale();
+        self.scaled(distance * self.scale())
+    }
+
+    /// A distance as the sensor takes it, in m, if that is within the limits; infinite without echo.
+    #[inline]
+    pub(super) fn scaled(&self, reading: f64) -> f64 {
         if (self.least..=self.most).contains(&reading) {
             reading
         } else {
