@@ -59,6 +59,8 @@ pub(crate) struct Scene<S> {
     /// Bodies in the middle of the first step, if an integrator asks for them.
     pub middle: Vec<Body>,
     staged: bool,
+    /// The step whose instant the last frame shows, if it shows one.
+    shown: Option<usize>,
 }
 
 /// An obstacle at an instant.
@@ -95,6 +97,7 @@ impl<S: Deref<Target = Scenario>> Scene<S> {
             frames: vec![bodies.clone(); steps + 1],
             middle: bodies,
             staged,
+            shown: None,
         }
     }
 
@@ -102,6 +105,7 @@ impl<S: Deref<Target = Scenario>> Scene<S> {
     pub fn insert(&mut self, slot: usize, index: usize, body: &Body) {
         self.told.insert(slot, index);
         self.cursors.insert(slot, 0);
+        self.shown = None;
         for frame in &mut self.frames {
             frame.insert(slot, *body);
         }
@@ -118,12 +122,19 @@ impl<S: Deref<Target = Scenario>> Scene<S> {
 
     /// Moves on to the block that begins at a step.
     pub fn advance(&mut self, clock: &Clock, first: usize) {
-        self.begin(clock, first);
+        let steps = self.frames.len() - 1;
+        if self.shown == Some(first) {
+            self.frames.swap(0, steps);
+        } else {
+            self.begin(clock, first);
+        }
         self.complete(clock, first, |_| true);
+        self.shown = Some(first + steps);
     }
 
     /// Moves on to the first instant of the block that begins at a step.
     pub fn begin(&mut self, clock: &Clock, first: usize) {
+        self.shown = None;
         let frame = &mut self.frames[0];
         for (slot, index) in self.told.iter().enumerate() {
             let placed = &self.scenario.obstacles[*index];
