@@ -200,6 +200,12 @@ fn every_kept_layout_touches_without_repulsion() {
     let (layouts, seeds) = dynamic();
     assert_eq!(collisions(&with_form(Form::Off), &layouts, &seeds), 1.0);
     assert!(seeds.is_sorted_by(|one, next| one < next));
+    // All of those, and no other one.
+    let every: Vec<u64> = (0..=seeds[LAYOUTS - 1]).collect();
+    let ends = run_batch(&with_form(Form::Off), &layouts, &every, quiet(2)).unwrap();
+    let touching = every.iter().zip(ends);
+    let touching = touching.filter(|(_, end)| end.contact.is_some());
+    assert!(touching.map(|(seed, _)| *seed).eq(seeds));
     // Nothing ever touches without obstacles.
     let none = Layouts::of(Setting::Tracking);
     let found = touching_layouts(&Settings::default(), &none, 0, 1, quiet(1));

@@ -28,6 +28,8 @@ pub(crate) enum Sight {
     Echoes,
     /// Bodies that a camera sees.
     Bodies,
+    /// Nothing: there is none.
+    Nothing,
 }
 
 /// The two forces of the law in N.
@@ -79,6 +81,12 @@ impl<L: Deref<Target = FollowingLaw>> Following<L> {
             banks: [Bank::default(); BANKS],
             target: Vector2::zeros(),
         }
+    }
+
+    /// What its repulsion is taken from.
+    #[inline]
+    pub fn sight(&self) -> Sight {
+        self.law.sight
     }
 
     /// Where the robot wants to be, in m.
@@ -134,6 +142,7 @@ impl<L: Deref<Target = FollowingLaw>> Reflex for Following<L> {
         let repulsion = match self.law.sight {
             Sight::Bodies => self.of_bodies(percept),
             Sight::Echoes => self.of_echoes(percept),
+            Sight::Nothing => Vector2::zeros(),
         };
         let offset = self.target - pose.position;
         Forces {

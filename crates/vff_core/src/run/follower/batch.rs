@@ -1,7 +1,6 @@
 //! Many layouts over all cores.
 
 use crate::error::{Failure, Given, Result};
-use crate::laws::impedance::Form;
 use crate::run::follower::episode::{Follower, FollowerOutcome};
 use crate::run::follower::layouts::Layouts;
 use crate::run::follower::settings::Settings;
@@ -52,9 +51,7 @@ pub fn touching_layouts(
     work: Work<'_>,
 ) -> Result<Vec<u64>> {
     let layouts = layouts.checked()?;
-    let mut settings = settings.clone();
-    settings.impedance.form = Form::Off;
-    let follower = Follower::new(&settings)?;
+    let follower = Follower::unaware(settings)?;
     let quiet = Work {
         progress: &|_| (),
         ..work

@@ -109,7 +109,28 @@ impl Follower {
     /// # Errors
     /// A number is out of range.
     pub fn new(settings: &Settings) -> Result<Self> {
+        let sight = if settings.obstacle_vision.is_some() {
+            Sight::Bodies
+        } else {
+            Sight::Echoes
+        };
+        Self::seeing(settings.clone().checked()?, sight)
+    }
+
+    /// A follower without repulsion, and without the sensors that serve it alone.
+    ///
+    /// # Errors
+    /// A number is out of range.
+    pub(super) fn unaware(settings: &Settings) -> Result<Self> {
         let settings = settings.clone().checked()?;
+        let attracted = Settings {
+            obstacle_vision: None,
+            ..settings
+        };
+        Self::seeing(attracted, Sight::Nothing)
+    }
+
+    fn seeing(settings: Settings, sight: Sight) -> Result<Self> {
         let array = settings.sensors.array()?;
         let farthest = |mount: &Frame| mount.position.x.hypot(mount.position.y);
         let offset = array.mounts().iter().map(farthest).fold(0.0, f64::max);
@@ -117,11 +138,7 @@ impl Follower {
         let law = FollowingLaw {
             attraction: settings.attraction,
             repulsion: settings.impedance.prepared(),
-            sight: if settings.obstacle_vision.is_some() {
-                Sight::Bodies
-            } else {
-                Sight::Echoes
-            },
+            sight,
             layout: settings.sensors.layout()?,
             banks: settings.sensors.banks(),
             options: settings.bank,
@@ -443,6 +460,7 @@ where
                 let truth = place.truth(clock.time(step));
                 camera.observe(&truth, &place.pose, &mut senses.seen);
             }
+            None if self.law.sight() == Sight::Nothing => {}
             None => senses.sonar.fire(&place.pose, &place.around.near),
         }
     }
