@@ -222,6 +222,7 @@ BAD_RUNS: list[tuple[dict[str, Any], str]] = [
     ({"duration": 1e8}, "duration"),
     ({"goal": (math.nan, 0.0)}, "goal"),
     ({"robot": nav.HolonomicRobot()}, "robot"),
+    ({"robot": 0}, "robot"),
     ({"tracking": "full speed"}, "tracking"),
     ({"tracking": nav.tracking.ExponentialTracking()}, "goal"),
 ]

@@ -230,6 +230,17 @@ impl PlacedShape {
         }
     }
 
+    /// Whether a disc is beyond a reach in m from a point by more than rounding, told without a root; of a
+    /// rectangle it is not told.
+    #[inline]
+    pub(crate) fn out_of_reach(&self, from: Vector2<f64>, reach: f64) -> bool {
+        let Shape::Disc { radius } = self.shape else {
+            return false;
+        };
+        let (to, within) = (self.center - from, SLACK * (reach + radius));
+        to.dot(&to) > within * within
+    }
+
     /// Distance of a point from the surface, zero inside, in m.
     #[must_use]
     pub fn distance(&self, from: Vector2<f64>) -> f64 {

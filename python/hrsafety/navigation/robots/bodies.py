@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import field, fields
+from functools import cache
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, number, sequence
+from hrsafety._arguments import Pair, Parameters, instance, number, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 
@@ -179,3 +180,14 @@ class DifferentialDriveRobot(Parameters):
                 wheel_static_friction=self.wheel_static_friction,
             )
         )
+
+
+@cache
+def _default_two_wheels() -> DifferentialDriveRobot:
+    """Return the default two-wheel robot, which is made once."""
+    return DifferentialDriveRobot()
+
+
+def two_wheels(robot: object) -> DifferentialDriveRobot:
+    """Return ``robot`` if it has two wheels, the default one for ``None``."""
+    return _default_two_wheels() if robot is None else instance("robot", robot, DifferentialDriveRobot)

@@ -13,7 +13,7 @@ from hrsafety._arguments import Pair, Parameters, flag, instance, number, pair, 
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, two_wheels
 
 __all__ = [
     "ExponentialTracking",
@@ -298,7 +298,7 @@ class VirtualTorque(Parameters):
         >>> nav.tracking.VirtualTorque().command((3.7, 0.0), heading=0.0)
         Twist(speed=0.06, turn_rate=0.0)
         """
-        body = instance("robot", robot or DifferentialDriveRobot(), DifferentialDriveRobot)
+        body = two_wheels(robot)
         wish = self._native.command(
             body._native,
             force=_finite_pair("force", force),

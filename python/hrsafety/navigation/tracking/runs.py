@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, callback, instance, number, numbers, pair, sequence, vector
+from hrsafety._arguments import Array, Pair, callback, number, numbers, pair, sequence, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.batch import check_threads
-from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, two_wheels
 from hrsafety.navigation.robots.tracking_laws import ExponentialTracking, FullSpeedTracking, NonlinearTracking, Tracking
 from hrsafety.navigation.tracking.references import CircleReference, LineReference, PathReference, Reference
 from hrsafety.navigation.trajectory import Trajectory
@@ -140,7 +140,7 @@ def track(
     """
     path = _reference("reference", reference)
     law = _tracking(tracking)
-    body = instance("robot", robot or DifferentialDriveRobot(), DifferentialDriveRobot)
+    body = two_wheels(robot)
     place = pair("position", position)
     turned, driven, turning = number("heading", heading), number("speed", speed), number("turn_rate", turn_rate)
     history = _hrsafety.track(
@@ -215,7 +215,7 @@ def track_batch(
     (100, True)
     """
     law = _tracking(tracking)
-    body = instance("robot", robot or DifferentialDriveRobot(), DifferentialDriveRobot)
+    body = two_wheels(robot)
     if isinstance(reference, (LineReference, CircleReference, PathReference)):
         references = [reference]
     else:
@@ -242,12 +242,15 @@ def track_batch(
 def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Trajectory:
     """Return the record of a run, in which there are no obstacles."""
     heading, rows = history["heading"], len(history["time"])
-    forward = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    velocity = np.empty((rows, 2))
+    np.cos(heading, out=velocity[:, 0])
+    np.sin(heading, out=velocity[:, 1])
+    velocity *= history["speed"][:, None]
     nothing = np.zeros(0)
     return Trajectory(
         reference=path,
         tracking=law,
-        velocity=history["speed"][:, None] * forward,
+        velocity=velocity,
         obstacle_position=np.zeros((rows, 0, 2)),
         distance=np.zeros((rows, 0)),
         min_distance=nothing,

@@ -16,6 +16,9 @@ const WHOLE: f64 = 1e-9;
 /// Control periods between two looks whether to stop.
 const LOOK: usize = 4096;
 
+/// Rows that a history has memory for at once, at most.
+const RESERVED: usize = 1 << 16;
+
 /// Pose and motion at the start of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackStart {
@@ -95,6 +98,27 @@ pub struct TrackRun {
     pub goal_phase: Vec<bool>,
 }
 
+impl TrackRun {
+    /// An empty history with memory for a number of rows; a long one takes more as it fills.
+    fn of_rows(rows: usize) -> Self {
+        let rows = rows.min(RESERVED);
+        let one = || Vec::with_capacity(rows);
+        let two = || Vec::with_capacity(2 * rows);
+        Self {
+            time: one(),
+            position: two(),
+            heading: one(),
+            speed: one(),
+            turn_rate: one(),
+            commanded_speed: one(),
+            commanded_turn_rate: one(),
+            reference_position: two(),
+            reference_velocity: two(),
+            goal_phase: Vec::with_capacity(rows),
+        }
+    }
+}
+
 /// What a batch keeps of a run. The error is the distance from the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackRow {
@@ -122,9 +146,23 @@ struct Instant<'a> {
 }
 
 impl Instant<'_> {
-    fn error(&self) -> f64 {
+    /// Robot to reference in m.
+    fn offset(&self) -> [f64; 2] {
         let [x, y] = self.drive.pose.position;
-        (self.reference.position[0] - x).hypot(self.reference.position[1] - y)
+        [
+            self.reference.position[0] - x,
+            self.reference.position[1] - y,
+        ]
+    }
+
+    fn error(&self) -> f64 {
+        let [x, y] = self.offset();
+        x.hypot(y)
+    }
+
+    fn is_finite(&self) -> bool {
+        let [x, y] = self.offset();
+        (x.abs() + y.abs()).is_finite()
     }
 }
 
@@ -188,7 +226,7 @@ impl<'a> Course<'a> {
                 wish,
                 goal_phase: tracker.in_goal_phase(),
             };
-            if !instant.error().is_finite() {
+            if !instant.is_finite() {
                 return Err(Failure::NonFinite { run: 0, time });
             }
             show(&instant);
@@ -198,7 +236,7 @@ impl<'a> Course<'a> {
     }
 
     fn record(&self, path: &ReferencePath, start: &TrackStart) -> Result<TrackRun> {
-        let mut run = TrackRun::default();
+        let mut run = TrackRun::of_rows(self.periods * self.steps + 1);
         self.drive(path, start, |instant| {
             let drive = instant.drive;
             run.time.push(instant.time);

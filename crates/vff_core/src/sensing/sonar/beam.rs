@@ -102,11 +102,12 @@ impl Beam {
     pub fn nearest(&self, pose: &Frame, shapes: &[PlacedShape], reach: f64) -> f64 {
         let mut least = reach;
         let mut found = f64::INFINITY;
-        if shapes.is_empty() {
-            return found;
-        }
-        let edges = self.edges.map(|edge| pose.outward(edge));
+        let mut edges = None;
         for shape in shapes {
+            if shape.out_of_reach(pose.position, least) {
+                continue;
+            }
+            let edges = edges.get_or_insert_with(|| self.edges.map(|edge| pose.outward(edge)));
             if edges.iter().any(|edge| shape.beyond(pose.position, *edge)) {
                 continue;
             }
