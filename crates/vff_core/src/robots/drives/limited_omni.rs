@@ -39,8 +39,9 @@ pub(crate) struct LimitedOmni {
     turns: bool,
     /// Direction of travel from the front of the body, in rad.
     direction: f64,
-    /// Direction of travel over ground.
+    /// Direction of travel over ground, and its angle in rad.
     target: Vector2<f64>,
+    course: f64,
 }
 
 impl LimitedOmni {
@@ -56,6 +57,7 @@ impl LimitedOmni {
             turns: false,
             direction: course,
             target: Vector2::new(cos, sin),
+            course,
         }
     }
 }
@@ -73,9 +75,11 @@ impl Drive for LimitedOmni {
         if let Course::Toward(direction) = course {
             self.direction = *direction;
         }
-        if *course != Course::Keep {
-            let (sin, cos) = (self.heading + self.direction).sin_cos();
-            self.target = Vector2::new(cos, sin);
+        let angle = self.heading + self.direction;
+        // Mostly told again where it travels already.
+        if *course != Course::Keep && angle.to_bits() != self.course.to_bits() {
+            let (sin, cos) = angle.sin_cos();
+            (self.target, self.course) = (Vector2::new(cos, sin), angle);
         }
     }
 

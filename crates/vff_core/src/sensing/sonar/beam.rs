@@ -102,12 +102,11 @@ impl Beam {
     pub fn nearest(&self, pose: &Frame, shapes: &[PlacedShape], reach: f64) -> f64 {
         let mut least = reach;
         let mut found = f64::INFINITY;
-        let mut edges = None;
+        if shapes.is_empty() {
+            return found;
+        }
+        let edges = self.edges.map(|edge| pose.outward(edge));
         for shape in shapes {
-            if shape.out_of_reach(pose.position, least) {
-                continue;
-            }
-            let edges = edges.get_or_insert_with(|| self.edges.map(|edge| pose.outward(edge)));
             if edges.iter().any(|edge| shape.beyond(pose.position, *edge)) {
                 continue;
             }
@@ -144,6 +143,9 @@ impl Beam {
     /// As `nearest`, of one shape; may be farther than the reach.
     #[inline]
     fn nearest_of(&self, pose: &Frame, shape: &PlacedShape, reach: f64) -> f64 {
+        if shape.out_of_reach(pose.position, reach) {
+            return f64::INFINITY;
+        }
         let to = shape.nearest(pose.position);
         let square = to.dot(&to);
         if square > reach * reach {
