@@ -11,6 +11,7 @@ use crate::laws::reflex::{Percept, Reflex};
 use crate::robots::drives::{Drive, VirtualVelocity};
 use crate::run::Interrupted;
 use crate::run::episode::{Episode, Parts};
+use crate::run::follower::sample::{Sample, SampleObserver};
 use crate::run::follower::scene::FollowerScene;
 use crate::run::follower::settings::Settings;
 use crate::run::follower::surroundings::{Surroundings, Touch};
@@ -23,7 +24,6 @@ use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::motion::BodyState;
 use crate::world::obstacle::{Obstacle, Regions};
-use crate::world::shape::PlacedShape;
 use numeric::random::Stream;
 
 /// Streams of one seed.
@@ -48,49 +48,6 @@ pub struct FollowerOutcome {
     pub path_length: f64,
     /// Sum of its turns either way, in rad.
     pub turning: f64,
-}
-
-/// Everything at one sample.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
-    /// Time, in s.
-    pub time: f64,
-    /// Robot.
-    pub pose: &'a Frame,
-    /// Virtual velocity at the end of the step, in m/s.
-    pub virtual_velocity: Vector2<f64>,
-    /// Speeds (left, right) of the wheels until the next sample, in m/s.
-    pub wheels: [f64; 2],
-    /// Where it wants to be, in m.
-    pub target: Vector2<f64>,
-    /// Source, in m.
-    pub source: Vector2<f64>,
-    /// Attraction, in N.
-    pub attraction: Vector2<f64>,
-    /// Repulsion, in N.
-    pub repulsion: Vector2<f64>,
-    /// Readings, in m; infinite without echo.
-    pub readings: &'a [f64],
-    /// Obstacles.
-    pub shapes: &'a [PlacedShape],
-}
-
-/// Receives samples.
-pub trait SampleObserver {
-    /// Takes one sample.
-    fn sample(&mut self, sample: &Sample<'_>);
-}
-
-impl SampleObserver for () {
-    #[inline]
-    fn sample(&mut self, _sample: &Sample<'_>) {}
-}
-
-impl<O: SampleObserver> SampleObserver for &mut O {
-    #[inline]
-    fn sample(&mut self, sample: &Sample<'_>) {
-        (**self).sample(sample);
-    }
 }
 
 /// A follower ready to run.

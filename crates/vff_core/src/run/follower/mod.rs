@@ -4,6 +4,7 @@ pub mod batch;
 pub mod episode;
 pub mod layouts;
 pub mod record;
+pub mod sample;
 pub mod scene;
 pub mod settings;
 mod surroundings;

@@ -9,9 +9,8 @@ use crate::laws::impedance::following::FollowingLaw;
 use crate::laws::reflex::Percept;
 use crate::run::Interrupted;
 use crate::run::episode::{Episode, Parts};
-use crate::run::follower::episode::{
-    Follower, FollowerOutcome, FollowerParts, Sample, SampleObserver,
-};
+use crate::run::follower::episode::{Follower, FollowerOutcome, FollowerParts};
+use crate::run::follower::sample::{Sample, SampleObserver};
 use crate::run::follower::scene::FollowerScene;
 
 /// Samples of a run: one row each.
