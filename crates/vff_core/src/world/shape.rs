@@ -230,8 +230,8 @@ impl PlacedShape {
         }
     }
 
-    /// Whether a disc is beyond a reach in m from a point by more than rounding, told without a root; of a
-    /// rectangle it is not told.
+    /// Whether this is a disc beyond a reach in m from a point, by more than rounding; without a root. No
+    /// rectangle is said to be.
     #[inline]
     pub(crate) fn out_of_reach(&self, from: Vector2<f64>, reach: f64) -> bool {
         let Shape::Disc { radius } = self.shape else {

@@ -189,9 +189,8 @@ impl TwoWheels {
             return self.twist;
         };
         let wanted = spread(kinematics.wheel_speeds([self.twist.speed, self.twist.turn_rate]));
-        // The next step would forget where the wheels of a known pose seem to lead, but a commanded
-        // velocity is taken up before.
-        let counts = !self.exact || matches!(self.steering, Steering::Velocity(_));
+        // Who knows the pose does not ask where the wheels seem to lead.
+        let exact = self.exact;
         let period = wheels.period;
         let (mut pose, mut known, mut twist) = (self.pose, self.known, Twist::default());
         let turned = |speeds: [f64; WHEELS]| {
@@ -201,11 +200,11 @@ impl TwoWheels {
         wheels.step(wanted, |rolling, speeds| {
             twist = turned(rolling);
             pose = pose.after(twist, period);
-            if counts {
+            if !exact {
                 known = known.after(turned(speeds), period);
             }
         });
-        (self.pose, self.known) = (pose, if counts { known } else { pose });
+        (self.pose, self.known) = (pose, if exact { pose } else { known });
         twist
     }
 
@@ -253,8 +252,9 @@ impl Drive for TwoWheels {
         self.force = order.force.lane(0);
         self.reference.hold(order.force);
         self.exact = order.fix.is_none();
-        if let Some(fix) = &order.fix {
-            self.correct(fix);
+        match &order.fix {
+            Some(fix) => self.correct(fix),
+            None => self.known = self.pose,
         }
         match &mut self.steering {
             Steering::Follow(tracker) => tracker.permit_goal_phase(order.clear),
@@ -266,9 +266,6 @@ impl Drive for TwoWheels {
     }
 
     fn step(&mut self) -> Reading {
-        if self.exact {
-            self.known = self.pose;
-        }
         let before = self.pose.position;
         let wish = self.wish();
         self.twist = self.limits.toward(self.twist, wish, self.step);

@@ -1,7 +1,7 @@
 //! One wheel under its controller.
 
 use super::controller::{Estimator, Known};
-use super::drive::{WheelDrive, nearest_count};
+use super::drive::{WheelDrive, read_with};
 use super::dynamics::{HeldStep, WheelState};
 use super::reference::WheelWish;
 
@@ -71,10 +71,7 @@ impl WheelLoop {
     #[inline(always)]
     pub fn step(&mut self, wish: &WheelWish) -> WheelSample {
         let drive = &self.drive;
-        let angle = self.state.angle;
-        let read_angle = self
-            .resolution
-            .map_or(angle, |resolution| nearest_count(angle, resolution));
+        let read_angle = read_with(self.resolution, self.state.angle);
         let known = self.estimator.known(read_angle);
         let gain = drive.motor.amplifier_gain;
         let command = drive.controller.command(wish, &known, gain);

@@ -10,6 +10,9 @@ use crate::error::{Result, positive};
 /// Share of a limit below which rounding cannot reach it.
 const CLEAR: f64 = 1.0 - 1e-9;
 
+/// From here on every number is whole, 2^52.
+const ALL_WHOLE: f64 = 4_503_599_627_370_496.0;
+
 /// Motor with its current amplifier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
@@ -50,7 +53,7 @@ impl Motor {
         self.limited_near(current, induced)
     }
 
-    /// As `limited`, for an induced voltage in V.
+    /// As `limited` by both limits, for an induced voltage in V.
     #[cold]
     #[inline(never)]
     fn limited_near(&self, current: f64, induced: f64) -> f64 {
@@ -103,20 +106,20 @@ impl Encoder {
     /// Angle that is read, in rad: the nearest whole count.
     #[must_use]
     pub fn read(&self, angle: f64) -> f64 {
-        nearest_count(angle, self.resolution())
+        read_with(Some(self.resolution()), angle)
     }
 }
 
-/// Multiple of a resolution that is nearest to an angle, both in rad.
+/// An angle as it is read: the nearest multiple of a resolution, or the angle itself without one, all in rad.
 #[inline]
-pub(super) fn nearest_count(angle: f64, resolution: f64) -> f64 {
-    rounded(angle / resolution) * resolution
+pub(super) fn read_with(resolution: Option<f64>, angle: f64) -> f64 {
+    resolution.map_or(angle, |count| rounded(angle / count) * count)
 }
 
 /// As `f64::round`, which without SSE 4.1 is a call; the sign of zero included.
 #[inline]
 fn rounded(value: f64) -> f64 {
-    if value.abs() >= EXACT_INTEGERS || value.is_nan() {
+    if value.abs() >= ALL_WHOLE || value.is_nan() {
         return value;
     }
     #[allow(clippy::cast_possible_truncation)] // below 2^52
@@ -125,9 +128,6 @@ fn rounded(value: f64) -> f64 {
     let away = if rest.abs() >= 0.5 { 1.0_f64 } else { 0.0 };
     (whole.abs() + away).copysign(value)
 }
-
-/// From here on every number is whole.
-const EXACT_INTEGERS: f64 = 4_503_599_627_370_496.0;
 
 /// One wheel with its loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,13 +202,6 @@ mod tests {
     #[test]
     fn a_clear_current_is_what_the_limits_leave_of_it() {
         let motor = holonomic_wheels()[0].motor;
-        let by_limits = |current: f64, speed: f64| {
-            let induced = motor.back_emf * speed;
-            let most = (motor.supply_voltage - induced) / motor.resistance;
-            let least = (-motor.supply_voltage - induced) / motor.resistance;
-            let driven = between(current, least, most);
-            between(driven, -motor.current_limit, motor.current_limit)
-        };
         let fastest = motor.supply_voltage / motor.back_emf;
         for step in -1200..=1200 {
             let speed = fastest * f64::from(step) / 1000.0;
@@ -223,7 +216,8 @@ mod tests {
                 3.0,
             ] {
                 let limited = motor.limited(current, speed);
-                assert_eq!(limited.to_bits(), by_limits(current, speed).to_bits());
+                let by_limits = motor.limited_near(current, motor.back_emf * speed);
+                assert_eq!(limited.to_bits(), by_limits.to_bits());
             }
         }
     }
