@@ -168,6 +168,16 @@ def test_a_person_who_never_came_near_is_a_dotted_path_only():
     assert figure.axes[0].get_ylim()[1] < 5.0
 
 
+def test_of_few_moving_obstacles_each_is_in_view_unless_it_stays_far_away():
+    for offset, shown in ((3.2, True), (40.0, False)):
+        aside = nav.Human(start=(1.0, offset), velocity=(0.2, 0.0))
+        run = nav.simulate(nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6), obstacles=[aside]), LAW)
+        (axes,) = plotting.paths(run).axes
+        assert (axes.get_ylim()[1] > offset) == shown
+        (close,) = plotting.paths(run, view="paths").axes
+        assert close.get_ylim()[1] < offset
+
+
 def test_contacts_and_ends_without_arrival_are_marked():
     made_up = touched(made_up_run(PERSON, DISC, arrived=False), 0, 2.0)
     figure = plotting.paths(made_up)

@@ -59,7 +59,8 @@ def paths(
     regions : bool
         Whether active and critical regions are drawn.
     view : {"scene", "paths"}
-        Whether everything that stands is in view, or only the paths and what is near them.
+        Whether the stationary obstacles are in view, with up to six moving ones that came as near as the
+        path is long, or only the paths and what is near them.
     title : str or None
         Title of the figure.
 
@@ -124,15 +125,22 @@ def _coincide(run: Trajectory, other: Trajectory) -> bool:
 
 
 def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool, whole: bool) -> style.Limits:
-    """Return limits that hold all paths, the obstacles that matter to them and, if wanted, all that stand."""
+    """Return limits that hold all paths, the obstacles that matter to them and, if wanted, the whole scene."""
     points: list[Any] = shapes.scene_points(runs[0].scenario.obstacles) if whole else []
     points += walls.points_of(walls.maps_of(runs)) if whole else []
     for run in runs:
         points += [run.position, run.scenario.start, run.scenario.goal]
+        few = len(run.scenario.obstacles) <= shapes.MOST_COLORS
+        extent = float(np.ptp(run.position, axis=0).max())
         for index, obstacle in enumerate(run.scenario.obstacles):
             active, critical = shapes.region_radii(obstacle)
             row = inputs.closest_row(run, index)
-            if row is None or run.distance[row, index] >= active:
+            if row is None:
+                continue
+            if run.distance[row, index] >= active:
+                if whole and few and shapes.is_mobile(obstacle) and run.distance[row, index] <= extent:
+                    place = run.obstacle_position[row, index]
+                    points.append(shapes.body(obstacle, place).get_extents().get_points())
                 continue
             radius = (critical if shapes.is_mobile(obstacle) else active) if regions else 0.0
             place = run.obstacle_position[row, index]
