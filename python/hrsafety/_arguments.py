@@ -85,8 +85,10 @@ def number(name: str, value: object) -> float:
     """Return ``value`` as a float, or say what it should have been."""
     if type(value) is float:  # nearly always
         return value
-    # Instants and durations of NumPy in ns pass for plain numbers, a billion times too large.
-    if isinstance(value, (bool, np.bool_, str, bytes, np.datetime64, np.timedelta64)):
+    # What NumPy holds passes for a plain number whatever it is: durations in ns a billion times too large, words,
+    # truth values, and complex numbers without their imaginary part; as scalars and as arrays without an axis.
+    kind = getattr(getattr(value, "dtype", None), "kind", "f")
+    if isinstance(value, (bool, str, bytes)) or kind in "bcmMOSU":
         raise InvalidParameterError(name, "be a number", value)
     refuse_masked(name, value)
     try:

@@ -304,6 +304,23 @@ def test_an_instant_of_numpy_is_no_number(kind: type, unit: str) -> None:
         reactive.Sonar(rays=moment)
 
 
+_NO_NUMBERS = (np.timedelta64(5, "ns"), np.datetime64(5, "ns"), np.str_("5"), np.True_, np.complex128(5 + 2j))
+
+
+@pytest.mark.parametrize("value", _NO_NUMBERS, ids=lambda value: type(value).__name__)
+def test_an_array_without_an_axis_is_a_number_only_if_it_holds_one(value: Any) -> None:
+    """Arrays of durations, words, truth values and complex numbers passed; complex scalars lost what is imaginary."""
+    for given in (value, np.array(value), np.array(value, dtype=object)):
+        with pytest.raises(InvalidParameterError, match="modulus must be a number"):
+            contact.Linear(modulus=given)
+        with pytest.raises(InvalidParameterError, match="stiffness must be a number"):
+            impact.Foam(stiffness=given, damping=10.0)
+        with pytest.raises(InvalidParameterError, match="closing_speed must be a number"):
+            contact.simulate(robot_mass=3.0, closing_speed=given, region=75e3)
+    for fine in (np.array(5), np.float32(5.0), np.array(5, dtype=np.uint8)):
+        assert contact.Linear(modulus=fine) == contact.Linear(modulus=5.0)  # type: ignore[arg-type]  # what is tried
+
+
 class _Unprintable:
     def __repr__(self) -> str:
         raise RuntimeError("nothing to show")
