@@ -133,19 +133,17 @@ def _limits_of_runs(runs: Sequence[Trajectory], *, regions: bool, whole: bool) -
         few = len(run.scenario.obstacles) <= shapes.MOST_COLORS
         extent = float(np.ptp(run.position, axis=0).max())
         for index, obstacle in enumerate(run.scenario.obstacles):
-            active, critical = shapes.region_radii(obstacle)
             row = inputs.closest_row(run, index)
             if row is None:
                 continue
-            if run.distance[row, index] >= active:
-                if whole and few and shapes.is_mobile(obstacle) and run.distance[row, index] <= extent:
-                    place = run.obstacle_position[row, index]
-                    points.append(shapes.body(obstacle, place).get_extents().get_points())
-                continue
-            radius = (critical if shapes.is_mobile(obstacle) else active) if regions else 0.0
-            place = run.obstacle_position[row, index]
-            points.append(shapes.body(obstacle, place).get_extents().get_points())
-            points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
+            active, critical = shapes.region_radii(obstacle)
+            place, distance = run.obstacle_position[row, index], run.distance[row, index]
+            mobile, felt = shapes.is_mobile(obstacle), distance < active
+            if felt or (whole and few and mobile and distance <= extent):
+                points.append(shapes.body(obstacle, place).get_extents().get_points())
+            if felt:
+                radius = (critical if mobile else active) if regions else 0.0
+                points.append(shapes.region(obstacle, place, radius).get_extents().get_points())
     return inputs.view_limits(points, margin=MARGIN)
 
 
