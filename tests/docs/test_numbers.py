@@ -107,17 +107,12 @@ def counts(table: nav.RunTable) -> list[int]:
     return [int(column.sum()) for column in columns]
 
 
-@pytest.mark.parametrize(("recording", "title"), [("zara01", "24 busiest start times"), ("zara03", "the same")])
-def test_rows_of_a_recording_are_what_is_computed(recording: str, title: str, shared: Path) -> None:
-    found = []
-    for name, measurement in SENSINGS.items():
+@pytest.mark.parametrize("recording", ["zara01", "zara03"])
+def test_rows_of_a_recording_are_what_is_computed(recording: str, shared: Path) -> None:
+    for (name, measurement), sensing in zip(SENSINGS.items(), ("exact", "25 mm noise", "25 mm noise, 0.1 s delay"), strict=True):
         table = crossed(shared / "data" / "pedestrians" / f"{recording}.csv", measurement)
-        found.append(counts(table))
-        cells = [*map(str, found[-1]), f"{table.min_clearance.min():.2f}"]
+        found = counts(table)
+        cells = [*map(str, found), f"{table.min_clearance.min():.2f}"]
         assert f"| {recording}, {name} | {' | '.join(cells)} |" in VALIDATION.splitlines()
-    moving, standing = ("; ".join(str(row[column]) for row in found) for column in (1, 2))
-    assert {row[3] for row in found} == {24}
-    words = f"24 reached the goal each; {moving} ran into somebody; "
-    words += f"in {standing} others somebody walked into the standing robot"
-    (line,) = [line for line in README.splitlines() if line.startswith(f"| robot across {recording}, {title}")]
-    assert line.endswith(f" | {words} |")
+        _, moving, standing, reached, _ = found
+        assert f"| {recording} | {sensing} | {reached} | {moving} | {standing} |" in README.splitlines()
