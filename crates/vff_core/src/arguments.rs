@@ -30,3 +30,15 @@ pub trait Arguments {
     /// As for numbers.
     fn places(&self, name: &str) -> Result<Vec<[f64; 3]>>;
 }
+
+/// What is made of arguments by its name: a law, a sensor.
+pub trait Named: Sized {
+    /// Its name in files and on the command line.
+    const NAME: &'static str;
+
+    /// Makes it of its arguments.
+    ///
+    /// # Errors
+    /// An argument is missing, or a word or a number is not allowed.
+    fn made_of(given: &dyn Arguments) -> Result<Self>;
+}

@@ -1,8 +1,11 @@
 //! Virtual force of Borenstein and Koren (1989).
 
+use crate::arguments::{Arguments, Named};
+use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
-use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
+use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
 
 /// `F_Lambda = K_B3/d_s u` (2.2.5), `F_a = K_B1 u_E` (2.2.6), `d_s` the distance of the surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,5 +39,36 @@ impl<R: Real> PairwiseField<R> for BorensteinKoren<R> {
     #[inline(always)]
     fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, _robot: &RobotState<R>) -> Push<R> {
         Push::straight(neighbor.outward * (self.repulsive / neighbor.gap))
+    }
+}
+
+impl Named for BorensteinKoren {
+    const NAME: &'static str = "borenstein_koren";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            attractive: given.number("attractive_gain")?,
+            repulsive: given.number("repulsive_gain")?,
+            attracted_inside: given.flag("attracted_inside")?,
+        })
+    }
+}
+
+impl PairwiseFamily for BorensteinKoren {
+    type Field<R: Real> = BorensteinKoren<R>;
+    const GAIN_NAMES: &'static [&'static str] = &["attractive_gain", "repulsive_gain"];
+    const FREE_GAINS: &'static [usize] = &[0];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> BorensteinKoren<R> {
+        BorensteinKoren {
+            attractive: gains[0],
+            repulsive: gains[1],
+            attracted_inside: self.attracted_inside,
+        }
     }
 }

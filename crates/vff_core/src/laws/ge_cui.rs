@@ -1,8 +1,11 @@
 //! Dynamic potential field of Ge and Cui (2002).
 
+use crate::arguments::{Arguments, Named};
+use crate::error::Result;
 use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
-use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
+use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::{Approach, RobotState};
+use crate::world::scenario::Scenario;
 
 /// Least `(d - r)^2` in m^2: where the stopping distance `r` equals `d` the law is singular.
 const LEAST_SQUARE: f64 = 1e-12;
@@ -53,6 +56,41 @@ impl<R: Real> PairwiseField<R> for GeCui<R> {
         Push {
             repulsive: Vector2::select(apart, outward * away, zero),
             detour: Vector2::select(apart, outward.left_normal() * around, zero),
+        }
+    }
+}
+
+impl Named for GeCui {
+    const NAME: &'static str = "ge_cui";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            attractive: given.number("attractive_gain")?,
+            repulsive: given.number("repulsive_gain")?,
+            ratio: given.number("gain_ratio")?,
+            // Every scenario brings the one of its robot.
+            max_acceleration: f64::NAN,
+        })
+    }
+}
+
+impl PairwiseFamily for GeCui {
+    type Field<R: Real> = GeCui<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "gain_ratio"];
+    const FREE_GAINS: &'static [usize] = &[0, 2];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.ratio]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], scenario: &Scenario) -> GeCui<R> {
+        GeCui {
+            attractive: gains[0],
+            repulsive: gains[1],
+            ratio: gains[2],
+            max_acceleration: scenario.robot.max_acceleration,
         }
     }
 }

@@ -1,8 +1,11 @@
 //! Artificial potential field of Khatib (1986).
 
+use crate::arguments::{Arguments, Named};
+use crate::error::Result;
 use crate::lanes::{Real, Vector2, Wide, widened};
-use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
+use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
 
 /// Which repulsion is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,5 +61,43 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
             }
         };
         Push::straight(force)
+    }
+}
+
+impl Named for Khatib {
+    const NAME: &'static str = "khatib";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            attractive: given.number("attractive_gain")?,
+            repulsive: given.number("repulsive_gain")?,
+            ratio: given.number("gain_ratio")?,
+            form: if given.flag("printed")? {
+                KhatibForm::Printed
+            } else {
+                KhatibForm::Gradient
+            },
+        })
+    }
+}
+
+impl PairwiseFamily for Khatib {
+    type Field<R: Real> = Khatib<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "gain_ratio"];
+    const FREE_GAINS: &'static [usize] = &[0, 2];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.ratio]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Khatib<R> {
+        Khatib {
+            attractive: gains[0],
+            repulsive: gains[1],
+            ratio: gains[2],
+            form: self.form,
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! Circulating repulsion of Masoud (2007).
 
+use crate::arguments::{Arguments, Named};
+use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
-use crate::laws::pairwise::{Neighbor, PairwiseField, Push};
+use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::RobotState;
+use crate::world::scenario::Scenario;
 
 /// `F = K_1 E + sum (K_3 D + K_5 d t)`, (2.2.8)-(2.2.10): no damping anywhere, the circulation
 /// always counter-clockwise.
@@ -34,6 +37,38 @@ impl<R: Real> PairwiseField<R> for Masoud<R> {
         Push {
             repulsive: offset * self.repulsive,
             detour: offset.left_normal() * self.detour,
+        }
+    }
+}
+
+impl Named for Masoud {
+    const NAME: &'static str = "masoud";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            attractive: given.number("attractive_gain")?,
+            repulsive: given.number("repulsive_gain")?,
+            detour: given.number("detour_gain")?,
+        })
+    }
+}
+
+impl PairwiseFamily for Masoud {
+    type Field<R: Real> = Masoud<R>;
+    const GAIN_NAMES: &'static [&'static str] =
+        &["attractive_gain", "repulsive_gain", "detour_gain"];
+    const FREE_GAINS: &'static [usize] = &[0];
+
+    fn gains(&self) -> Vec<f64> {
+        vec![self.attractive, self.repulsive, self.detour]
+    }
+
+    #[inline(always)]
+    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Masoud<R> {
+        Masoud {
+            attractive: gains[0],
+            repulsive: gains[1],
+            detour: gains[2],
         }
     }
 }

@@ -1,5 +1,32 @@
 //! Navigation laws behind one interface.
 
+/// Laws that act pair by pair, by their files: [`pairwise`] compiles one time loop for all of them, and
+/// [`registry`] makes each by its name.
+macro_rules! pairwise_laws {
+    ($list:ident) => {
+        $list! {
+            masoud::Masoud,
+            ge_cui::GeCui,
+            khatib::Khatib,
+            borenstein_koren::BorensteinKoren,
+        }
+    };
+}
+
+/// The other laws by their files: planners, and laws of their own. Each with the widths that its kernels
+/// are compiled for.
+macro_rules! other_laws {
+    ($list:ident) => {
+        $list! {
+            Own, impedance::ImpedanceFamily, One;
+            Planned, velocity_obstacle::VelocityObstacle, One;
+            Planned, reciprocal::ReciprocalAvoidance, OneAndScenes;
+            Planned, field_d_star::FieldDStar, One;
+            Planned, tree::RapidlyExploringRandomTree, One;
+        }
+    };
+}
+
 mod borenstein_koren;
 pub mod escape;
 pub mod field;

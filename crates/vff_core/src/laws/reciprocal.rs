@@ -5,6 +5,8 @@ mod side_by_side;
 
 use discs::{front, nearer_leg, pass_disc};
 
+use crate::arguments::{Arguments, Named};
+use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
@@ -42,6 +44,20 @@ impl Default for ReciprocalAvoidance {
             margin: 0.0,
             turn: 0.01,
         }
+    }
+}
+
+impl Named for ReciprocalAvoidance {
+    const NAME: &'static str = "optimal_reciprocal_collision_avoidance";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            horizon: given.number("horizon")?,
+            share: given.number("share")?,
+            reach: given.number("reach")?,
+            margin: given.number("margin")?,
+            turn: given.number("turn")?,
+        })
     }
 }
 

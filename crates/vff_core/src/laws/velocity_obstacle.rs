@@ -17,6 +17,8 @@ use cones::{Cone, ConeBase};
 use lines::{Line, Reachable, where_circles_meet};
 use view::View;
 
+use crate::arguments::{Arguments, Named};
+use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::outlook::Attention;
@@ -71,6 +73,36 @@ impl Default for VelocityObstacle {
             horizon: f64::INFINITY,
             margin: 0.01,
             ramp: 7.0 / 12.0,
+        }
+    }
+}
+
+impl Named for VelocityObstacle {
+    const NAME: &'static str = "velocity_obstacle";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            margin: given.number("margin")?,
+            horizon: given.number("horizon")?,
+            selection: Selection::made_of(given)?,
+            ..Self::default()
+        })
+    }
+}
+
+impl Selection {
+    /// How to select among the velocities, by its word.
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let (sector, risk) = (given.number("sector")?, given.number("risk_weight")?);
+        let word = given.word("selection")?;
+        match word.as_str() {
+            "fastest" => Ok(Self::Fastest { sector }),
+            "time_and_risk" => Ok(Self::TimeAndRisk { risk }),
+            "to_goal" => Ok(Self::ToGoal),
+            _ => {
+                let rule = "be one of \"fastest\", \"time_and_risk\", \"to_goal\"";
+                Err(Failure::invalid("selection", rule, Given::Word(word)))
+            }
         }
     }
 }

@@ -9,6 +9,7 @@ mod surroundings;
 
 pub use search::IncrementalSearch;
 
+use crate::arguments::{Arguments, Named};
 use crate::error::{Result, not_negative, positive};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
@@ -60,6 +61,20 @@ impl FieldDStar {
         positive("room", self.room)?;
         positive("look_ahead", self.look_ahead)?;
         Ok(self)
+    }
+}
+
+impl Named for FieldDStar {
+    const NAME: &'static str = "field_d_star";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            resolution: given.number("resolution")?,
+            margin: given.number("margin")?,
+            horizon: given.number("horizon")?,
+            room: given.number("room")?,
+            look_ahead: given.number("look_ahead")?,
+        })
     }
 }
 

@@ -1,9 +1,10 @@
 //! Virtual impedance as a navigation law.
 
+use crate::arguments::{Arguments, Named};
 use crate::error::Result;
 use crate::lanes::{Real, Vector2};
 use crate::laws::impedance::attraction::Attraction;
-use crate::laws::impedance::law::{Impedance, Prepared};
+use crate::laws::impedance::law::{Form, Impedance, Prepared};
 use crate::laws::{Command, Law, LawFamily, Situation};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{PlacedObstacle, Scenario};
@@ -60,6 +61,39 @@ impl ImpedanceFamily {
             impedance: impedance.checked()?,
             attraction: attraction.checked()?,
             ..*self
+        })
+    }
+}
+
+impl Named for ImpedanceFamily {
+    const NAME: &'static str = "virtual_impedance";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let (stiffness, damping) = (given.number("stiffness")?, given.number("damping")?);
+        let impedance = Impedance {
+            form: if given.flag("active")? {
+                Form::Active
+            } else {
+                Form::Conventional
+            },
+            stiffness,
+            damping,
+            safe_distance: given.number("safe_distance")?,
+            speed_limit: given.number("speed_limit")?,
+            reference_stiffness: std::f64::consts::E * stiffness,
+            reference_damping: damping / std::f64::consts::E,
+            clamp: true,
+        };
+        let attraction = Attraction {
+            stiffness: given.number("attraction_stiffness")?,
+            damping: given.number("attraction_damping")?,
+            standoff: 0.0,
+        };
+        Ok(Self {
+            impedance,
+            attraction,
+            reach: given.number("reach")?,
+            view: given.number("view")?,
         })
     }
 }

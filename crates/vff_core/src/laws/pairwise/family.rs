@@ -1,9 +1,9 @@
 //! The compared laws up to their gains.
 
+use crate::arguments::{Arguments, Named};
 use crate::error::{Result, not_negative};
 use crate::lanes::{Real, Vector2, Wide};
 use crate::laws::pairwise::{Neighbor, PairwiseField, PairwiseLaw, Push};
-use crate::laws::{BorensteinKoren, GeCui, Khatib, Masoud};
 use crate::laws::{FieldTerms, LawFamily, Situation};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
@@ -26,18 +26,26 @@ pub trait PairwiseFamily: Copy + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct Pairwise<F>(pub F);
 
+impl<F: Named> Named for Pairwise<F> {
+    const NAME: &'static str = F::NAME;
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        F::made_of(given).map(Self)
+    }
+}
+
 /// The fields, and one that is any of them: the time loop is compiled for it, once for all fields.
 macro_rules! any_field {
-    ($($field:ident),+) => {
+    ($($module:ident::$field:ident),+ $(,)?) => {
         /// Any of the fields.
         #[derive(Clone, Copy, Debug)]
         pub enum AnyField<R> {
-            $(#[doc = concat!("[`", stringify!($field), "`]")] $field($field<R>)),+
+            $(#[doc = concat!("[`", stringify!($field), "`]")] $field(crate::laws::$module::$field<R>)),+
         }
 
-        $(impl<R> From<$field<R>> for AnyField<R> {
+        $(impl<R> From<crate::laws::$module::$field<R>> for AnyField<R> {
             #[inline(always)]
-            fn from(field: $field<R>) -> Self {
+            fn from(field: crate::laws::$module::$field<R>) -> Self {
                 Self::$field(field)
             }
         })+
@@ -68,7 +76,7 @@ macro_rules! any_field {
         }
     };
 }
-any_field!(Masoud, GeCui, Khatib, BorensteinKoren);
+pairwise_laws!(any_field);
 
 impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
     type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, AnyField<R>>;
@@ -105,86 +113,5 @@ impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
     ) -> Result<Self::Law<R, RECORD>> {
         let field = self.0.with_gains(gains, scenario);
         Ok(PairwiseLaw::new(field.into(), scenario))
-    }
-}
-
-impl PairwiseFamily for Masoud {
-    type Field<R: Real> = Masoud<R>;
-    const GAIN_NAMES: &'static [&'static str] =
-        &["attractive_gain", "repulsive_gain", "detour_gain"];
-    const FREE_GAINS: &'static [usize] = &[0];
-
-    fn gains(&self) -> Vec<f64> {
-        vec![self.attractive, self.repulsive, self.detour]
-    }
-
-    #[inline(always)]
-    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Masoud<R> {
-        Masoud {
-            attractive: gains[0],
-            repulsive: gains[1],
-            detour: gains[2],
-        }
-    }
-}
-
-impl PairwiseFamily for GeCui {
-    type Field<R: Real> = GeCui<R>;
-    const GAIN_NAMES: &'static [&'static str] =
-        &["attractive_gain", "repulsive_gain", "gain_ratio"];
-    const FREE_GAINS: &'static [usize] = &[0, 2];
-
-    fn gains(&self) -> Vec<f64> {
-        vec![self.attractive, self.repulsive, self.ratio]
-    }
-
-    #[inline(always)]
-    fn with_gains<R: Real>(&self, gains: &[R], scenario: &Scenario) -> GeCui<R> {
-        GeCui {
-            attractive: gains[0],
-            repulsive: gains[1],
-            ratio: gains[2],
-            max_acceleration: scenario.robot.max_acceleration,
-        }
-    }
-}
-
-impl PairwiseFamily for Khatib {
-    type Field<R: Real> = Khatib<R>;
-    const GAIN_NAMES: &'static [&'static str] =
-        &["attractive_gain", "repulsive_gain", "gain_ratio"];
-    const FREE_GAINS: &'static [usize] = &[0, 2];
-
-    fn gains(&self) -> Vec<f64> {
-        vec![self.attractive, self.repulsive, self.ratio]
-    }
-
-    #[inline(always)]
-    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> Khatib<R> {
-        Khatib {
-            attractive: gains[0],
-            repulsive: gains[1],
-            ratio: gains[2],
-            form: self.form,
-        }
-    }
-}
-
-impl PairwiseFamily for BorensteinKoren {
-    type Field<R: Real> = BorensteinKoren<R>;
-    const GAIN_NAMES: &'static [&'static str] = &["attractive_gain", "repulsive_gain"];
-    const FREE_GAINS: &'static [usize] = &[0];
-
-    fn gains(&self) -> Vec<f64> {
-        vec![self.attractive, self.repulsive]
-    }
-
-    #[inline(always)]
-    fn with_gains<R: Real>(&self, gains: &[R], _scenario: &Scenario) -> BorensteinKoren<R> {
-        BorensteinKoren {
-            attractive: gains[0],
-            repulsive: gains[1],
-            attracted_inside: self.attracted_inside,
-        }
     }
 }

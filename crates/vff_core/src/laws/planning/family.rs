@@ -1,6 +1,7 @@
 //! Planners as laws: robots in lanes, each with a planner of its own, and the numbers that a
 //! search may choose.
 
+use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::lanes::{Lanes, Real, Vector2};
 use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
@@ -36,6 +37,14 @@ pub trait PlannerFamily: Sync {
 /// velocity at the next sample, as far as the limits of the robot allow.
 #[derive(Clone, Copy, Debug)]
 pub struct Planned<F>(pub F);
+
+impl<F: Named> Named for Planned<F> {
+    const NAME: &'static str = F::NAME;
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        F::made_of(given).map(Self)
+    }
+}
 
 /// Planners of robots side by side, one a lane.
 #[derive(Clone, Debug)]

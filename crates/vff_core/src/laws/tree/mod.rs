@@ -6,6 +6,7 @@ pub mod buckets;
 pub mod growth;
 pub mod safety;
 
+use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::laws::planning::Planner;
 use crate::laws::planning::footprint::Footprint;
@@ -100,6 +101,26 @@ impl RapidlyExploringRandomTree {
         positive("room", self.room)?;
         positive("look_ahead", self.look_ahead)?;
         Ok(self)
+    }
+}
+
+impl Named for RapidlyExploringRandomTree {
+    const NAME: &'static str = "rapidly_exploring_random_tree";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        Ok(Self {
+            step: given.number("step")?,
+            goal_probability: given.number("goal_probability")?,
+            waypoint_probability: given.number("waypoint_probability")?,
+            waypoints: given.count("waypoints")?,
+            draws: given.count("draws")?,
+            keeps_path: given.flag("keeps_path")?,
+            margin: given.number("margin")?,
+            horizon: given.number("horizon")?,
+            room: given.number("room")?,
+            look_ahead: given.number("look_ahead")?,
+            safety_draws: given.count("safety_draws")?,
+        })
     }
 }
 
