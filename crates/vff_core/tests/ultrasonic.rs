@@ -11,7 +11,7 @@ use vff_core::run::as_built::{AsBuilt, AsBuiltTrajectory, simulate_as_built};
 use vff_core::run::{AnyLaw, Outcome, RunSummary};
 use vff_core::sensing::measurement::Distribution;
 use vff_core::sensing::sonar::{Beam, Firing, Ranging, SonarArray};
-use vff_core::sensing::{Estimator, PositionError, SensorOptions, Ultrasonic, Vision};
+use vff_core::sensing::{Estimator, PositionError, RobotSensor, SensorOptions, Ultrasonic, Vision};
 use vff_core::world::frame::Frame;
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::{Limits, Obstacle};

@@ -1,5 +1,14 @@
 //! What a robot knows: sensors with noise and latency, cameras, sonar, sound; estimators.
 
+/// Sensors that ride on a robot and are made by name, by their files; [`options`] makes one kind of them.
+macro_rules! robot_sensors {
+    ($list:ident) => {
+        $list! {
+            ultrasonic::Ultrasonic,
+        }
+    };
+}
+
 pub mod camera;
 pub(crate) mod cameras;
 pub mod estimator;
@@ -25,6 +34,6 @@ pub use fixes::{FixNoise, Fixes, Heard};
 pub use lidar::Lidar;
 pub use linearized::{LinearizedCamera, PARAMETERS};
 pub use options::{SensorOptions, sensor_named};
-pub use sensor::{Located, Sensor, Truth};
+pub use sensor::{Located, RobotSensor, Sensor, Truth};
 pub use ultrasonic::Ultrasonic;
 pub use vision::{PositionError, Vision, VisionSensor};

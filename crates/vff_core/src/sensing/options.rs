@@ -1,12 +1,11 @@
-//! The one list of sensors that a robot can have. Neither the loop nor the binding knows one of those that
-//! ride on a robot by name.
+//! One kind for all sensors, from the list in `sensing/mod.rs`. Neither the loop nor the binding knows one of
+//! those that ride on a robot by name.
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result};
 use crate::sensing::cameras::{ObstacleCamera, RobotCamera};
-use crate::sensing::lidar::{Lidar, Scans};
-use crate::sensing::sensor::Sensor;
-use crate::sensing::ultrasonic::{Echoes, Ultrasonic};
+use crate::sensing::lidar::Lidar;
+use crate::sensing::sensor::{RobotSensor, Sensor};
 use crate::sensing::vision::Vision;
 use crate::world::map::StaticMap;
 use crate::world::obstacle::Regions;
@@ -15,49 +14,70 @@ use crate::world::scenario::Scenario;
 /// Makes a sensor of its arguments.
 type Make = fn(&dyn Arguments) -> Result<SensorOptions>;
 
-/// Sensors that ride on a robot, by name.
-const SENSORS: [(&str, Make); 1] = [("ultrasonic", |given| {
-    Ultrasonic::of(given).map(SensorOptions::Ultrasonic)
-})];
+/// A sensor by the place where it is.
+enum Place<'a> {
+    AboveRobot(&'a Vision),
+    AboveObstacles(&'a Vision),
+    OnRobot(&'a dyn RobotSensor),
+}
+
+macro_rules! sensor_options {
+    ($($module:ident::$sensor:ident),+ $(,)?) => {
+        /// A sensor of a robot, or above the scene, before it is put to work.
+        #[derive(Clone, Debug, PartialEq)]
+        #[allow(clippy::large_enum_variant)] // a few for each robot
+        pub enum SensorOptions {
+            /// A camera that sees the robot.
+            RobotCamera(Vision),
+            /// A camera that sees the obstacles that move.
+            ObstacleCamera(Vision),
+            /// A lidar on the robot.
+            Lidar(Lidar),
+            $(#[doc = concat!("[`", stringify!($sensor), "`](crate::sensing::", stringify!($module), ") on the robot.")]
+            $sensor(crate::sensing::$module::$sensor)),+
+        }
+
+        /// Sensors that ride on a robot, by name.
+        const SENSORS: &[(&str, Make)] = &[$((crate::sensing::$module::$sensor::NAME, |given| {
+            crate::sensing::$module::$sensor::made_of(given).map(SensorOptions::$sensor)
+        })),+];
+
+        impl SensorOptions {
+            /// Where it is.
+            fn place(&self) -> Place<'_> {
+                match self {
+                    Self::RobotCamera(vision) => Place::AboveRobot(vision),
+                    Self::ObstacleCamera(vision) => Place::AboveObstacles(vision),
+                    Self::Lidar(lidar) => Place::OnRobot(lidar),
+                    $(Self::$sensor(sensor) => Place::OnRobot(sensor)),+
+                }
+            }
+        }
+    };
+}
+robot_sensors!(sensor_options);
 
 /// The sensor of a name, whose options are valid.
 ///
 /// # Errors
 /// There is no such sensor, an argument is missing, or an option is out of range.
 pub fn sensor_named(name: &str, given: &dyn Arguments) -> Result<SensorOptions> {
-    let known = SENSORS.iter().find(|(known, _)| *known == name);
-    let Some((_, make)) = known else {
-        let names = SENSORS.map(|(name, _)| name).join(", ");
+    let Some((_, make)) = SENSORS.iter().find(|(known, _)| *known == name) else {
+        let names: Vec<_> = SENSORS.iter().map(|(name, _)| *name).collect();
+        let rule = format!("be one of {}", names.join(", "));
         let given = Given::Word(name.to_owned());
-        return Err(Failure::invalid(
-            "sensor",
-            format!("be one of {names}"),
-            given,
-        ));
+        return Err(Failure::invalid("sensor", rule, given));
     };
     make(given)
-}
-
-/// A sensor of a robot, or above the scene, before it is put to work.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant)] // a few for each robot
-pub enum SensorOptions {
-    /// A camera that sees the robot.
-    RobotCamera(Vision),
-    /// A camera that sees the obstacles that move.
-    ObstacleCamera(Vision),
-    /// Ultrasonic sensors on the robot.
-    Ultrasonic(Ultrasonic),
-    /// A lidar on the robot.
-    Lidar(Lidar),
 }
 
 impl SensorOptions {
     /// What stands around it beside the obstacles of a scenario.
     pub(crate) fn map(&self) -> Option<&StaticMap> {
-        match self {
-            Self::Lidar(lidar) => Some(&lidar.map),
-            Self::RobotCamera(_) | Self::ObstacleCamera(_) | Self::Ultrasonic(_) => None,
+        if let Self::Lidar(lidar) = self {
+            Some(&lidar.map)
+        } else {
+            None
         }
     }
 
@@ -72,12 +92,11 @@ impl SensorOptions {
         mark: f64,
         index: u64,
     ) -> Result<Box<dyn Sensor>> {
-        Ok(match self {
-            Self::RobotCamera(vision) => Box::new(RobotCamera::new(scenario, vision, mark)?),
-            Self::ObstacleCamera(vision) => Box::new(ObstacleCamera::new(scenario, vision)?),
-            Self::Ultrasonic(array) => Box::new(Echoes::new(scenario, array, index)?),
-            Self::Lidar(lidar) => Box::new(Scans::new(scenario, lidar, index)?),
-        })
+        match self.place() {
+            Place::AboveRobot(vision) => Ok(Box::new(RobotCamera::new(scenario, vision, mark)?)),
+            Place::AboveObstacles(vision) => Ok(Box::new(ObstacleCamera::new(scenario, vision)?)),
+            Place::OnRobot(sensor) => sensor.at_work(scenario, index),
+        }
     }
 
     /// Regions of what it sees in a scenario, and the distance from the center of the robot within
@@ -86,19 +105,15 @@ impl SensorOptions {
     /// # Errors
     /// The regions cannot be computed.
     pub fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
-        match self {
-            Self::RobotCamera(_) | Self::ObstacleCamera(_) => Ok(None),
-            Self::Ultrasonic(array) => Ok(Some((array.regions(scenario)?, array.reach()))),
-            Self::Lidar(lidar) => Ok(Some((lidar.regions(scenario)?, lidar.range_max))),
+        match self.place() {
+            Place::AboveRobot(_) | Place::AboveObstacles(_) => Ok(None),
+            Place::OnRobot(sensor) => Ok(Some((sensor.regions(scenario)?, sensor.reach()))),
         }
     }
 
     /// Whether it is a camera, which measures in place of the scenario.
     #[must_use]
     pub fn is_camera(&self) -> bool {
-        match self {
-            Self::RobotCamera(_) | Self::ObstacleCamera(_) => true,
-            Self::Ultrasonic(_) | Self::Lidar(_) => false,
-        }
+        !matches!(self.place(), Place::OnRobot(_))
     }
 }

@@ -1,9 +1,11 @@
 //! What every sensor can do: watch the scene, and tell the controller of the robot or of obstacles.
 
+use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::world::frame::{Frame, Heading};
 use crate::world::geometry::{Body, RobotState};
-use crate::world::scenario::PlacedObstacle;
+use crate::world::obstacle::Regions;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 use crate::world::shape::PlacedShape;
 
 /// The scene as it is.
@@ -97,4 +99,23 @@ pub trait Sensor: Send {
 
     /// Tells how old at a time in s what it told of these obstacles is; of now, unless it knows better.
     fn date(&self, _time: f64, _ages: &mut [f64]) {}
+}
+
+/// A sensor that rides on a robot, before it is put to work: its readings are points of what is around,
+/// with regions of their own.
+pub trait RobotSensor {
+    /// The sensor at work in a scenario, the one with an index among several.
+    ///
+    /// # Errors
+    /// An option is out of range in this scenario.
+    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>>;
+
+    /// Regions of what it reads, for the robot of a scenario.
+    ///
+    /// # Errors
+    /// As [`crate::world::region::radii`].
+    fn regions(&self, scenario: &Scenario) -> Result<Regions>;
+
+    /// Distance from the center of the robot within which it reads, in m.
+    fn reach(&self) -> f64;
 }

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 use numeric::random::Stream;
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Named};
 use crate::error::{Result, not_negative};
-use crate::sensing::sensor::{Sensor, Truth};
+use crate::sensing::sensor::{RobotSensor, Sensor, Truth};
 use crate::sensing::sonar::{Beam, Firing, Ranging, Sonar, SonarArray};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
@@ -31,9 +31,10 @@ pub struct Ultrasonic {
     pub assumed_speed: f64,
 }
 
-impl Ultrasonic {
-    /// An array of its arguments.
-    pub(crate) fn of(given: &dyn Arguments) -> Result<Self> {
+impl Named for Ultrasonic {
+    const NAME: &'static str = "ultrasonic";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
         let ranging = Ranging {
             least: given.number("least_range")?,
             most: given.number("most_range")?,
@@ -51,7 +52,9 @@ impl Ultrasonic {
         }
         .checked()
     }
+}
 
+impl Ultrasonic {
     /// Returns the array if its speeds are in range.
     ///
     /// # Errors
@@ -61,13 +64,15 @@ impl Ultrasonic {
         not_negative("assumed_speed", self.assumed_speed)?;
         Ok(self)
     }
+}
 
-    /// Regions of an echo for the robot of a scenario; an array that fires in turn is late by a
-    /// round.
-    ///
-    /// # Errors
-    /// As [`region::radii`].
-    pub fn regions(&self, scenario: &Scenario) -> Result<Regions> {
+impl RobotSensor for Ultrasonic {
+    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
+        Ok(Box::new(Echoes::new(scenario, self, index)?))
+    }
+
+    /// An array that fires in turn is late by a round.
+    fn regions(&self, scenario: &Scenario) -> Result<Regions> {
         let round = self.array.mounts().len()
             / self
                 .array
@@ -83,10 +88,8 @@ impl Ultrasonic {
         region::radii(&scenario.limits(), &point, period, None, &sensing)
     }
 
-    /// Distance from the center of the robot within which every sensor reads echoes along its
-    /// axis, in m.
-    #[must_use]
-    pub fn reach(&self) -> f64 {
+    /// Every sensor reads echoes along its axis there.
+    fn reach(&self) -> f64 {
         let forward = |mount: &Frame| mount.inward(mount.position).x;
         let mounts = self.array.mounts().iter();
         self.array.ranging().reach() + mounts.map(forward).fold(f64::INFINITY, f64::min)
@@ -94,7 +97,7 @@ impl Ultrasonic {
 }
 
 /// An array at work.
-pub(crate) struct Echoes {
+struct Echoes {
     assumed_speed: f64,
     obstacles: Vec<PlacedObstacle>,
     sonar: Sonar,

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 use numeric::error::at_most;
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::sensing::sensor::{RobotSensor, Sensor};
 use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
 use crate::world::map::{Beyond, MOST_POINTS, StaticMap, checked_kappa};
@@ -170,13 +171,15 @@ impl Lidar {
             }
         }
     }
+}
 
-    /// Regions of a boundary point for the robot of a scenario: at the wall and `influence` ahead
-    /// of it, or sized for the largest speed of what is seen.
-    ///
-    /// # Errors
-    /// As [`region::radii`].
-    pub fn regions(&self, scenario: &Scenario) -> Result<Regions> {
+impl RobotSensor for Lidar {
+    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
+        Ok(Box::new(Scans::new(scenario, self, index)?))
+    }
+
+    /// At the wall and `influence` ahead of it, or sized for the largest speed of what is seen.
+    fn regions(&self, scenario: &Scenario) -> Result<Regions> {
         let limits = scenario.limits();
         if self.max_speed == 0.0 {
             return Ok(Regions {
@@ -186,6 +189,10 @@ impl Lidar {
         }
         let (point, period) = (Obstacle::point(self.max_speed), scenario.control_period());
         region::radii(&limits, &point, period, None, &Sensing::default())
+    }
+
+    fn reach(&self) -> f64 {
+        self.range_max
     }
 }
 

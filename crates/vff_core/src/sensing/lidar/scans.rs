@@ -5,7 +5,7 @@ use numeric::random::Stream;
 
 use super::{Lidar, boundary_points_of};
 use crate::error::{Failure, Given, Result};
-use crate::sensing::sensor::{Sensor, Truth};
+use crate::sensing::sensor::{RobotSensor, Sensor, Truth};
 use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
