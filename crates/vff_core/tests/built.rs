@@ -1,10 +1,11 @@
 //! Robots as built: the ideal one is the point mass, and the others reach the goal.
 
 mod configurations;
+mod pairs;
 
 use configurations::{crossing, law, limits, obstacles};
+use pairs::MASOUD;
 use proptest::prelude::*;
-use vff_core::laws::Masoud;
 use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::laws::pairwise::Pairwise;
 use vff_core::robots::DifferentialDriveRobot;
@@ -29,12 +30,7 @@ fn field() -> AnyLaw {
 }
 
 fn laws() -> [AnyLaw; 2] {
-    let masoud = Masoud {
-        attractive: 5.0,
-        repulsive: 24.0,
-        detour: 36.0,
-    };
-    [field(), Pairwise(masoud).into()]
+    [field(), Pairwise(MASOUD).into()]
 }
 
 fn never() -> bool {

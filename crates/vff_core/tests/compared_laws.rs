@@ -1,8 +1,10 @@
 //! Laws of other authors: published figures, lanes, and what their forces must do.
 
 mod configurations;
+mod pairs;
 
 use configurations::{crossing, law, limits, obstacles};
+use pairs::{BORENSTEIN_KOREN, GE_CUI, KHATIB, MASOUD};
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::laws::field_d_star::FieldDStar;
@@ -28,29 +30,6 @@ const TIME: f64 = 0.01;
 const DISTANCE: f64 = 0.003;
 /// Relative: some roundings.
 const ROUNDING: f64 = 1e-14;
-
-const MASOUD: Masoud = Masoud {
-    attractive: 5.0,
-    repulsive: 24.0,
-    detour: 36.0,
-};
-const GE_CUI: GeCui = GeCui {
-    attractive: 1.0,
-    repulsive: 14.2,
-    ratio: 0.75,
-    max_acceleration: 10.0,
-};
-const KHATIB: Khatib = Khatib {
-    attractive: 3.0,
-    repulsive: 0.5,
-    ratio: 1.0,
-    form: KhatibForm::Gradient,
-};
-const BORENSTEIN_KOREN: BorensteinKoren = BorensteinKoren {
-    attractive: 4.0,
-    repulsive: 0.7,
-    attracted_inside: true,
-};
 
 fn run<F>(scenario: &Scenario, field: F) -> RunSummary
 where
@@ -290,45 +269,38 @@ fn lanes_give_the_bits_of_single_runs() {
         .collect();
     let field = |attractive| law([attractive, 20.0, 17.0, 0.25], Stabilizing::Off);
     batches_agree(field(3.0), &points, &strengths.map(|k| field(k).into()));
-    let points: Vec<f64> = strengths.iter().flat_map(|k| [*k, 24.0, 36.0]).collect();
-    let masoud = |attractive| {
-        Pairwise(Masoud {
-            attractive,
-            ..MASOUD
-        })
-        .into()
+    let masoud = |attractive| Masoud {
+        attractive,
+        ..MASOUD
     };
-    batches_agree(Pairwise(MASOUD), &points, &strengths.map(masoud));
-    let points: Vec<f64> = strengths.iter().flat_map(|k| [*k, 14.2, 0.75]).collect();
-    let ge_cui = |attractive| {
-        Pairwise(GeCui {
-            attractive,
-            ..GE_CUI
-        })
-        .into()
+    pairs_agree(strengths.map(masoud));
+    let ge_cui = |attractive| GeCui {
+        attractive,
+        ..GE_CUI
     };
-    batches_agree(Pairwise(GE_CUI), &points, &strengths.map(ge_cui));
-    let points: Vec<f64> = strengths.iter().flat_map(|k| [*k, 0.5, 1.0]).collect();
-    let khatib = |attractive| {
-        Pairwise(Khatib {
-            attractive,
-            ..KHATIB
-        })
-        .into()
+    pairs_agree(strengths.map(ge_cui));
+    let khatib = |attractive| Khatib {
+        attractive,
+        ..KHATIB
     };
-    batches_agree(Pairwise(KHATIB), &points, &strengths.map(khatib));
-    let points: Vec<f64> = strengths.iter().flat_map(|k| [*k, 0.7]).collect();
-    let virtual_force = |attractive| {
-        Pairwise(BorensteinKoren {
-            attractive,
-            ..BORENSTEIN_KOREN
-        })
-        .into()
+    pairs_agree(strengths.map(khatib));
+    let koren = |attractive| BorensteinKoren {
+        attractive,
+        ..BORENSTEIN_KOREN
     };
+    pairs_agree(strengths.map(koren));
+}
+
+/// A law with several gain sets, in a batch and each alone.
+fn pairs_agree<F: PairwiseFamily>(fields: [F; 9])
+where
+    AnyLaw: From<Pairwise<F>>,
+{
+    let points: Vec<f64> = fields.iter().flat_map(PairwiseFamily::gains).collect();
     batches_agree(
-        Pairwise(BORENSTEIN_KOREN),
+        Pairwise(fields[0]),
         &points,
-        &strengths.map(virtual_force),
+        &fields.map(|field| Pairwise(field).into()),
     );
 }
 

@@ -4,17 +4,19 @@
 mod bitwise;
 mod draws;
 mod fields;
+mod pairs;
 
 use bitwise::computed;
 use draws::Draws;
 use fields::field;
+use pairs::{BORENSTEIN_KOREN, GE_CUI, KHATIB, MASOUD};
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::impedance::{Attraction, Form, Impedance, ImpedanceFamily};
 use vff_core::laws::pairwise::Pairwise;
 use vff_core::laws::planning::family::Planned;
 use vff_core::laws::reciprocal::ReciprocalAvoidance;
 use vff_core::laws::velocity_obstacle::VelocityObstacle;
-use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Masoud};
+use vff_core::laws::{BorensteinKoren, GeCui, Khatib, Masoud};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::Weights;
 use vff_core::run::{
@@ -240,26 +242,25 @@ fn every_other_law() {
     };
     let (attractive, ratio) = (3.0, 0.25);
     let khatib = Khatib {
-        attractive,
         repulsive: 0.3,
         ratio,
-        form: KhatibForm::Gradient,
+        ..KHATIB
     };
     let koren = BorensteinKoren {
         attractive,
         repulsive: 1.0,
-        attracted_inside: true,
+        ..BORENSTEIN_KOREN
     };
     let masoud = Masoud {
-        attractive,
         repulsive: 5.0,
         detour: 5.0,
+        ..MASOUD
     };
     let ge_cui = GeCui {
         attractive,
         repulsive: 0.3,
         ratio,
-        max_acceleration: f64::NAN,
+        ..GE_CUI
     };
     assert_same(Pairwise(khatib), &scenes, run);
     assert_same(Pairwise(koren), &scenes, run);

@@ -2,9 +2,11 @@
 
 mod bitwise;
 mod fields;
+mod pairs;
 
 use bitwise::computed;
 use fields::field;
+use pairs::{BORENSTEIN_KOREN, GE_CUI, KHATIB, MASOUD};
 use vff_core::laws::field::stabilizing::{Cap, Stabilizing};
 use vff_core::laws::pairwise::Pairwise;
 use vff_core::laws::planning::family::Planned;
@@ -249,26 +251,26 @@ fn every_way_to_step() {
 fn every_law_of_forces() {
     let scenes = scenes(3, rules(), 37);
     let khatib = |form| Khatib {
-        attractive: 3.0,
         repulsive: 0.3,
         ratio: 0.25,
         form,
+        ..KHATIB
     };
     let koren = |attracted_inside| BorensteinKoren {
-        attractive: 3.0,
         repulsive: 1.0,
         attracted_inside,
+        ..BORENSTEIN_KOREN
     };
     let masoud = Masoud {
-        attractive: 3.0,
         repulsive: 5.0,
         detour: 5.0,
+        ..MASOUD
     };
     let ge_cui = GeCui {
         attractive: 3.0,
         repulsive: 0.3,
         ratio: 0.25,
-        max_acceleration: f64::NAN,
+        ..GE_CUI
     };
     let laws: [AnyLaw; 6] = [
         Pairwise(khatib(KhatibForm::Gradient)).into(),

@@ -1,8 +1,10 @@
 //! Velocity obstacles: no contact with anything that keeps its velocity, whichever rule selects.
 
 mod draws;
+mod pairs;
 
 use draws::Draws;
+use pairs::BORENSTEIN_KOREN;
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::BorensteinKoren;
 use vff_core::laws::pairwise::Pairwise;
@@ -31,7 +33,7 @@ const SPEED: f64 = 0.7;
 const STRAIGHT: BorensteinKoren = BorensteinKoren {
     attractive: 100.0,
     repulsive: 0.0,
-    attracted_inside: true,
+    ..BORENSTEIN_KOREN
 };
 
 fn run(scenario: &Scenario, law: impl Into<AnyLaw>) -> RunSummary {
