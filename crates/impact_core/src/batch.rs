@@ -40,13 +40,7 @@ impl FieldSet {
 
     /// What has to be searched for them.
     pub(crate) fn searches(&self) -> Searches {
-        let asked = &self.0;
-        Searches {
-            mean: asked.mean_head_acceleration_g,
-            injury: [asked.hic15, asked.hic36],
-            held: asked.average_3ms_g || asked.clip_3ms_g,
-            powers: asked.peak_power_manipulator || asked.peak_power_foam,
-        }
+        self.0.searches()
     }
 }
 

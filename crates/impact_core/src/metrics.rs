@@ -36,6 +36,28 @@ impl Searches {
         powers: true,
     };
 
+    /// Nothing but peaks.
+    pub const NONE: Self = Self {
+        mean: false,
+        injury: [false; 2],
+        held: false,
+        powers: false,
+    };
+
+    /// The same with what one more criterion needs.
+    #[must_use]
+    fn with(mut self, search: Search) -> Self {
+        match search {
+            Search::Peaks => {}
+            Search::Mean => self.mean = true,
+            Search::Injury15 => self.injury[0] = true,
+            Search::Injury36 => self.injury[1] = true,
+            Search::Held => self.held = true,
+            Search::Powers => self.powers = true,
+        }
+        self
+    }
+
     /// Whether nothing but peaks is wanted.
     #[must_use]
     pub fn only_peaks(self) -> bool {
@@ -47,6 +69,23 @@ impl Searches {
     pub fn windows(self) -> bool {
         self.held || self.injury != [false; 2]
     }
+}
+
+/// What a criterion follows from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Search {
+    /// The peaks and the impact period, which are always known.
+    Peaks,
+    /// Mean acceleration.
+    Mean,
+    /// Windows up to 15 ms.
+    Injury15,
+    /// Windows up to 36 ms.
+    Injury36,
+    /// Windows of 3 ms.
+    Held,
+    /// Powers.
+    Powers,
 }
 
 /// What is known about a criterion.
@@ -65,7 +104,7 @@ pub struct Criterion {
 }
 
 macro_rules! criteria {
-    ($($field:ident: $label:literal, $unit:literal, $symbol:literal, $group:ident;)*) => {
+    ($($field:ident: $label:literal, $unit:literal, $symbol:literal, $search:ident;)*) => {
         /// A value for each criterion: a number, a number for each lane, a column, derivatives.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Loads<T> {
@@ -78,7 +117,7 @@ macro_rules! criteria {
             label: $label,
             unit: $unit,
             symbol: $symbol,
-            is_peak: is_peak!($group),
+            is_peak: matches!(Search::$search, Search::Peaks),
         },)*];
 
         impl<T> Loads<T> {
@@ -118,6 +157,18 @@ macro_rules! criteria {
                 Loads { $($field: &mut self.$field,)* }
             }
         }
+
+        impl Loads<bool> {
+            /// What has to be searched for the criteria that are asked for.
+            #[must_use]
+            pub(crate) fn searches(&self) -> Searches {
+                let mut needed = Searches::NONE;
+                $(if self.$field {
+                    needed = needed.with(Search::$search);
+                })*
+                needed
+            }
+        }
     };
 }
 
@@ -126,29 +177,21 @@ macro_rules! count {
     ($head:ident $($tail:ident)*) => { 1 + count!($($tail)*) };
 }
 
-macro_rules! is_peak {
-    (peak) => {
-        true
-    };
-    (course) => {
-        false
-    };
-}
-
-// To add a criterion is to add a line here; the compiler then asks for it wherever loads are computed.
+// To add a criterion is to add a line here, with what it follows from; the compiler then asks for it
+// wherever loads are computed.
 criteria! {
-    peak_head_acceleration: "largest acceleration of the head", "m/s^2", "a_h,max", peak;
-    peak_head_acceleration_g: "largest acceleration of the head", "g", "a_h,max", peak;
-    mean_head_acceleration_g: "mean acceleration of the head over the impact", "g", "", course;
-    peak_contact_force: "largest contact force", "N", "f_c,max", peak;
-    max_compression: "largest compression of the foam", "m", "eps_max", peak;
-    impact_duration: "impact period, to the first zero of the head's acceleration", "s", "", peak;
-    hic15: "head injury criterion, windows up to 15 ms", "", "HIC", course;
-    hic36: "head injury criterion, windows up to 36 ms", "", "HIC", course;
-    average_3ms_g: "largest mean over 3 ms", "g", "", course;
-    clip_3ms_g: "largest level held for 3 ms", "g", "", course;
-    peak_power_manipulator: "largest power f_c x_r' from the manipulator into the foam", "W", "", course;
-    peak_power_foam: "largest power f_c eps' of compression", "W", "", course;
+    peak_head_acceleration: "largest acceleration of the head", "m/s^2", "a_h,max", Peaks;
+    peak_head_acceleration_g: "largest acceleration of the head", "g", "a_h,max", Peaks;
+    mean_head_acceleration_g: "mean acceleration of the head over the impact", "g", "", Mean;
+    peak_contact_force: "largest contact force", "N", "f_c,max", Peaks;
+    max_compression: "largest compression of the foam", "m", "eps_max", Peaks;
+    impact_duration: "impact period, to the first zero of the head's acceleration", "s", "", Peaks;
+    hic15: "head injury criterion, windows up to 15 ms", "", "HIC", Injury15;
+    hic36: "head injury criterion, windows up to 36 ms", "", "HIC", Injury36;
+    average_3ms_g: "largest mean over 3 ms", "g", "", Held;
+    clip_3ms_g: "largest level held for 3 ms", "g", "", Held;
+    peak_power_manipulator: "largest power f_c x_r' from the manipulator into the foam", "W", "", Powers;
+    peak_power_foam: "largest power f_c eps' of compression", "W", "", Powers;
 }
 
 /// What a row of metrics means.

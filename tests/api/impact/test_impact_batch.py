@@ -233,7 +233,9 @@ def test_peaks_only_leaves_the_other_fields_nan() -> None:
     assert peaks.status.tolist() == plain.status.tolist()
 
 
-@pytest.mark.parametrize("outputs", [["hic15"], ["clip_3ms_g", "hic36"], ["peak_power_foam", "max_compression"], []])
+@pytest.mark.parametrize(
+    "outputs", [*([name] for name in NUMBERS), ["clip_3ms_g", "hic36"], ["peak_power_foam", "max_compression"], []]
+)
 def test_only_the_criteria_asked_for_are_computed(outputs: list[str]) -> None:
     plain, few = many(), many(outputs=outputs)
     for name in NUMBERS:
