@@ -12,8 +12,8 @@ from hrsafety import navigation as nav
 from hrsafety.navigation.laws.known import LAWS as DECLARED
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "guides" / "laws.md").read_text(encoding="utf-8")
-ROW = re.compile(r"^\| `(\w+)` \| `(\w+)` \| (\S+) \| (.*?) ?\| (\w+) \| (.+?) \|$", re.MULTILINE)
-ROWS = {(law, name): (default, unit, origin) for law, name, default, unit, origin, _ in ROW.findall(GUIDE)}
+ROW = re.compile(r"^\| `(\w+)` \| `(\w+)` \| (?:\$(\S+)\$ )?\| (\S+) \| (.*?) ?\| (\w+) \| (.+?) \|$", re.MULTILINE)
+ROWS = {(law, name): rest for law, name, *rest, _ in ROW.findall(GUIDE)}
 LAWS = tuple(DECLARED.values())
 
 
@@ -23,9 +23,10 @@ def test_guide_lists_the_defaults_of_the_law(law: type[nav.Law]) -> None:
     explained_elsewhere = law is nav.VirtualForceField  # all but its gains
     fields = [field.name for field in dataclasses.fields(default) if field.init]  # type: ignore[arg-type]  # every law is a dataclass
     for name in law.GAIN_NAMES if explained_elsewhere else fields:
-        shown, unit, _ = ROWS[law.__name__, name]
+        symbol, shown, unit, _ = ROWS[law.__name__, name]
         assert shown == str(getattr(default, name)), name
         assert unit == law.GAIN_UNITS.get(name, ""), name
+        assert symbol.replace("\\", "") == law.GAIN_SYMBOLS.get(name, "") or name not in law.GAIN_NAMES, name
 
 
 def test_guide_lists_nothing_that_is_not_there() -> None:
@@ -34,5 +35,5 @@ def test_guide_lists_nothing_that_is_not_there() -> None:
 
 
 def test_every_default_has_an_origin_that_the_guide_explains() -> None:
-    origins = {origin for _, _, origin in ROWS.values()}
+    origins = {origin for *_, origin in ROWS.values()}
     assert origins <= {"source", "authors", "search", "choice"}

@@ -123,11 +123,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     - ``[safe]``, which puts parts around the law: ``preferred_speed``, ``takeover`` and
       ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` with
       the fields of `Shield` and `Yielding`;
-    - ``[law]`` with ``type`` and the fields of its class: ``"virtual_force_field"``,
-      ``"khatib"``, ``"borenstein_koren"``, ``"masoud"``, ``"ge_cui"``, ``"virtual_impedance"``,
-      ``"velocity_obstacle"``, ``"rapidly_exploring_random_tree"``, ``"field_d_star"``,
-      ``"optimal_reciprocal_collision_avoidance"``, or a short name: ``"vff"``, ``"vo"``, ``"rrt"``,
-      ``"dstar"``, ``"orca"``.
+    - ``[law]`` with ``type``, the name of a law such as ``"virtual_force_field"`` or a short name such as
+      ``"vff"``, and the fields of its class. An unknown name is an error that lists all.
 
     Parameters
     ----------
