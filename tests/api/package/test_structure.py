@@ -20,6 +20,7 @@ from typing import Any
 import pytest
 
 import hrsafety
+from api.glossary import identifiers
 from api.namespaces import BELOW, places, public
 from hrsafety import arms, contact, impact, reactive, standards
 from hrsafety import navigation as nav
@@ -321,16 +322,9 @@ def public_fields() -> list[tuple[str, str]]:
     return [(name, field) for name, kind in kinds.items() if inspect.isclass(kind) for field in fields_of(kind)]
 
 
-@cache
-def glossary() -> set[str]:
-    text = (REPOSITORY / "docs" / "theory" / "symbols.md").read_text(encoding="utf-8")
-    rows = [line for line in text.splitlines() if line.startswith("|")]
-    return {word for row in rows for word in re.findall(r"`([A-Za-z_][\w]*)`", row)}
-
-
 @pytest.mark.parametrize(("kind", "field"), public_fields())
 def test_public_field_is_in_the_glossary(kind: str, field: str) -> None:
-    assert field in glossary(), f"{kind}.{field}"
+    assert field in identifiers(), f"{kind}.{field}"
 
 
 # ---- docstrings -----------------------------------------------------------------------------

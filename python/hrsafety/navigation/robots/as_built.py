@@ -86,9 +86,9 @@ class AsBuilt(Parameters):
     robot_vision, obstacle_vision : Vision or None
         Cameras that see the robot, and the obstacles that move; an obstacle that no frame has
         shown yet is not there. ``None``: known exactly. Instead of the scenario's measurement.
-    sensors : sequence of Ultrasonic or Lidar
-        Sensors on the robot. With one, obstacles are known by what it reads, and by the
-        camera or the measurement of obstacles where there is one too; nothing else is known of them.
+    sensors : sequence of RobotSensor
+        Sensors on the robot, such as `Ultrasonic` or `Lidar`. With one, obstacles are known by what it reads, and by
+        the camera or the measurement of obstacles where there is one too; nothing else is known of them.
     pose_fusion : PoseFusion
         How a two-wheel robot knows its pose.
 
