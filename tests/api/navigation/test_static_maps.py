@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 import json
 import math
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -246,6 +248,16 @@ def test_paths_and_local_goals_keep_away_from_the_map() -> None:
     assert TRAP.segment_clearance((2.6, 0.5), goal.point) >= 0.25 - 1e-9
     assert plan.local_goal((50.0, 0.0)) is None
     assert plan.path((50.0, 0.0)).shape == (0, 2)
+
+
+@pytest.mark.parametrize("again", [lambda plan: pickle.loads(pickle.dumps(plan)), copy.copy, copy.deepcopy])
+def test_a_plan_is_made_again_where_it_is_pickled_or_copied(again: Callable[[nav.maps.Plan], nav.maps.Plan]) -> None:
+    plan = trap_plan()
+    other, points = again(plan), np.array([(0, 0), (2.6, 0.5), (3.5, 1.9), (50.0, 0.0)])
+    assert other == plan
+    np.testing.assert_array_equal(other.cost(points), plan.cost(points))
+    np.testing.assert_array_equal(other.path((2.6, 0.5)), plan.path((2.6, 0.5)))
+    assert len(pickle.dumps(plan)) < 10_000
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ class LocalGoal(NamedTuple):
 class Plan:
     """Cost-to-go of a robot in a static map, for one goal; it has no local minimum.
 
-    Made by `Guide.plan`.
+    Made by `Guide.plan`. Pickled as guide and map: the plan is made again where it is loaded, with the same bits.
 
     Parameters
     ----------
@@ -64,6 +64,12 @@ class Plan:
     goal: Pair
     radius: float
     _native: _hrsafety.Plan = field(repr=False, compare=False)
+    _made_from: tuple[Guide, StaticMap, Pair] = field(repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes the plan again: its costs may fill many megabytes."""
+        guide, map, start = self._made_from
+        return _planned, (guide, map, self.radius, start, self.goal)
 
     def cost(self, point: npt.ArrayLike) -> Any:
         """Return the cost from points to the goal.
@@ -216,4 +222,8 @@ class Guide(Parameters):
         native = instance("map", map, StaticMap)._native
         size = number("radius", radius)
         ends = checked_place("start", start), checked_place("goal", goal)
-        return Plan(ends[1], size, self._native.plan(native, size, *ends))
+        return Plan(ends[1], size, self._native.plan(native, size, *ends), (self, map, ends[0]))
+
+
+def _planned(guide: Guide, map: StaticMap, radius: float, start: Pair, goal: Pair) -> Plan:
+    return guide.plan(map, radius=radius, start=start, goal=goal)
