@@ -14,7 +14,7 @@ from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 
-__all__ = ["certainly_closed", "distance", "stands"]
+__all__ = ["certainly_closed", "depth", "distance", "stands"]
 
 # Cells per radius of the robot, and most cells: beyond that the cells get larger.
 FINENESS = 5
@@ -61,13 +61,43 @@ def distance(obstacle: Obstacle, point: Pair) -> float:
     return float(_distances(obstacle, np.array([point[0]]), np.array([point[1]]))[0, 0])
 
 
+def depth(obstacle: Obstacle, point: Pair, radius: float) -> float:
+    """Return how far a robot has to go until it no longer overlaps an obstacle at time 0.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        One that stands.
+    point : tuple of float
+        Where the center of the robot is, in m.
+    radius : float
+        Radius of the robot in m.
+
+    Returns
+    -------
+    float
+        Way of its center to the nearest place at which it touches the obstacle, in m; negative outside: the
+        distance of the surfaces.
+    """
+    inside = 0.0
+    if isinstance(obstacle, Box):
+        along, across = _beyond_sides(obstacle, np.array([point[0]]), np.array([point[1]]))
+        inside = max(-max(along.item(), across.item()), 0.0)
+    return obstacle.contact_distance(radius) - distance(obstacle, point) + inside
+
+
+def _beyond_sides(box: Box, x: Array, y: Array) -> tuple[Array, Array]:
+    """Return how far the crossings of columns x and rows y lie beyond the sides of a rectangle, negative within."""
+    cos, sin = math.cos(box.heading), math.sin(box.heading)
+    right, up = x[None, :] - box.center[0], y[:, None] - box.center[1]
+    along = np.abs(right * cos + up * sin) - 0.5 * box.length
+    return along, np.abs(up * cos - right * sin) - 0.5 * box.width
+
+
 def _distances(obstacle: Obstacle, x: Array, y: Array) -> Array:
     """Return distances at the crossings of columns x and rows y."""
     if isinstance(obstacle, Box):
-        cos, sin = math.cos(obstacle.heading), math.sin(obstacle.heading)
-        right, up = x[None, :] - obstacle.center[0], y[:, None] - obstacle.center[1]
-        along = np.abs(right * cos + up * sin) - 0.5 * obstacle.length
-        across = np.abs(up * cos - right * sin) - 0.5 * obstacle.width
+        along, across = _beyond_sides(obstacle, x, y)
         return np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0))
     center = _center(obstacle)
     return np.hypot(x[None, :] - center[0], y[:, None] - center[1])

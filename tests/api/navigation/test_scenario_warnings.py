@@ -213,6 +213,34 @@ def test_a_closed_box_around_start_or_goal(ends: tuple[nav.obstacles.Pair, nav.o
     assert codes(nav.Scenario(start=start, goal=goal, obstacles=box(3.0, gap=0.7))) == []
 
 
+@pytest.mark.parametrize(
+    ("thing", "depth"),
+    [
+        (nav.Disc(center=(0.05, 0.0), radius=0.4, critical_radius=0.7, active_radius=0.9), 0.55),
+        (nav.Human(start=(0.0, 0.1), velocity=(0.0, 0.0), radius=0.4), 0.5),
+        (nav.Rectangle(center=(0.2, 0.0), length=0.8, width=0.6), 0.4),
+        (nav.Rectangle(center=(0.0, 0.3), length=0.8, width=0.4, heading=0.3), None),
+    ],
+)
+def test_a_goal_inside_something_that_stands_is_told_to_planners(thing: nav.Obstacle, depth: float | None) -> None:
+    place = nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=[thing], time_limit=15.0)
+    for law in (
+        nav.OptimalReciprocalCollisionAvoidance(),
+        nav.VelocityObstacle(),
+        nav.RapidlyExploringRandomTree(),
+        nav.FieldDStar(),
+    ):
+        run = nav.simulate(place, law)
+        told = [each for each in run.warnings if each.code == "closed_in"]
+        if depth is None:  # 0.105 m: the robot arrives within its tolerance of 0.12 m
+            assert not told
+            continue
+        assert run.outcome != "arrived"
+        assert [each.subject for each in told] == ["goal"]
+        assert f"goal lies {depth:g} m within obstacles[0]" in told[0].message
+        assert f"move it by {depth:g} m" in told[0].message
+
+
 def test_a_ring_of_discs_closes_a_way_and_is_never_seen_where_there_is_a_gap() -> None:
     angles = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 

@@ -26,6 +26,7 @@ ROUNDING = 1e-9
 BELOW_SAFE = "region_below_safe"
 IN_CRITICAL_REGION = "start_in_critical_region"
 GOAL_IN_REGION = "goal_in_active_region"
+CLOSED_IN = "closed_in"
 
 
 class Described(Protocol):
@@ -252,18 +253,32 @@ def _reach(scenario: Described) -> Iterator[ResultWarning]:
 
 
 def _closed(scenario: Described) -> Iterator[ResultWarning]:
-    """Yield stationary obstacles that leave no way for the robot."""
+    """Yield stationary obstacles that leave no way for the robot, or no place near the goal."""
+    radius = scenario.robot.radius
+    for index, obstacle in enumerate(scenario.obstacles):
+        if not free_space.stands(obstacle):
+            continue
+        depth = free_space.depth(obstacle, scenario.goal, radius)
+        if depth > scenario.arrival_tolerance:
+            yield ResultWarning(
+                CLOSED_IN,
+                "goal",
+                f"goal lies {depth:.4g} m within obstacles[{index}] ({type(obstacle).__name__}), grown by the radius "
+                f"of the robot, {radius:g} m: the robot touches it before it is within arrival_tolerance = "
+                f"{scenario.arrival_tolerance:g} m; move it by {_up(depth):g} m",
+            )
+            return
     closed = free_space.certainly_closed(
         scenario.obstacles,
         start=scenario.start,
         goal=scenario.goal,
-        radius=scenario.robot.radius,
+        radius=radius,
         arrival_tolerance=scenario.arrival_tolerance,
     )
     if closed:
         yield ResultWarning(
-            "closed_in",
+            CLOSED_IN,
             "obstacles",
-            f"standing obstacles leave no way from start to goal for a robot of radius {scenario.robot.radius:g} m; "
+            f"standing obstacles leave no way from start to goal for a robot of radius {radius:g} m; "
             "move start, goal or an obstacle",
         )
