@@ -19,6 +19,7 @@ from hrsafety import arms, contact, standards
 from hrsafety.cli import main
 from hrsafety.cli.cell import report as cell_report
 from hrsafety.cli.cell.file import load
+from hrsafety.cli.file_kinds import starter
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 ARM, BASE = EXAMPLES / "contact_arm.toml", EXAMPLES / "contact_base.toml"
@@ -201,6 +202,74 @@ def test_a_contact_that_is_not_wholly_checked_gives_no_speed_over_distance(judge
         assert report["speed_over_distance"]["contact"] == "not_permitted"
         assert report["speed_over_distance"]["speed"][0] == 0.0
         assert "the robot must stand before it" in page
+
+
+STOPS = """
+[separation]
+max_speed = 1.5
+reaction_time = 0.1
+human_speed = 1.6
+load = 5.0
+[separation.stopping]
+speed = [0.0, 0.5, 1.0]
+load = [0.0, 10.0]
+time = [[0.0, 0.0], [0.2, 0.3], [0.3, 0.5]]
+distance = [[0.0, 0.0], [0.05, 0.07], [0.16, 0.25]]
+"""
+
+
+def test_measured_stops_take_the_place_of_a_deceleration(judged: Any) -> None:
+    report, page = judged(SMALL + STOPS)
+    curve = report["speed_over_distance"]
+    stops = standards.StoppingData(**curve["rules"]["stopping"])
+    for distance, speed in ((0.9, 0.5), (1.5, 1.0)):
+        least = standards.separation_distance(speed, reaction_time=0.1, stopping=stops, load=5.0)
+        within = [each for place, each in zip(curve["distance"], curve["speed"], strict=True) if place < least]
+        assert within[-1] <= speed, distance
+        assert within[-1] > speed - 0.05
+    # Nothing is known of stops from more than 1 m/s, whatever the robot can do.
+    assert max(curve["speed"]) == 1.0
+    assert curve["outside_table"][-1]
+    assert not curve["outside_table"][0]
+    assert "the largest one at which a stop was measured" in page
+    assert "measured time and distance of a stop" in page
+    assert not any("v²/2a" in row["equation"] for row in report["equations"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("load = 5.0\n", "", "separation.load must be given: the stops were measured for several"),
+        ("load = 5.0", "load = 50.0", "separation.load must be within the measured stops"),
+        ("load = 5.0", "load = 5.0\ndeceleration = 3.0", "separation.deceleration must be given, or stopping in its"),
+        ("speed = [0.0, 0.5, 1.0]", "", "separation.stopping.speed"),
+        ("speed = [0.0, 0.5, 1.0]", "speed = [0.0, 0.5]", "separation.stopping.time must have shape (2, 2, 1)"),
+        ("[0.2, 0.3]", '[0.2, "x"]', "separation.stopping.time[1][1] must be a number"),
+        ("[0.2, 0.3]", "[0.2]", "separation.stopping.time"),
+        ("[separation.stopping]", "[separation.stoping]", 'did you mean "stopping"?'),
+        (STOPS[STOPS.index("[separation.stopping]") :], "", "give it, or the table of measured stops"),
+        (STOPS[STOPS.index("[separation.stopping]") :], "deceleration = 3.0", "separation.load must stand beside"),
+    ],
+)
+def test_measured_stops_that_are_refused(
+    old: str, new: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cell = tmp_path / "cell.toml"
+    assert old in STOPS
+    cell.write_text(SMALL + STOPS.replace(old, new, 1))
+    assert main(["contact", str(cell), "--out", str(tmp_path / "report")]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_the_file_to_start_from_shows_measured_stops_that_hold(judged: Any) -> None:
+    text = starter("contact", "cell.toml")
+    assert "# [separation.stopping]" in text
+    begin, end = text.index("# load = 5.0"), text.index("# How uncertain")
+    lines = [line.removeprefix("# ") for line in text[begin:end].splitlines()]
+    lines = [line for line in lines if not line.startswith("load")]
+    stops = "\n".join(lines)
+    report, _ = judged(text[:begin].replace("deceleration = 3.0", "") + stops + "\n" + text[end:])
+    assert report["speed_over_distance"]["rules"]["stopping"]["speed"] == [0, 0.5, 1, 1.5]
 
 
 def test_doubts_stand_beside_every_covering_thickness_map_and_chance(judged: Any) -> None:

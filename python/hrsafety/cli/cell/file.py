@@ -21,7 +21,7 @@ from hrsafety.scenarios import files
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located, one_of
 
-__all__ = ["BASE_REGIONS", "Cell", "Planned", "canonical", "load"]
+__all__ = ["BASE_REGIONS", "Cell", "Planned", "canonical", "load", "speed_over_distance"]
 
 MOST_CONTACTS = 64
 MOST_COVERINGS = 16
@@ -69,11 +69,27 @@ _COVERING: Keys = MappingProxyType(
         "bottom": kind.pair,
     }
 )
+
+
+def _stops(path: str, value: Any) -> Any:
+    """Check times or distances of stops: numbers in arrays, one for each load and each extension."""
+    if isinstance(value, list):
+        return [_stops(f"{path}[{index}]", each) for index, each in enumerate(value)]
+    return kind.number(path, value)
+
+
+_STOPPING: Keys = MappingProxyType(
+    {**dict.fromkeys(("speed", "load", "extension"), kind.numbers), **dict.fromkeys(("time", "distance"), _stops)}
+)
 _SEPARATION: Keys = MappingProxyType(
-    dict.fromkeys(
-        ("max_speed", "reaction_time", "deceleration", "human_speed", "intrusion", "uncertainty", "farthest"),
-        kind.number,
-    )
+    {
+        **dict.fromkeys(
+            ("max_speed", "reaction_time", "deceleration", "human_speed", "intrusion", "uncertainty", "farthest"),
+            kind.number,
+        ),
+        "stopping": kind.table,
+        **dict.fromkeys(("load", "extension"), kind.number),
+    }
 )
 _SEPARATION_DEFAULTS = {"human_speed": 1.6, "intrusion": 0.0, "uncertainty": 0.0, "farthest": 3.0}
 NO_COVERING = "none"
@@ -123,8 +139,8 @@ class Cell:
         What is judged.
     human_speed : float
         Speed of the person towards the robot in m/s.
-    separation : dict of str to float or None
-        Numbers of the stop, if given.
+    separation : dict or None
+        Numbers of the stop by name, if given; measured stops as a table of arrays.
     uncertain : dict
         Distributions by name.
     draws, seed : int
@@ -143,7 +159,7 @@ class Cell:
     materials: Mapping[str, str]
     contacts: tuple[Planned, ...]
     human_speed: float
-    separation: Mapping[str, float] | None
+    separation: Mapping[str, Any] | None
     uncertain: Mapping[str, Any]
     draws: int
     seed: int
@@ -357,16 +373,51 @@ def _classes(
         ]
 
 
-def _separation(table: Mapping[str, Any] | None) -> dict[str, float] | None:
+def _separation(table: Mapping[str, Any] | None) -> dict[str, Any] | None:
     if table is None:
         return None
-    required = ("max_speed", "reaction_time", "deceleration")
-    given = {**_SEPARATION_DEFAULTS, **checked("separation", table, _SEPARATION, required=required)}
+    given = {
+        **_SEPARATION_DEFAULTS,
+        **checked("separation", table, _SEPARATION, required=("max_speed", "reaction_time")),
+    }
     if not 0.0 < given["farthest"] <= 100.0:
         raise InvalidParameterError("separation.farthest", "be above 0 and at most 100", given["farthest"])
+    if "stopping" in given:
+        path = "separation.stopping"
+        given["stopping"] = checked(path, given["stopping"], _STOPPING, required=("speed", "time", "distance"))
+    elif "deceleration" not in given:
+        remedy = "give it, or the table of measured stops [separation.stopping] in its place"
+        raise kind.missing("separation.deceleration", remedy)
+    for name in ("load", "extension"):
+        if name in given and "stopping" not in given:
+            rule = "stand beside [separation.stopping]: a deceleration holds for every one"
+            raise InvalidParameterError(f"separation.{name}", rule, given[name])
     with located("separation"):
-        standards.separation_distance(
-            given["max_speed"],
-            **{name: value for name, value in given.items() if name not in ("max_speed", "farthest")},
-        )
+        speed_over_distance([given["farthest"]], given, contact_speed=None)
     return given
+
+
+def speed_over_distance(
+    distance: object, separation: Mapping[str, Any], *, contact_speed: float | None
+) -> standards.SpeedCurve:
+    """Return the speed at each distance by the rules of a cell.
+
+    Parameters
+    ----------
+    distance : array_like (n,)
+        In m.
+    separation : mapping
+        Of a `Cell`.
+    contact_speed : float or None
+        Allowed contact speed in m/s; ``None`` where contact is not permitted.
+
+    Returns
+    -------
+    SpeedCurve
+        The speeds.
+    """
+    rules = {name: value for name, value in separation.items() if name != "farthest"}
+    if "stopping" in rules:
+        with located("stopping"):
+            rules["stopping"] = standards.StoppingData(**rules["stopping"])
+    return standards.speed_over_distance(distance, contact_speed=contact_speed, **rules)

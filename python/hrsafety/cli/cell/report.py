@@ -124,8 +124,8 @@ def _parts(cell: Cell, study: Study) -> Iterator[str]:
     if statuses & {"monotone", "several_crossings", "unlimited_up_to_20"}:
         yield "simulated"
     yield "collision"
-    if study.speeds is not None:
-        yield "separation"
+    if cell.separation is not None:
+        yield "measured_stops" if "stopping" in cell.separation else "separation"
     if study.fields["sensitivity"] is not None:
         yield "sensitivity"
     if any(each["status"] == "computed" for each in study.fields["probability"]):

@@ -13,7 +13,7 @@ from hrsafety import contact, standards
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.cli.cell.chances import chance_of
-from hrsafety.cli.cell.file import Cell, Planned
+from hrsafety.cli.cell.file import Cell, Planned, speed_over_distance
 from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, reasons_of, strain
 from hrsafety.cli.progress import Report
 from hrsafety.errors import InvalidParameterError
@@ -337,16 +337,13 @@ def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | N
 def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | None:
     if cell.separation is None:
         return None
-    rules: dict[str, Any] = dict(cell.separation)
-    farthest, most = rules.pop("farthest"), rules.pop("max_speed")
     # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
     # fast has an allowed speed, if every limit behind it was checked.
     speeds = [each.verdict["allowed_speed"] for each in judged]
     unknown = any(each.verdict["reasons"] for each in judged)
     least = None if unknown or any(each is None for each in speeds) else min(speeds)
-    return standards.speed_over_distance(
-        np.linspace(0.0, farthest, CURVE_POINTS), contact_speed=least, max_speed=most, **rules
-    )
+    distances = np.linspace(0.0, cell.separation["farthest"], CURVE_POINTS)
+    return speed_over_distance(distances, cell.separation, contact_speed=least)
 
 
 def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
@@ -357,6 +354,7 @@ def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
         "speed": curve.speed,
         "mode": curve.mode,
         "capped": curve.capped,
+        "outside_table": curve.outside_table,
     }
 
 
