@@ -8,6 +8,7 @@ and picture shows. Nothing is refused here and nothing is changed.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
@@ -16,7 +17,7 @@ import numpy as np
 
 from hrsafety._records import dataclass
 
-__all__ = ["RANGES", "Range", "ResultWarning", "gathered", "implausible"]
+__all__ = ["RANGES", "ImplausibleWarning", "Range", "ResultWarning", "gathered", "implausible", "warn_implausible"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,10 @@ class ResultWarning:
         return f"warning: {self.message}"
 
 
+class ImplausibleWarning(UserWarning):
+    """A number that is hardly meant in its unit, given to a function whose answer is a plain number."""
+
+
 def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -> tuple[ResultWarning, ...]:
     """Return the first warning of each kind with the number of the others.
 
@@ -72,8 +77,8 @@ def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -
     """
     first: dict[str, ResultWarning] = {}
     others: dict[str, int] = {}
-    for name, warnings in found:
-        for each in dict.fromkeys(warnings):
+    for name, told in found:
+        for each in dict.fromkeys(told):
             if each.code in first:
                 others[each.code] = others.get(each.code, 0) + 1
             else:
@@ -219,6 +224,12 @@ RANGES: dict[str, Range] = {
     "force_limit": Range(5.0, 5000.0, "N", "ISO/TS 15066 has 65 to 440", "kN given for N"),
     "pressure_limit": Range(1e4, 1e8, "Pa", "ISO/TS 15066 has 1.1 to 6 MPa", "N/cm^2 or N/mm^2 given for Pa"),
     "person_distance": Range(0.0, 100.0, "m", "farther than any safety sensor sees", "mm or cm given for m"),
+    "approach_speed": Range(
+        0.0, 20.0, "m/s", "standing to twice the fastest industrial arms", "mm/s or cm/s given for m/s"
+    ),
+    "reaction_time": Range(0.0, 5.0, "s", "immediate to very slow controls", "ms given for s"),
+    "intrusion": Range(0.0, 5.0, "m", "ISO 13855 has at most 1.2 m", "mm or cm given for m"),
+    "position_uncertainty": Range(0.0, 5.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
     "robot_deceleration": Range(0.0, 100.0, "m/s^2", "ten times gravity", "mm/s^2 given for m/s^2"),
     "point_of_link": Range(-10.0, 10.0, "m", "longer than links of industrial arms", "mm or cm given for m"),
     "damping_ratio": Range(
@@ -249,6 +260,34 @@ def implausible(values: Mapping[str, object], quantities: Mapping[str, str] | No
     ['heading']
     """
     return tuple(_implausible(values, quantities or {}))
+
+
+def warn_implausible(
+    values: Mapping[str, object], quantities: Mapping[str, str] | None = None, *, stacklevel: int = 3
+) -> None:
+    """Issue an `ImplausibleWarning` for every value outside the plausible range of its quantity.
+
+    For functions that return numbers or arrays, which carry no warnings of their own.
+
+    Parameters
+    ----------
+    values, quantities
+        As for `implausible`.
+    stacklevel : int
+        Which caller the warnings point at: 3 is that of the function which calls this one.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from hrsafety.plausibility import warn_implausible
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     warn_implausible({"heading": 90.0})
+    >>> caught[0].category.__name__
+    'ImplausibleWarning'
+    """
+    for found in _implausible(values, quantities or {}):
+        warnings.warn(found.message, ImplausibleWarning, stacklevel=stacklevel)
 
 
 def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) -> Iterable[ResultWarning]:

@@ -12,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import ResultWarning, implausible, warn_implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
@@ -20,7 +20,16 @@ __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_spee
 WALKING_SPEED = 1.6
 """Speed of a person in m/s whose speed is not measured."""
 
-_QUANTITIES = {"distance": "person_distance", "deceleration": "robot_deceleration"}
+_QUANTITIES = {
+    "distance": "person_distance",
+    "robot_speed": "approach_speed",
+    "max_speed": "approach_speed",
+    "contact_speed": "approach_speed",
+    "target_speed": "approach_speed",
+    "human_speed": "person_speed",
+    "uncertainty": "position_uncertainty",
+    "deceleration": "robot_deceleration",
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,6 +153,11 @@ def separation_distance(
     InvalidParameterError
         If a number is out of range, or a speed lies outside the measured stops.
 
+    Warns
+    -----
+    ImplausibleWarning
+        If a number is hardly meant in its unit, such as millimeters or milliseconds.
+
     Examples
     --------
     >>> from hrsafety import standards
@@ -157,6 +171,7 @@ def separation_distance(
         found = _with_answer("robot_speed", speeds, _hrsafety.separation_distances(speeds, braking, rows))
     else:
         found = _stops(stopping).curve(load, extension).distances(speeds, rows)
+    warn_implausible(_doubted("robot_speed", speeds, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
 
@@ -188,6 +203,11 @@ def separation_speed(
         Speeds in m/s: `target_speed` where the distance is too short for more, and never more than the largest
         measured one.
 
+    Warns
+    -----
+    ImplausibleWarning
+        As `separation_distance`.
+
     Examples
     --------
     >>> from hrsafety import standards
@@ -201,6 +221,7 @@ def separation_speed(
         found = _with_answer("distance", distances, _hrsafety.separation_speeds(distances, braking, rows))
     else:
         found, _ = _stops(stopping).curve(load, extension).speeds(distances, rows)
+    warn_implausible(_doubted("distance", distances, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
 
@@ -321,8 +342,19 @@ def speed_over_distance(
         capped=speed > most,
         outside_table=beyond & (apart >= contact) & (speed <= most),
         status="not_permitted" if contact_speed is None else "permitted",
-        warnings=implausible({"distance": given, "deceleration": braked}, _QUANTITIES),
+        warnings=implausible(
+            {"distance": given, **single, "contact_speed": contact_speed, "max_speed": most, "deceleration": braked},
+            _QUANTITIES,
+        ),
     )
+
+
+def _doubted(
+    name: str, given: Array, rows: dict[str, Array], deceleration: object, braking: Array
+) -> dict[str, object]:
+    """Return the numbers of an answer that may be implausible, by name: each once where all rows share it."""
+    columns = {name: given, **rows} | ({} if deceleration is None else {"deceleration": braking})
+    return {key: float(each[0]) if len(each) and (each == each[0]).all() else each for key, each in columns.items()}
 
 
 # ---- crossing the boundary ----------------------------------------------------------------------

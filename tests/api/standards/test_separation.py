@@ -10,6 +10,7 @@ import pytest
 
 from hrsafety import standards
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plausibility import ImplausibleWarning
 
 RULES = {"reaction_time": 0.1, "deceleration": 3.0, "intrusion": 0.2, "uncertainty": 0.1}
 STOPS = standards.StoppingData(
@@ -55,6 +56,32 @@ def test_too_close_is_the_target_speed() -> None:
     assert standards.separation_speed(0.0, target_speed=0.3, **RULES) == 0.3
     assert standards.separation_speed(0.46, **RULES) == 0.0  # C + Z + v_h T_r
     assert standards.separation_speed(0.47, **RULES) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"intrusion": 850.0}, "intrusion is 850 m, outside the plausible 0 to 5 m .*mm or cm given for m"),
+        ({"uncertainty": [0.1, 100.0]}, r"uncertainty is 100 m \(element 1, 1 of 2 outside\)"),
+        ({"reaction_time": 100.0}, "reaction_time is 100 s, .*ms given for s"),
+        ({"deceleration": 3000.0}, "deceleration is 3000 m/s"),
+        ({"human_speed": 1600.0}, "human_speed is 1600 m/s"),
+    ],
+)
+def test_numbers_that_are_hardly_meant_are_told(arguments: dict[str, object], words: str) -> None:
+    for call, given in ((standards.separation_distance, 1.0), (standards.separation_speed, 3.0)):
+        with pytest.warns(ImplausibleWarning, match=words) as caught:
+            answer = call(given, **(RULES | arguments))
+        assert len(caught) == 1
+        assert caught[0].filename == __file__
+        assert np.isfinite(answer).all()
+    with pytest.warns(ImplausibleWarning, match="robot_speed is 250 m/s"):
+        standards.separation_distance(250.0, **RULES)
+    with pytest.warns(ImplausibleWarning, match="distance is 1500 m"):
+        standards.separation_speed(1500.0, **RULES)
+    if all(isinstance(each, float) for each in arguments.values()):
+        curve = standards.speed_over_distance([1.0], contact_speed=None, max_speed=1.5, **(RULES | arguments))
+        assert [each.subject for each in curve.warnings] == list(arguments)
 
 
 # ---- measured stops -------------------------------------------------------------------------
