@@ -13,7 +13,7 @@ use vff_core::crowd::pedestrian::{Groupings, Walker};
 use vff_core::crowd::snapshot::{Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
-use vff_core::crowd::{Diverged, Model, Simulation, Trajectories, simulate_worlds};
+use vff_core::crowd::{Diverged, Model, Simulation, simulate_worlds};
 use vff_core::lanes::Vector2;
 use vff_core::world::motion::Motion;
 use vff_core::world::shape::PlacedShape;
@@ -263,16 +263,13 @@ impl CrowdWorld {
 }
 
 /// Fields of what was recorded.
-fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, PyDict>> {
+fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict>> {
     let fields = Fields::new(py);
-    let nothing = Trajectories::default();
-    let found = ended.recorded().unwrap_or(&nothing);
+    let mut found = ended.take_recorded().unwrap_or_default();
     let (instants, people, robots) = (found.time.len(), found.people(), ended.robots().len());
     let flat =
         |vectors: &[Vector2<f64>]| vectors.iter().flat_map(|each| [each.x, each.y]).collect();
-    fields.vector("time", found.time.clone())?;
-    fields.cube("position", found.person_positions(), [instants, people, 2])?;
-    fields.cube("velocity", found.person_velocities(), [instants, people, 2])?;
+    fields.vector("time", std::mem::take(&mut found.time))?;
     fields.cube(
         "robot_position",
         flat(&found.robot_position),
@@ -285,10 +282,13 @@ fn fields_of<'py>(py: Python<'py>, ended: &Simulation) -> PyResult<Bound<'py, Py
     )?;
     fields.matrix(
         "robot_heading",
-        found.robot_heading.clone(),
+        std::mem::take(&mut found.robot_heading),
         instants,
         robots,
     )?;
+    let [position, velocity] = found.into_people();
+    fields.cube("position", position, [instants, people, 2])?;
+    fields.cube("velocity", velocity, [instants, people, 2])?;
     let column = |of: &dyn Fn(usize) -> f64| (0..people).map(of).collect::<Vec<f64>>();
     let all = ended.people();
     fields.vector("radius", column(&|index| all[index].radius))?;
@@ -341,7 +341,7 @@ pub fn crowd_simulate<'py>(
     } else {
         watched(py, report, work)?
     };
-    ended.iter().map(|each| fields_of(py, each)).collect()
+    ended.into_iter().map(|each| fields_of(py, each)).collect()
 }
 
 /// Starts of people who cross a circle.

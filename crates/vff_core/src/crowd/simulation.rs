@@ -122,7 +122,7 @@ impl CrowdParts {
         self.diverged = None;
         self.over = false;
         if let Some(record) = &mut self.record {
-            record.clear();
+            record.open(self.people.len(), count_of(whole_steps(world)) + 1);
         }
         self.show_robots();
         Ok(())
@@ -401,7 +401,11 @@ impl Simulation {
     /// # Errors
     /// As [`Self::step`].
     pub fn completed(self, interrupted: Interrupted<'_>) -> Result<Self> {
-        self.0.run(interrupted).map(Self)
+        let mut ended = self.0.run(interrupted)?;
+        if let Some(record) = &mut ended.parts.record {
+            record.close();
+        }
+        Ok(Self(ended))
     }
 
     /// Whether it has ended: the time is over, nobody is on the way any more, or it has diverged.
@@ -438,6 +442,11 @@ impl Simulation {
     #[must_use]
     pub fn divergence(&self) -> Option<Divergence> {
         self.0.parts.diverged
+    }
+
+    /// Hands over what was recorded, and records no more.
+    pub fn take_recorded(&mut self) -> Option<Trajectories> {
+        self.0.parts.record.take()
     }
 
     /// What was recorded so far.
