@@ -1,6 +1,7 @@
 //! Properties of worlds of people and robots.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::{Rotation2, Vector2};
 use numeric::random::Stream;
@@ -400,7 +401,8 @@ fn threads_and_restarts_change_no_bit() {
         })
         .collect();
     let run = |threads| {
-        let ended = simulate_worlds(&worlds, Some(threads), &|| false, &|_| ()).unwrap();
+        let shared: Vec<Arc<CrowdWorld>> = worlds.iter().cloned().map(Arc::new).collect();
+        let ended = simulate_worlds(&shared, Some(threads), &|| false, &|_| ()).unwrap();
         ended.iter().map(places).collect::<Vec<_>>()
     };
     let one = run(1);

@@ -3,6 +3,8 @@
 pub(crate) mod gym;
 pub(crate) mod metrics;
 
+use std::sync::Arc;
+
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -208,7 +210,7 @@ fn number_of(models: &mut Vec<Model>, model: Model) -> usize {
 /// A world.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdWorld {
-    core: vff_core::crowd::CrowdWorld,
+    core: Arc<vff_core::crowd::CrowdWorld>,
     python: bool,
 }
 
@@ -249,7 +251,7 @@ impl CrowdWorld {
         };
         given.done()?;
         Ok(Self {
-            core: core.checked().map_err(CoreError::from)?,
+            core: Arc::new(core.checked().map_err(CoreError::from)?),
             python: robots.iter().any(|robot| robot.python),
         })
     }
@@ -328,7 +330,7 @@ pub fn crowd_simulate<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let python = worlds.iter().any(|world| world.python);
-    let cores: Vec<_> = worlds.iter().map(|world| world.core.clone()).collect();
+    let cores: Vec<_> = worlds.iter().map(|world| Arc::clone(&world.core)).collect();
     let threads = if python { Some(1) } else { threads };
     let report = Report::new(progress.as_ref(), cores.len());
     let work = |control: &crate::watch::Control<'_>| {

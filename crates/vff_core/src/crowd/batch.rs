@@ -1,5 +1,7 @@
 //! Many worlds, spread over threads.
 
+use std::sync::Arc;
+
 use numeric::threads;
 
 use crate::crowd::record::{MOST_ROWS, size_of_record};
@@ -13,7 +15,7 @@ use crate::run::Interrupted;
 /// # Errors
 /// The number of threads is out of range, a world breaks a rule, named by its index, or the caller asked to stop.
 pub fn simulate_worlds(
-    worlds: &[CrowdWorld],
+    worlds: &[Arc<CrowdWorld>],
     threads: Option<usize>,
     interrupted: Interrupted<'_>,
     done: &(dyn Fn(usize) + Sync),
@@ -21,7 +23,7 @@ pub fn simulate_worlds(
     check_size(worlds)?;
     threads::on_threads(threads, || {
         threads::try_map(worlds.len(), |index| {
-            let ended = Simulation::new(worlds[index].clone(), true)
+            let ended = Simulation::new(Arc::clone(&worlds[index]), true)
                 .map_err(|error| error.within(&format!("worlds[{index}]")))?
                 .completed(interrupted)?;
             done(1);
@@ -31,11 +33,11 @@ pub fn simulate_worlds(
 }
 
 /// Refuses worlds whose records would not fit into memory together; one that is too long alone is named later.
-fn check_size(worlds: &[CrowdWorld]) -> Result<()> {
+fn check_size(worlds: &[Arc<CrowdWorld>]) -> Result<()> {
     if worlds.len() < 2 {
         return Ok(());
     }
-    let sizes = worlds.iter().map(size_of_record);
+    let sizes = worlds.iter().map(|world| size_of_record(world));
     let places = sizes.map(|(instants, agents)| instants * agents);
     let total: f64 = places.filter(|places| *places <= MOST_ROWS).sum();
     if total <= MOST_ROWS {

@@ -4,6 +4,8 @@
 //! of the world is what a control period is elsewhere; models with a smaller largest step split it into equal
 //! motion steps, in each of which people decide anew. Robots decide in the first one, if it is time to.
 
+use std::sync::Arc;
+
 use crate::crowd::agent::Agent;
 use crate::crowd::pedestrian::Walker;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
@@ -45,7 +47,7 @@ pub struct DecisionRoom {
 
 /// What an episode of a crowd consists of.
 struct CrowdParts {
-    world: CrowdWorld,
+    world: Arc<CrowdWorld>,
     people: Vec<PersonState>,
     robots: Vec<CrowdRobot>,
     /// The robots as others see them.
@@ -77,7 +79,7 @@ fn clock_of(world: &CrowdWorld) -> Result<Clock> {
 }
 
 impl CrowdParts {
-    fn new(world: CrowdWorld, record: bool) -> Self {
+    fn new(world: Arc<CrowdWorld>, record: bool) -> Self {
         Self {
             people: Vec::with_capacity(world.people.len()),
             robots: Vec::with_capacity(world.robots.len()),
@@ -302,11 +304,12 @@ impl Parts for CrowdParts {
 pub struct Simulation(Episode<CrowdParts>);
 
 impl Simulation {
-    /// A world at its start; `record`: with everybody's places at every step.
+    /// A world at its start, which others may share; `record`: with everybody's places at every step.
     ///
     /// # Errors
     /// The world breaks a rule, or a law cannot work in it.
-    pub fn new(world: CrowdWorld, record: bool) -> Result<Self> {
+    pub fn new(world: impl Into<Arc<CrowdWorld>>, record: bool) -> Result<Self> {
+        let world = world.into();
         world.check()?;
         let clock = clock_of(&world)?;
         if record {
@@ -323,7 +326,7 @@ impl Simulation {
     /// As [`Self::new`]; the simulation cannot be stepped then.
     pub fn restart(&mut self, change: impl FnOnce(&mut CrowdWorld)) -> Result<()> {
         let parts = &mut self.0.parts;
-        change(&mut parts.world);
+        change(Arc::make_mut(&mut parts.world));
         parts.over = true;
         parts.world.check()?;
         let clock = clock_of(&parts.world)?;
