@@ -9,7 +9,7 @@ use vff_core::crowd::Model;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::pedestrian::{Groupings, Walker};
-use vff_core::crowd::snapshot::{Setting, Snapshot};
+use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::error::{Failure, Given, Result};
 
@@ -166,7 +166,8 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     };
     let mut decisions = Vec::new();
     let mut snapshot = Snapshot::default();
-    snapshot.decide(&setting, &mut people, &robots, &|_| &model, &mut decisions);
+    let models = Models::Shared(&model);
+    snapshot.decide(&setting, &mut people, &robots, models, &mut decisions);
     decisions
 }
 

@@ -12,7 +12,7 @@ use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::circle;
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::pedestrian::{Groupings, Walker};
-use vff_core::crowd::snapshot::{Setting, Snapshot};
+use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
 use vff_core::crowd::{Diverged, Model, Simulation, simulate_worlds};
@@ -424,7 +424,7 @@ pub fn crowd_decisions<'py>(
         &setting,
         &mut people,
         &robots,
-        &|_| &model.0,
+        Models::Shared(&model.0),
         &mut decisions,
     );
     for (decision, person) in decisions.iter_mut().zip(&people) {

@@ -11,7 +11,7 @@ use crate::crowd::pedestrian::Walker;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
-use crate::crowd::snapshot::{Setting, Snapshot};
+use crate::crowd::snapshot::{Models, Setting, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
@@ -168,7 +168,11 @@ impl CrowdParts {
             step: part,
         };
         let model_of = |number: usize| &world.models[people[number].model as usize];
-        snapshot.decide(&setting, walkers, &self.bodies, &model_of, decisions);
+        let models = match &world.models[..] {
+            [model] => Models::Shared(model),
+            _ => Models::Of(&model_of),
+        };
+        snapshot.decide(&setting, walkers, &self.bodies, models, decisions);
         let decided = decisions.iter().zip(&*walkers);
         for (person, (decision, walker)) in people.iter_mut().zip(decided) {
             if let Some(walker) = walker.as_ref().filter(|walker| walker.decides) {

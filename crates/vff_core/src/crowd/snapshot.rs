@@ -23,6 +23,40 @@ pub struct Setting<'a> {
     pub step: f64,
 }
 
+/// Which models people have.
+#[derive(Clone, Copy)]
+pub enum Models<'a, 'm> {
+    /// All the same one.
+    Shared(&'m Model),
+    /// By their numbers.
+    // Not one copy of all models for each caller.
+    Of(&'a dyn Fn(usize) -> &'m Model),
+}
+
+impl<'m> Models<'_, 'm> {
+    /// The model of a person by number.
+    #[inline(always)]
+    fn of(&self, number: usize) -> &'m Model {
+        match self {
+            Self::Shared(model) => model,
+            Self::Of(model_of) => model_of(number),
+        }
+    }
+
+    /// The model of everybody, if all have the same one.
+    #[inline(always)]
+    fn shared(&self, people: &[Agent]) -> Option<&'m Model> {
+        if let Self::Shared(model) = self {
+            return Some(model);
+        }
+        let mut models = people.iter().map(|agent| self.of(agent.number as usize));
+        let model = models.next()?;
+        models
+            .all(|other| std::ptr::eq(other, model))
+            .then_some(model)
+    }
+}
+
 /// Who is where at an instant, and room for decisions.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
@@ -35,13 +69,12 @@ pub struct Snapshot {
 impl Snapshot {
     /// Decides for everybody: `walkers` by number, `None` for people who are absent. Decisions come back under
     /// the same number, in m/s^2 or m/s; headings change in place.
-    pub fn decide<'m>(
+    pub fn decide(
         &mut self,
         setting: &Setting<'_>,
         walkers: &mut [Option<Walker>],
         robots: &[Agent],
-        // Not one copy of all models for each caller.
-        model_of: &dyn Fn(usize) -> &'m Model,
+        models: Models<'_, '_>,
         decisions: &mut Vec<Vector2<f64>>,
     ) {
         self.present.clear();
@@ -67,7 +100,7 @@ impl Snapshot {
         let job = Job {
             around: &around,
             walkers,
-            model_of,
+            models,
             decisions,
             room,
         };
@@ -82,7 +115,7 @@ impl Snapshot {
 struct Job<'a, 'm> {
     around: &'a Around<'a>,
     walkers: &'a mut [Option<Walker>],
-    model_of: &'a dyn Fn(usize) -> &'m Model,
+    models: Models<'a, 'm>,
     decisions: &'a mut [Vector2<f64>],
     room: &'a mut Room,
 }
@@ -112,11 +145,8 @@ impl<'m> Job<'_, 'm> {
     #[inline(always)]
     fn mutual(&self) -> Option<&'m Model> {
         let people = self.around.neighbors.people;
-        let numbers = people.agents().iter().map(|agent| agent.number as usize);
-        let mut models = numbers.map(self.model_of);
-        let model = models.next()?;
-        let shared = models.all(|other| std::ptr::eq(other, model));
-        (shared && people.period == Period::default()).then_some(model)
+        let plain = people.period == Period::default();
+        plain.then(|| self.models.shared(people.agents())).flatten()
     }
 
     #[inline(always)]
@@ -127,7 +157,7 @@ impl<'m> Job<'_, 'm> {
                 .as_mut()
                 .filter(|walker| walker.decides)
             {
-                let model = (self.model_of)(number);
+                let model = self.models.of(number);
                 self.decisions[number] = model.decide(walker, self.around, self.room);
             }
         }
@@ -215,25 +245,19 @@ mod tests {
                     reach: model.cutoff(),
                     step: 0.25,
                 };
-                let decide = |snapshot: &mut Snapshot, models: [&Model; 2]| {
+                let decide = |snapshot: &mut Snapshot, models: Models<'_, '_>| {
                     let mut decisions = Vec::new();
-                    let model_of = |number: usize| models[number % 2];
-                    snapshot.decide(
-                        &setting,
-                        &mut walkers.clone(),
-                        &robots,
-                        &model_of,
-                        &mut decisions,
-                    );
+                    let mut walkers = walkers.clone();
+                    snapshot.decide(&setting, &mut walkers, &robots, models, &mut decisions);
                     decisions
                 };
-                let expected = decide(&mut alone, [&model, &model.clone()]);
-                assert_eq!(
-                    decide(&mut once, [&model, &model]),
-                    expected,
-                    "{count} {}",
-                    robots.len()
-                );
+                let (of_one, another) = (|_: usize| &model, model);
+                let of_two = |number: usize| [&model, &another][number % 2];
+                let expected = decide(&mut alone, Models::Of(&of_two));
+                for models in [Models::Of(&of_one), Models::Shared(&model)] {
+                    let found = decide(&mut once, models);
+                    assert_eq!(found, expected, "{count} {}", robots.len());
+                }
                 assert_eq!(expected.len(), count as usize);
             }
         }
