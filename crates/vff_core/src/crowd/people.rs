@@ -169,6 +169,12 @@ impl PersonState {
         matches!(self.presence, Presence::Walking | Presence::Staying)
     }
 
+    /// Whether the state is finite.
+    #[inline]
+    pub(super) fn is_finite(&self) -> bool {
+        (self.position + self.velocity).norm_squared().is_finite()
+    }
+
     /// The person as one who decides.
     #[inline]
     pub(super) fn walker(&self, number: u32) -> Walker {

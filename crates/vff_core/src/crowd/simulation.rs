@@ -137,14 +137,14 @@ impl CrowdParts {
             .extend(robots.map(|(index, robot)| robot.agent(index)));
     }
 
-    /// Decides for all people and moves them for a time in s.
-    fn move_people(&mut self, part: f64) {
+    /// Decides for all people and moves them for a time in s; whether somebody may no longer be at a finite place.
+    fn move_people(&mut self, part: f64) -> bool {
         let (world, people) = (&self.world, &mut self.people);
         if people.is_empty() {
-            return;
+            return false;
         }
         if std::mem::take(&mut self.moved) {
-            return;
+            return true;
         }
         let DecisionRoom {
             walkers,
@@ -174,13 +174,17 @@ impl CrowdParts {
         };
         snapshot.decide(&setting, walkers, &self.bodies, models, decisions);
         let decided = decisions.iter().zip(&*walkers);
+        let mut finite = true;
         for (person, (decision, walker)) in people.iter_mut().zip(decided) {
             if let Some(walker) = walker.as_ref().filter(|walker| walker.decides) {
                 person.heading = walker.heading;
                 let model = &world.models[person.model as usize];
                 person.move_by(*decision, model, part);
+                finite &= person.is_finite();
             }
         }
+        // Recordings move those who do not decide.
+        self.replays || !finite
     }
 
     /// Moves those who follow a recording, to a time in s.
@@ -195,15 +199,11 @@ impl CrowdParts {
         }
     }
 
-    /// Notes who is no longer at a finite place, at a time in s.
-    fn find_divergence(&mut self, time: f64) {
-        let lost = |person: &PersonState| {
-            person.is_present()
-                && !(person.position + person.velocity)
-                    .norm_squared()
-                    .is_finite()
-        };
-        let person = self.people.iter().position(lost).map(Diverged::Person);
+    /// Notes who is no longer at a finite place, at a time in s; `people`: whether that may be a person.
+    fn find_divergence(&mut self, time: f64, people: bool) {
+        let lost = |person: &PersonState| person.is_present() && !person.is_finite();
+        let person = || self.people.iter().position(lost).map(Diverged::Person);
+        let person = people.then(person).flatten();
         let robot = || {
             let found = self.robots.iter().position(|robot| !robot.is_finite());
             found.map(Diverged::Robot)
@@ -245,13 +245,13 @@ impl Parts for CrowdParts {
     }
 
     fn travel(&mut self, clock: &Clock, step: usize) {
-        self.move_people(clock.step);
+        let doubtful = self.move_people(clock.step);
         self.replay(clock.time(step + 1));
         for robot in &mut self.robots {
             robot.advance();
         }
         self.show_robots();
-        self.find_divergence(clock.time(step + 1));
+        self.find_divergence(clock.time(step + 1), doubtful);
     }
 
     fn look_around(&mut self, _clock: &Clock, _step: usize) {}
