@@ -9,7 +9,7 @@ pub const SHORTEST: f64 = 1e-9;
 pub const FIRST_ROBOT: u32 = 1 << 31;
 
 /// Somebody at an instant, as others see them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Agent {
     /// Position in m.
     pub position: Vector2<f64>,

@@ -60,7 +60,6 @@ impl<'m> Models<'_, 'm> {
 /// Who is where at an instant, and room for decisions.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
-    present: Vec<Agent>,
     people: Grid,
     robots: Grid,
     room: Room,
@@ -77,11 +76,10 @@ impl Snapshot {
         models: Models<'_, '_>,
         decisions: &mut Vec<Vector2<f64>>,
     ) {
-        self.present.clear();
-        let present = walkers.iter().flatten();
-        self.present.extend(present.map(|walker| walker.agent));
         let Setting { reach, period, .. } = *setting;
-        self.people.fill(&self.present, reach, period);
+        let present = walkers.iter().flatten();
+        let present = present.map(|walker| (&walker.agent, ()));
+        self.people.place(present, (reach, period), |_, ()| ());
         self.robots.fill(robots, reach, period);
         let Self {
             people,

@@ -103,6 +103,35 @@ fn whole(count: f64) -> usize {
     count as usize
 }
 
+/// Where some agents are.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    /// Least coordinates in m.
+    low: Vector,
+    /// Greatest ones.
+    high: Vector,
+    count: usize,
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self {
+            low: Vector::repeat(f64::INFINITY),
+            high: Vector::repeat(f64::NEG_INFINITY),
+            count: 0,
+        }
+    }
+}
+
+impl Extent {
+    #[inline]
+    fn add(&mut self, position: Vector) {
+        self.low = self.low.inf(&position);
+        self.high = self.high.sup(&position);
+        self.count += 1;
+    }
+}
+
 /// Agents by the cells they are in.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
@@ -124,56 +153,77 @@ pub struct Grid {
 impl Grid {
     /// Sorts agents, given by rising number, into cells of a size in m; infinite: everybody is looked at.
     pub fn fill(&mut self, agents: &[Agent], reach: f64, period: Period) {
-        self.period = period;
-        self.all_pairs = agents.len() <= FEW || !reach.is_finite();
-        self.agents.clear();
-        self.agents.extend_from_slice(agents);
-        if !self.all_pairs {
-            self.sort(agents, reach);
-        }
-        let (x, y, numbers) = (&mut self.x, &mut self.y, &mut self.numbers);
-        x.clear();
-        x.extend(self.agents.iter().map(|agent| agent.position.x));
-        y.clear();
-        y.extend(self.agents.iter().map(|agent| agent.position.y));
-        numbers.clear();
-        numbers.extend(self.agents.iter().map(|agent| agent.number));
+        let agents = agents.iter().map(|agent| (agent, ()));
+        self.place(agents, (reach, period), |_, ()| ());
     }
 
-    /// Sorts by cells.
-    fn sort(&mut self, agents: &[Agent], reach: f64) {
-        self.lay(agents, reach);
-        let cells = self.axes[0].count * self.axes[1].count;
-        self.starts.clear();
-        self.starts.resize(cells + 1, 0);
-        self.cells.clear();
-        for agent in agents {
-            let cell = self.cell(agent.position);
-            self.cells.push(cell);
-            self.starts[cell as usize + 1] += 1;
+    /// The same for agents who have something; `told`: the place of each.
+    pub(crate) fn place<'a, T>(
+        &mut self,
+        owners: impl Iterator<Item = (&'a Agent, T)> + Clone,
+        (reach, period): (f64, Period),
+        mut told: impl FnMut(usize, T),
+    ) {
+        let mut extent = Extent::default();
+        for (agent, _) in owners.clone() {
+            extent.add(agent.position);
         }
-        for cell in 0..cells {
-            self.starts[cell + 1] += self.starts[cell];
+        self.period = period;
+        self.all_pairs = extent.count <= FEW || !reach.is_finite();
+        self.agents.resize(extent.count, Agent::default());
+        self.x.resize(extent.count, 0.0);
+        self.y.resize(extent.count, 0.0);
+        self.numbers.resize(extent.count, 0);
+        if self.all_pairs {
+            for (place, (agent, owned)) in owners.enumerate() {
+                self.put(place, agent);
+                told(place, owned);
+            }
+            return;
         }
-        for (agent, cell) in agents.iter().zip(&self.cells) {
-            let next = &mut self.starts[*cell as usize];
-            self.agents[*next as usize] = *agent;
+        self.lay(&extent, reach);
+        self.count(owners.clone().map(|(agent, _)| agent.position));
+        for (index, (agent, owned)) in owners.enumerate() {
+            let next = &mut self.starts[self.cells[index] as usize];
+            let place = *next as usize;
             *next += 1;
+            self.put(place, agent);
+            told(place, owned);
         }
         // Every start has become the next one.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }
 
-    /// Chooses the cells.
-    fn lay(&mut self, agents: &[Agent], reach: f64) {
-        let mut low = Vector::repeat(f64::INFINITY);
-        let mut high = -low;
-        for agent in agents {
-            low = low.inf(&agent.position);
-            high = high.sup(&agent.position);
+    /// Puts an agent at a place.
+    #[inline(always)]
+    fn put(&mut self, place: usize, agent: &Agent) {
+        self.agents[place] = *agent;
+        self.x[place] = agent.position.x;
+        self.y[place] = agent.position.y;
+        self.numbers[place] = agent.number;
+    }
+
+    /// Finds the cells of positions, and the first place of each cell.
+    fn count(&mut self, positions: impl Iterator<Item = Vector>) {
+        let cells = self.axes[0].count * self.axes[1].count;
+        self.starts.clear();
+        self.starts.resize(cells + 1, 0);
+        self.cells.clear();
+        for position in positions {
+            let cell = self.cell(position);
+            self.cells.push(cell);
+            self.starts[cell as usize + 1] += 1;
         }
-        let most = 4.0 * agents.len() as f64 + SPARE_CELLS;
+        for cell in 0..cells {
+            self.starts[cell + 1] += self.starts[cell];
+        }
+    }
+
+    /// Chooses the cells.
+    fn lay(&mut self, extent: &Extent, reach: f64) {
+        let Extent { low, high, count } = *extent;
+        let most = 4.0 * count as f64 + SPARE_CELLS;
         let mut size = reach;
         loop {
             let axis = |index: usize| match self.period.0[index] {
