@@ -12,7 +12,7 @@ use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};
 
 /// A person who decides.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Walker {
     /// The person as others see them.
     pub agent: Agent,
@@ -166,37 +166,21 @@ pub(super) fn drive(own: &Walker, relaxation_time: f64) -> Vector2<f64> {
 
 /// Drives of everybody by their places in a grid, where the sums of their forces start.
 #[inline(always)]
-pub(super) fn drives<'a>(
-    people: &'a [Agent],
-    walkers: &'a [Option<Walker>],
+pub(super) fn drives(
+    walkers: &[Walker],
     relaxation_time: f64,
-) -> impl Iterator<Item = Vector2<f64>> + 'a {
-    let walkers = people.iter().map(|agent| &walkers[agent.number as usize]);
-    walkers.map(move |own| {
-        let drive = |own: &Walker| drive(own, relaxation_time);
-        own.as_ref().map_or_else(Vector2::zeros, drive)
-    })
+) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    walkers.iter().map(move |own| drive(own, relaxation_time))
 }
 
 /// Those who decide, with their places in a grid.
 #[inline(always)]
-pub(super) fn deciding<'a>(
-    people: &'a [Agent],
-    walkers: &'a [Option<Walker>],
-) -> impl Iterator<Item = (usize, &'a Walker)> {
-    let walkers = people.iter().map(|agent| &walkers[agent.number as usize]);
-    let present = walkers.enumerate();
-    present.filter_map(|(place, own)| Some((place, own.as_ref().filter(|own| own.decides)?)))
+pub(super) fn deciding(walkers: &[Walker]) -> impl Iterator<Item = (usize, &Walker)> {
+    walkers.iter().enumerate().filter(|(_, own)| own.decides)
 }
 
 /// Awareness of robots of somebody at a place of a grid.
 #[inline(always)]
-pub(super) fn awareness_of<'a>(
-    people: &'a [Agent],
-    walkers: &'a [Option<Walker>],
-) -> impl Fn(usize) -> f64 + Copy + 'a {
-    |place| {
-        let own = walkers[people[place].number as usize].as_ref();
-        own.map_or(0.0, |own| own.awareness)
-    }
+pub(super) fn awareness_of(walkers: &[Walker]) -> impl Fn(usize) -> f64 + Copy + '_ {
+    |place| walkers[place].awareness
 }

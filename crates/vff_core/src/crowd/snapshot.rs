@@ -62,6 +62,8 @@ impl<'m> Models<'_, 'm> {
 pub struct Snapshot {
     people: Grid,
     robots: Grid,
+    /// Those who are present, in the order of their grid: they are looked at one after the other.
+    placed: Vec<Walker>,
     room: Room,
 }
 
@@ -78,14 +80,18 @@ impl Snapshot {
     ) {
         let Setting { reach, period, .. } = *setting;
         let present = walkers.iter().flatten();
-        let present = present.map(|walker| (&walker.agent, ()));
-        self.people.place(present, (reach, period), |_, ()| ());
+        let present = present.map(|walker| (&walker.agent, walker));
+        self.placed.resize(walkers.len(), Walker::default());
+        self.people
+            .place(present, (reach, period), |place, walker: &Walker| {
+                self.placed[place] = *walker;
+            });
         self.robots.fill(robots, reach, period);
         let Self {
             people,
             robots,
+            placed,
             room,
-            ..
         } = self;
         let around = Around {
             neighbors: Neighbors { people, robots },
@@ -97,6 +103,7 @@ impl Snapshot {
         decisions.resize(walkers.len(), Vector2::zeros());
         let job = Job {
             around: &around,
+            placed: &mut placed[..people.agents().len()],
             walkers,
             models,
             decisions,
@@ -112,6 +119,7 @@ impl Snapshot {
 /// The decisions of everybody: with vectors those of pairs together, else one by one with the same bits.
 struct Job<'a, 'm> {
     around: &'a Around<'a>,
+    placed: &'a mut [Walker],
     walkers: &'a mut [Option<Walker>],
     models: Models<'a, 'm>,
     decisions: &'a mut [Vector2<f64>],
@@ -125,13 +133,13 @@ impl pulp::NullaryFnOnce for Job<'_, '_> {
     fn call(self) {
         match self.mutual() {
             Some(Model::SocialForce1995(model)) => {
-                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+                model.decide_together(self.placed, self.around, self.room, self.decisions);
             }
             Some(Model::Moussaid(model)) => {
-                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+                model.decide_together(self.placed, self.around, self.room, self.decisions);
             }
             Some(Model::ReciprocalAvoidance(model)) if self.around.neighbors.are_few() => {
-                model.decide_together(self.walkers, self.around, self.room, self.decisions);
+                model.decide_together(self.placed, self.around, self.room, self.decisions);
             }
             _ => self.one_by_one(),
         }
@@ -149,14 +157,14 @@ impl<'m> Job<'_, 'm> {
 
     #[inline(always)]
     fn one_by_one(self) {
-        for agent in self.around.neighbors.people.agents() {
-            let number = agent.number as usize;
-            if let Some(walker) = self.walkers[number]
-                .as_mut()
-                .filter(|walker| walker.decides)
+        for own in self.placed.iter_mut().filter(|own| own.decides) {
+            let (number, heading) = (own.agent.number as usize, own.heading);
+            let model = self.models.of(number);
+            self.decisions[number] = model.decide(own, self.around, self.room);
+            if own.heading != heading
+                && let Some(walker) = &mut self.walkers[number]
             {
-                let model = self.models.of(number);
-                self.decisions[number] = model.decide(walker, self.around, self.room);
+                walker.heading = own.heading;
             }
         }
     }

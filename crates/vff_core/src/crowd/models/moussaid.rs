@@ -143,18 +143,17 @@ impl Moussaid {
     #[inline(always)]
     pub(in crate::crowd) fn decide_together(
         &self,
-        walkers: &[Option<Walker>],
+        walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
         decisions: &mut [Vector],
     ) {
-        let people = around.neighbors.people.agents();
-        let awareness = awareness_of(people, walkers);
+        let awareness = awareness_of(walkers);
         let Room { pairs, sums, .. } = room;
         sums.clear();
-        sums.extend(drives(people, walkers, self.relaxation_time));
+        sums.extend(drives(walkers, self.relaxation_time));
         let robots = around.neighbors.robots.agents().len();
-        sums.resize(people.len() + robots, Vector::zeros());
+        sums.resize(walkers.len() + robots, Vector::zeros());
         pairs.open(&around.neighbors);
         while pairs.find(&around.neighbors, self.cutoff, awareness) {
             for pairs in pairs.side_by_side() {
@@ -163,7 +162,7 @@ impl Moussaid {
             }
         }
         let grouped = around.company.any();
-        for (place, own) in deciding(people, walkers) {
+        for (place, own) in deciding(walkers) {
             let decision = self.beside_others(sums[place], own, (around, grouped));
             decisions[own.agent.number as usize] = decision;
         }

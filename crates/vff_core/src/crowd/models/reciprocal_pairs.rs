@@ -20,13 +20,13 @@ impl ReciprocalPeople {
     #[inline(always)]
     pub(in crate::crowd) fn decide_together(
         &self,
-        walkers: &[Option<Walker>],
+        walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
         decisions: &mut [Vector],
     ) {
         self.meet(walkers, around, room);
-        for (place, own) in deciding(around.neighbors.people.agents(), walkers) {
+        for (place, own) in deciding(walkers) {
             let hard = self.keep_off_walls(own, around, room);
             let Room {
                 nearest,
@@ -119,10 +119,10 @@ impl ReciprocalPeople {
 
     /// Finds how everybody keeps off the others.
     #[inline(always)]
-    fn meet(&self, walkers: &[Option<Walker>], around: &Around<'_>, room: &mut Room) {
+    fn meet(&self, walkers: &[Walker], around: &Around<'_>, room: &mut Room) {
         let neighbors = &around.neighbors;
         let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
-        let awareness = awareness_of(people, walkers);
+        let awareness = awareness_of(walkers);
         let Room { pairs, mutual, .. } = room;
         mutual.open(people.len(), robots.len());
         pairs.open(neighbors);

@@ -104,7 +104,7 @@ impl SocialForce1995 {
     #[inline(always)]
     pub(in crate::crowd) fn decide_together(
         &self,
-        walkers: &[Option<Walker>],
+        walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
         decisions: &mut [Vector],
@@ -119,11 +119,10 @@ impl SocialForce1995 {
             aheads.push(agent.direction);
         }
         room.sums.clear();
-        room.sums
-            .extend(drives(people, walkers, self.relaxation_time));
+        room.sums.extend(drives(walkers, self.relaxation_time));
         room.sums.resize(ways.len(), Vector::zeros());
-        self.push_together(neighbors, awareness_of(people, walkers), room);
-        for (place, own) in deciding(people, walkers) {
+        self.push_together(neighbors, awareness_of(walkers), room);
+        for (place, own) in deciding(walkers) {
             let decision = room.sums[place] + self.walls(own.agent.position, around);
             decisions[own.agent.number as usize] = decision;
         }
