@@ -2054,8 +2054,8 @@ def crowd_metric_names() -> tuple[list[tuple[str, Any, str, str]], list[tuple[st
 
 def crowd_metrics(
     episodes: Sequence[CrowdEpisode], threads: int | None, progress: Callable[[int, int], object] | None
-) -> dict[str, npt.NDArray[Any]]:
-    """Return a column of each metric."""
+) -> tuple[dict[str, npt.NDArray[Any]], dict[str, _Array]]:
+    """Return a column of each metric, and of extremes that tell which episodes need a closer look."""
 
 def crowd_world_metrics(**given: object) -> dict[str, npt.NDArray[Any]]:
     """Return the metrics of a world, in columns of one row."""

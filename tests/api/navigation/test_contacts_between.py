@@ -11,6 +11,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks import benchmark
 from hrsafety.navigation.metrics.between import CONTACT_BETWEEN, touched_between, walls_between
+from hrsafety.plausibility import gathered
 
 STEP = 0.25
 
@@ -118,6 +119,25 @@ def test_walls_within_steps_are_found_as_by_small_steps() -> None:
         assert found[-1] == steps_through(walled(seed))
         assert (CONTACT_BETWEEN in [each.code for each in scores.warnings]) == (found[-1] > 0)
     assert 0 < sum(map(bool, found)) < len(found)
+
+
+def test_a_table_tells_what_each_of_its_episodes_tells() -> None:
+    rules = {"position": np.zeros((3, 2)), "step": 0.5, "goal": (9.0, 0.0), "robot_radius": 0.3}
+    near = {"people": [[[2.0, 0.1]], [[0.0, 0.1]], [[-2.0, 0.1]]]}
+    odd = ({"step": 500.0}, {"robot_radius": 300.0}, {"person_radius": [25.0], **near}, {"person_radius": [1e-3], **near})
+    both = {"people": [[[-20.0, 0.1]], [[20.0, 0.1]], [[20.0, 0.1]]]}
+    far = ({"people": [[[0.0, 3.0]], [[8.0, 3.0]], [[x, 3.0]]]} for x in (12.6, 12.4))
+    episodes = [
+        *(episode(seed) for seed in range(30)),
+        *(episode(seed, (5.0, 0.0)) for seed in range(30)),
+        *(walled(seed) for seed in range(40)),
+        *(nav.metrics.Episode(**{**rules, **given}) for given in (*odd, *far, near, both)),
+    ]
+    alone = [(f"episodes[{index}]", nav.metrics.evaluate(each).warnings) for index, each in enumerate(episodes)]
+    expected = gathered(alone, "episodes")
+    assert sorted(map(str, nav.metrics.evaluate_many(episodes).warnings)) == sorted(map(str, expected))
+    assert {each.code for each in expected} == {CONTACT_BETWEEN, "implausible"}
+    assert {len(found) for _, found in alone} == {0, 1, 2}
 
 
 def test_a_contact_that_no_kept_row_of_a_run_shows_is_told() -> None:

@@ -6,7 +6,8 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::metrics::{
-    self, Kind, KnownArrival, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole, Without,
+    self, EXTREMES, Kind, KnownArrival, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole,
+    Without,
 };
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
@@ -181,7 +182,7 @@ pub fn metric_columns<'py>(
     Ok(fields.finish())
 }
 
-/// Metrics of every episode.
+/// Metrics of every episode, and extremes that tell which of them need a closer look.
 #[pyfunction]
 #[pyo3(signature = (episodes, threads, progress))]
 pub fn crowd_metrics<'py>(
@@ -189,7 +190,7 @@ pub fn crowd_metrics<'py>(
     episodes: Vec<PyRef<'py, CrowdEpisode>>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<[Bound<'py, PyDict>; 2]> {
     let episodes: Vec<&CrowdEpisode> = episodes.iter().map(|episode| &**episode).collect();
     let report = Report::new(progress.as_ref(), episodes.len());
     let rows = watched(py, report, |control| {
@@ -199,12 +200,18 @@ pub fn crowd_metrics<'py>(
             progress: &|more| control.count(more),
         };
         each_run(episodes.len(), work, |index| {
-            Ok(metrics::evaluate_checked(&episodes[index].view()).into_array())
+            let (found, extremes) = metrics::evaluate_with_extremes(&episodes[index].view());
+            Ok((found.into_array(), extremes.into_array()))
         })
     })?;
-    metric_columns(py, &ROBOT_METRICS, |metric| {
-        rows.iter().map(|row| row[metric]).collect()
-    })
+    let columns = metric_columns(py, &ROBOT_METRICS, |metric| {
+        rows.iter().map(|row| row.0[metric]).collect()
+    })?;
+    let extremes = Fields::new(py);
+    for (index, name) in EXTREMES.into_iter().enumerate() {
+        extremes.vector(name, rows.iter().map(|row| row.1[index]).collect())?;
+    }
+    Ok([columns, extremes.finish()])
 }
 
 /// Metrics of a world, from the positions of all people and robots.

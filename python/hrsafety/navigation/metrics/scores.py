@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plausibility import ResultWarning, gathered, implausible
+from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -191,7 +191,7 @@ def evaluate(
     (True, 1.0, 1.0)
     """
     episode = _episode(run, people, options)
-    found = _hrsafety.crowd_metrics([episode._native], 1, None)
+    found, _ = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
     doubts = doubts_between(episode, *(values[name] for name in _ENDS))
     return EpisodeMetrics(values, (*episode.warnings, *_implausible(episode, values["max_speed"]), *doubts))
@@ -217,6 +217,31 @@ _QUANTITIES = {
     "speed of the robot": "person_speed",
     "speed of the people": "person_speed",
 }
+
+
+def _outside(quantity: str, values: Array, slack: float = 0.0) -> npt.NDArray[np.bool_]:
+    """Return which numbers are outside the plausible range of their quantity; NaN is not."""
+    least, most, *_ = RANGES[quantity]
+    found: npt.NDArray[np.bool_] = (values < least) | (values > most * (1.0 - slack))
+    return found
+
+
+def _may_be_implausible(max_speed: Array, extremes: Mapping[str, Array]) -> npt.NDArray[np.bool_]:
+    """Return for which episodes `_implausible` may have something to say."""
+    return np.logical_or.reduce(
+        [
+            _outside("control_period", extremes["step"]),
+            _outside("robot_radius", extremes["robot_radius"]),
+            _outside("person_radius", extremes["least_person_radius"]),
+            _outside("person_radius", extremes["greatest_person_radius"]),
+            _outside("person_speed", max_speed),
+            _outside("person_speed", extremes["person_speed"], _SLACK),
+        ]
+    )
+
+
+_SLACK = 1e-9
+"""What rounding may change of a number, relative to it: far more than it does."""
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -273,12 +298,18 @@ def evaluate_many(
     ([False, True], [0.5, 1.0])
     """
     given = sequence("episodes", "be a sequence of episodes", episodes)
-    names = [f"episodes[{index}]" for index in range(len(given))]
-    scored = [_scored(name, each) for name, each in zip(names, given, strict=True)]
-    table = table_of(scored, names=names, threads=threads, progress=progress)
-    speeds = table.max_speed.tolist()
-    own = ((*each.warnings, *_implausible(each, speed)) for each, speed in zip(scored, speeds, strict=True))
-    return MetricTable(table._values, (*gathered(zip(names, own, strict=True), "episodes"), *table.warnings))
+    scored = [_scored(index, each) for index, each in enumerate(given)]
+    found, extremes = _measured(scored, threads=threads, progress=progress)
+    speeds = found["max_speed"]
+    doubtful = np.flatnonzero(_may_be_implausible(speeds, extremes)).tolist()
+    doubts = {index: _implausible(scored[index], float(speeds[index])) for index in doubtful}
+    own = (
+        (_name(index), (*each.warnings, *doubts.get(index, ())))
+        for index, each in enumerate(scored)
+        if each.warnings or index in doubts
+    )
+    between = _between(scored, _name, found, extremes)
+    return MetricTable(found, (*gathered(own, "episodes"), *gathered(between, "episodes")))
 
 
 _ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
@@ -297,18 +328,44 @@ def table_of(
 
     With names of the episodes there are warnings of contacts between their instants, too.
     """
-    natives = [each._native for each in episodes]
-    found = _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
-    ends = zip(*(found[name].tolist() for name in _ENDS), strict=True)
-    between = [(name, doubts_between(each, *end)) for name, each, end in zip(names, episodes, ends, strict=False)]
+    found, extremes = _measured(episodes, threads=threads, progress=progress)
+    between = _between(episodes, names.__getitem__, found, extremes) if names else ()
     return MetricTable(found, (*warnings, *gathered(between, "episodes")))
 
 
-def _scored(name: str, given: object) -> Episode:
+def _measured(
+    episodes: Sequence[Episode], *, threads: int | None, progress: Callable[[int, int], object] | None
+) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Array]]:
+    """Return columns of the metrics, and of extremes of the episodes."""
+    natives = [each._native for each in episodes]
+    return _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
+
+
+def _between(
+    episodes: Sequence[Episode],
+    name_of: Callable[[int], str],
+    found: Mapping[str, npt.NDArray[Any]],
+    extremes: Mapping[str, Array],
+) -> Iterator[tuple[str, tuple[ResultWarning, ...]]]:
+    """Yield names of episodes with the doubts about contacts between their instants; most episodes can have none."""
+    passed = extremes["may_be_passed"] != 0.0
+    # No wall is touched within a step that is shorter than twice the distance from it.
+    longest = found["max_speed"] * extremes["step"] * (1.0 + _SLACK)
+    walled = (found["wall_clearance"] < np.inf) & (longest > 2.0 * found["wall_clearance"])
+    for index in np.flatnonzero(passed | walled).tolist():
+        ends = (found[name][index].item() for name in _ENDS)
+        yield name_of(index), doubts_between(episodes[index], *ends)
+
+
+def _name(index: int) -> str:
+    return f"episodes[{index}]"
+
+
+def _scored(index: int, given: object) -> Episode:
     if isinstance(given, Trajectory):
         return Episode.from_trajectory(given)
     if not isinstance(given, Episode):
-        raise InvalidParameterError(name, "be an Episode or Trajectory", given)
+        raise InvalidParameterError(_name(index), "be an Episode or Trajectory", given)
     return given
 
 

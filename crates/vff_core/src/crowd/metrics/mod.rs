@@ -7,6 +7,7 @@ mod contacts;
 mod declared;
 mod effect;
 mod episode;
+mod extremes;
 mod pressure;
 mod proximity;
 mod travel;
@@ -14,6 +15,7 @@ mod whole;
 
 pub use declared::{Kind, Metric, ROBOT_METRICS, RobotMetrics, WORLD_METRICS, WorldMetrics};
 pub use episode::{Episode, KnownArrival, Paths, Rules, Without};
+pub use extremes::{EXTREMES, Extremes};
 pub use whole::{Whole, evaluate_world};
 
 use contacts::Contacts;
@@ -38,12 +40,19 @@ pub fn evaluate(episode: &Episode<'_>) -> Result<RobotMetrics> {
 /// As [`evaluate`], of an episode that is known to be valid.
 #[must_use]
 pub fn evaluate_checked(episode: &Episode<'_>) -> RobotMetrics {
+    evaluate_with_extremes(episode).0
+}
+
+/// The same with what tells whether anything of it is in doubt.
+#[must_use]
+pub fn evaluate_with_extremes(episode: &Episode<'_>) -> (RobotMetrics, Extremes) {
     let travel = Travel::of(episode);
     let (near, touches) = Proximity::of(episode, travel.end);
     let contacts = Contacts::of(episode, travel.end, touches);
     let effect = Effect::of(episode);
     let success = travel.arrived && contacts.none();
-    RobotMetrics {
+    let extremes = Extremes::of(episode, near.may_be_passed);
+    let metrics = RobotMetrics {
         arrived: travel.arrived,
         arrival_time: travel.arrival_time,
         final_goal_distance: travel.final_goal_distance,
@@ -89,5 +98,6 @@ pub fn evaluate_checked(episode: &Episode<'_>) -> RobotMetrics {
         person_detour: effect.detour,
         people_blocked: effect.blocked,
         person_deviation: effect.deviation,
-    }
+    };
+    (metrics, extremes)
 }

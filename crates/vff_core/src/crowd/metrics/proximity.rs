@@ -1,5 +1,6 @@
 //! How near people are: clearances, zones, time to a collision, groups, social forces.
 
+use crate::crowd::neighbors::grid::Period;
 use crate::lanes::Vector2;
 
 use super::contacts::Touch;
@@ -14,6 +15,8 @@ const COMFORT: f64 = 0.5;
 const DISCOMFORT: f64 = 0.2;
 /// A time to a collision below it is low, in s.
 const LOW_TIME: f64 = 2.0;
+/// What rounding may change of lengths and times, relative to them: far more than it does.
+const SLACK: f64 = 1e-9;
 
 /// What the distances to people tell.
 pub(super) struct Proximity {
@@ -29,6 +32,8 @@ pub(super) struct Proximity {
     pub group_intrusion_share: f64,
     pub force_on_people: f64,
     pub force_on_robot: f64,
+    /// Whether somebody may touch the robot within a step and at no instant.
+    pub may_be_passed: bool,
 }
 
 /// Sums over the instants.
@@ -52,6 +57,8 @@ impl Proximity {
             end,
             pressures: Pressures::new(),
             touches: Vec::new(),
+            touched: Vec::new(),
+            passing: Vec::new(),
         };
         let (mut least, mut least_time) = (f64::INFINITY, f64::INFINITY);
         for instant in 0..=end {
@@ -62,6 +69,12 @@ impl Proximity {
             let intruded = groups.iter().any(|group| intrudes(episode, instant, group));
             sums.intrusion += u32::from(intruded);
         }
+        // Where the world repeats itself, somebody may have been put to the other side of it.
+        let may_be_passed = if episode.rules.period == Period::default() {
+            watch.is_passed()
+        } else {
+            least_time <= episode.rules.step * (1.0 + SLACK)
+        };
         let [force_on_people, force_on_robot] = watch.pressures.sums();
         let (step, steps) = (episode.rules.step, end as f64);
         let share = |count: u32| f64::from(count) / (steps + 1.0);
@@ -78,6 +91,7 @@ impl Proximity {
             group_intrusion_share: share(sums.intrusion),
             force_on_people: force_on_people * step,
             force_on_robot: force_on_robot * step,
+            may_be_passed,
         };
         (proximity, watch.touches)
     }
@@ -98,9 +112,19 @@ struct Watch {
     end: usize,
     pressures: Pressures,
     touches: Vec<Touch>,
+    /// Who is touched at an instant beyond all rounding, and who may be within a step.
+    touched: Vec<usize>,
+    passing: Vec<usize>,
 }
 
 impl Watch {
+    /// Whether somebody may touch the robot within a step and at no instant.
+    fn is_passed(&mut self) -> bool {
+        self.touched.sort_unstable();
+        let hidden = |person: &usize| self.touched.binary_search(person).is_err();
+        self.passing.iter().any(hidden)
+    }
+
     fn at(&mut self, episode: &Episode<'_>, instant: usize) -> Near {
         let (rules, robot, people) = (&episode.rules, episode.robot, &episode.people);
         let next = instant + usize::from(instant < self.end);
@@ -110,6 +134,7 @@ impl Watch {
             zone: f64::INFINITY,
             time: f64::INFINITY,
         };
+        let (step, scale) = (rules.step, robot[instant].norm());
         let moves = people.at(instant).iter().zip(people.at(next));
         for (person, ((from, to), radius)) in moves.zip(episode.radii).enumerate() {
             if from.x.is_nan() {
@@ -120,8 +145,12 @@ impl Watch {
             let (zone, reach) = (distance - rules.robot_radius, rules.robot_radius + radius);
             near.zone = near.zone.min(zone);
             near.gap = near.gap.min(zone - radius);
-            if distance - reach < 0.0 {
+            let (gap, slack) = (distance - reach, SLACK * (reach + scale));
+            if gap < 0.0 {
                 self.touches.push(Touch { person, instant });
+            }
+            if gap < -slack {
+                self.touched.push(person);
             }
             if next == instant || to.x.is_nan() {
                 continue;
@@ -130,6 +159,14 @@ impl Watch {
             let time = time_to_collision(to_person, closing, reach);
             near.time = near.time.min(time);
             self.pressures.add(instant, to_person, closing);
+            // Most are too far away to come here within a step; whoever is touched is told of already.
+            let far = 1.01 * step * step * closing.norm_squared() + 101.0 * slack * slack;
+            if gap >= -slack && gap * gap <= far {
+                let time = time_to_collision(to_person, closing, reach + slack);
+                if time <= step * (1.0 + SLACK) {
+                    self.passing.push(person);
+                }
+            }
         }
         near
     }
@@ -200,6 +237,39 @@ fn intrudes(episode: &Episode<'_>, instant: usize, group: &[usize]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::crowd::metrics::{Paths, Rules};
+
+    /// A robot of 0.3 m at zero, and somebody of 0.2 m who walks 1 m in each of two steps of 1 s.
+    fn passed(start: [f64; 2]) -> (bool, usize) {
+        let people = [0.0, 1.0, 2.0].map(|x| Vector2::new(start[0] + x, start[1]));
+        let episode = Episode {
+            robot: &[Vector2::zeros(); 3],
+            people: Paths::new("people", &people, 1).unwrap(),
+            radii: &[0.2],
+            groups: &[],
+            walls: &[],
+            without: None,
+            rules: Rules {
+                robot_radius: 0.3,
+                ..Rules::of_people()
+            },
+        };
+        let (found, touches) = Proximity::of(&episode, 2);
+        (found.may_be_passed, touches.len())
+    }
+
+    #[test]
+    fn who_may_pass_through_between_instants_is_told_of() {
+        assert_eq!(passed([-0.5, 0.45]), (true, 0));
+        assert_eq!(passed([-0.5, 0.51]), (false, 0));
+        // At an instant, on the way to it, and gone before the first one.
+        assert_eq!(passed([-1.0, 0.45]), (false, 1));
+        assert_eq!(passed([-2.9, 0.0]), (false, 0));
+        assert_eq!(passed([0.5, 0.1]), (false, 0));
+        // Rounding decides nothing: grazed, and touched by less than it.
+        assert_eq!(passed([-0.5, 0.5]), (true, 0));
+        assert_eq!(passed([-1.0, 0.5 - 1e-12]), (true, 1));
+    }
 
     #[test]
     fn the_time_to_a_collision_has_its_limits() {
