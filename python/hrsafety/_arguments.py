@@ -33,6 +33,9 @@ LONGEST_SHOWN = 200
 """Characters of a path that a message shows."""
 
 
+COPIED_AT_ONCE = 1 << 25
+"""Bytes of a large array that are copied at once."""
+
 MOST_AXES = 16
 """Axes of an array: NumPy lays at most 32 beside each other, of which results need some themselves."""
 
@@ -293,7 +296,15 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
 
 def own(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
     """Return a copy that nobody changes: what was checked stays, though the arrays of the user are filled again."""
-    kept = np.array(array, order="C")
+    kept = np.empty(array.shape, array.dtype)
+    if array.nbytes <= COPIED_AT_ONCE:
+        kept[...] = array
+    else:  # a long copy in parts, between which Ctrl-C is answered
+        whole = array.flags.c_contiguous
+        target, source = (kept.reshape(-1), array.reshape(-1)) if whole else (kept, array)
+        step = max(len(source) * COPIED_AT_ONCE // array.nbytes, 1)
+        for first in range(0, len(source), step):
+            target[first : first + step] = source[first : first + step]
     kept.flags.writeable = False
     return kept
 

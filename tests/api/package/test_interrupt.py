@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from api.interrupting import check_work_is_interrupted, needs_signals
@@ -113,3 +117,56 @@ JOBS = {
 def test_running_work_answers_ctrl_c(job: str, capsys: pytest.CaptureFixture[str]) -> None:
     preparation, work = JOBS[job]
     check_work_is_interrupted(IMPORTS + preparation, work, capsys)
+
+
+# Python answers a signal between two of its own steps: the longest of them tells how late Ctrl-C may be answered.
+TICKS = """
+import signal, sys, time
+import numpy as np
+from hrsafety import navigation as nav, reactive
+{preparation}
+last, longest = time.thread_time(), 0.0
+def tick(*_):
+    global last, longest
+    now = time.thread_time()
+    last, longest = now, max(longest, now - last)
+signal.signal(signal.SIGALRM, tick)
+signal.setitimer(signal.ITIMER_REAL, 0.005, 0.005)
+last = time.thread_time()
+{work}
+signal.setitimer(signal.ITIMER_REAL, 0)
+tick()
+print(longest)
+"""
+SERVED = """
+import pathlib
+rows = columns = 14_000
+pathlib.Path("m.yaml").write_text(
+    "image: m.pgm\\nresolution: 0.1\\norigin: [0, 0, 0]\\noccupied_thresh: 0.65\\nfree_thresh: 0.2\\nnegate: 0")
+with open("m.pgm", "wb") as file:
+    file.write(b"P5 %d %d 255\\n" % (columns, rows))
+    file.write(bytes([254]) * (rows * columns))
+from hrsafety.navigation.maps.map_server import read_map_server
+"""
+RECORDED = """
+import wave
+with wave.open("long.wav", "wb") as file:
+    file.setnchannels(3); file.setsampwidth(2); file.setframerate(48000)
+    file.writeframes(bytes(6 * 30_000_000))
+"""
+
+
+@needs_signals
+@pytest.mark.parametrize(
+    ("preparation", "work"),
+    [
+        (SERVED, "read_map_server('m.yaml')"),
+        (RECORDED, "reactive.read_recording('long.wav')"),
+    ],
+    ids=["map server", "recording"],
+)
+def test_no_step_of_reading_a_large_file_takes_long(preparation: str, work: str, tmp_path: Path) -> None:
+    program = TICKS.format(preparation=preparation, work=work)
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 0.2

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["ServedMap", "read_map_server"]
 
 MOST_BYTES = 1 << 20  # of a YAML file
+CELLS_AT_ONCE = 1 << 23
 _ENTRY = r"(\w+)\s*:\s*(.*)"
 _NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
 
@@ -52,13 +53,24 @@ def read_map_server(path: str | PathLike[str], *, unknown: str = "occupied") -> 
     negate = _number(entries, "negate") if "negate" in entries else 0.0
     if negate not in (0.0, 1.0):
         raise InvalidParameterError("negate", "be 0 or 1", negate)
-    gray = read_pgm(_image(file, str(entries["image"])))
-    share = gray / 255.0 if negate else (255.0 - gray) / 255.0
+    picture = read_pgm(_image(file, str(entries["image"])))
+    share = picture.gray / 255.0 if negate else (255.0 - picture.gray) / 255.0
     cells = share >= free if fills else share > occupied
     if fills:
         # Between the thresholds and on them nothing is known; above them it is occupied.
         cells |= share > occupied
-    return ServedMap(np.ascontiguousarray(cells[::-1]), resolution, (x, y), yaw)
+    return ServedMap(_upwards(cells, picture.values), resolution, (x, y), yaw)
+
+
+def _upwards(cells: npt.NDArray[np.bool_], values: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    """Return the cell of each value, the lowest row first; some rows at a time, so that Ctrl-C is answered."""
+    rows, columns = values.shape
+    found = np.empty((rows, columns), dtype=np.bool_)
+    step = max(CELLS_AT_ONCE // columns, 1)
+    for first in range(0, rows, step):
+        last = min(first + step, rows)
+        found[rows - last : rows - first] = cells[values[first:last]][::-1]
+    return found
 
 
 def _entries(file: Path) -> dict[str, Any]:

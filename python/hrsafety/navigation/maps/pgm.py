@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,17 +14,27 @@ from hrsafety.errors import InvalidParameterError, Shown
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["read_pgm"]
+__all__ = ["Picture", "read_pgm"]
 
 HEAD_BYTES = 1 << 16
+PIECE = 1 << 24  # bytes that are read at once
 BYTES_OF_NUMBER = 16  # of a gray value in words with what stands around it
 # Between the words of the head stand blanks and comments that end with their line.
 _GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
 _HEAD = rb"(P[25])" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,6})(?:\s|(?=#))"
 
 
-def read_pgm(path: Path) -> npt.NDArray[np.float64]:
-    """Return the gray values of a picture from 0 to 255, (rows, columns), first row on top."""
+class Picture(NamedTuple):
+    """Gray values as they stand in a file."""
+
+    values: npt.NDArray[np.uint8]
+    """(rows, columns), first row on top."""
+    gray: npt.NDArray[np.float64]
+    """Gray value from 0 to 255 of each value that a file may hold."""
+
+
+def read_pgm(path: Path) -> Picture:
+    """Return the gray values of a picture."""
     try:
         with path.open("rb") as file:
             head = re.match(_HEAD, file.read(HEAD_BYTES))
@@ -38,15 +48,18 @@ def read_pgm(path: Path) -> npt.NDArray[np.float64]:
             if size > cells * (1 if kind == b"P5" else BYTES_OF_NUMBER) + HEAD_BYTES:
                 raise _wrong_size(path, rows, columns, f"{size} bytes")
             file.seek(head.end())
-            body = file.read()
+            # In pieces, between which Ctrl-C is answered.
+            body = b"".join(iter(lambda: file.read(PIECE), b""))
     except OSError as error:
         raise InvalidParameterError("image", "be readable", Shown(f"{path.name} ({error.strerror})")) from None
     values = _bytes(path, body, rows, columns) if kind == b"P5" else _words(path, body, rows, columns)
     if values.size and int(values.max()) > most:
         shown = Shown(f"{int(values.max())} in {path.name}")
         raise InvalidParameterError("image", f"have gray values up to its maxval, {most}", shown)
-    gray = values.reshape(rows, columns).astype(np.float64)
-    return gray if most == 255 else gray * (255.0 / most)
+    gray = np.arange(256.0)
+    return Picture(
+        values.astype(np.uint8, copy=False).reshape(rows, columns), gray if most == 255 else gray * (255.0 / most)
+    )
 
 
 def _check_head(path: Path, rows: int, columns: int, most: int) -> None:

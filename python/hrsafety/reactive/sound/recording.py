@@ -15,6 +15,9 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["SoundRecording", "read_recording"]
 
+FRAMES_AT_ONCE = 1 << 20
+"""Frames of a long recording that are looked at between two looks at Ctrl-C."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SoundRecording:
@@ -53,8 +56,12 @@ class SoundRecording:
         array = numbers("samples", self.samples, "be an array of numbers")
         if array.ndim != 2 or array.shape[0] != 3 or array.shape[1] == 0:
             raise ShapeError("samples", "(3, n)", array.shape)
-        if not np.isfinite(array).all():
-            raise InvalidParameterError("samples", "be finite", float(array[~np.isfinite(array)][0]))
+        for channel in array:
+            # In parts, between which Ctrl-C is answered.
+            for first in range(0, len(channel), FRAMES_AT_ONCE):
+                part = channel[first : first + FRAMES_AT_ONCE]
+                if not np.isfinite(part).all():
+                    raise InvalidParameterError("samples", "be finite", float(part[~np.isfinite(part)][0]))
         shares = tuple(count("clipped", each, least=0) for each in sequence("clipped", "be three counts", self.clipped))
         if len(shares) != 3:
             raise InvalidParameterError("clipped", "be three numbers", self.clipped)
@@ -113,7 +120,7 @@ def read_recording(path: str | PathLike[str], *, channels: Sequence[int] = (0, 1
     try:
         with file.open("rb") as stream, wave.open(stream, "rb") as sound:
             parameters = sound.getparams()
-            data = sound.readframes(parameters.nframes)
+            parts = list(iter(lambda: sound.readframes(FRAMES_AT_ONCE), b""))
     except (wave.Error, EOFError, RuntimeError) as error:
         # A chunk that says it is longer than the file makes the reader of chunks fail without a word.
         reason = str(error) or "the file ends within its header or a chunk"
@@ -124,20 +131,25 @@ def read_recording(path: str | PathLike[str], *, channels: Sequence[int] = (0, 1
         rule = f"have {max(chosen) + 1} channels or more"
         raise InvalidParameterError(file.name, rule, Shown(f"{parameters.nchannels}"))
     width = parameters.sampwidth
-    frames = len(data) // (width * parameters.nchannels)
+    frame, size = width * parameters.nchannels, sum(map(len, parts))
+    frames = size // frame
     if parameters.nframes == 0 or frames == 0:
         raise InvalidParameterError(file.name, "hold samples", Shown("none"))
-    if frames != parameters.nframes or len(data) % (width * parameters.nchannels):
+    if frames != parameters.nframes or size % frame:
         raise InvalidParameterError(
             file.name, f"hold the {parameters.nframes} frames of its header", Shown(f"{frames}")
         )
     if parameters.framerate <= 0:
         raise InvalidParameterError(file.name, "have a positive sample rate", Shown(f"{parameters.framerate}"))
-    levels = _levels(data, width, file.name).reshape(frames, parameters.nchannels).T[chosen]
     steps = float(2 ** (8 * width - 1))
-    ends = ((levels <= -steps) | (levels >= steps - 1.0)).sum(axis=1)
+    samples, ends, first = np.empty((3, frames)), np.zeros(3, dtype=np.int64), 0
+    for data in parts:
+        levels = _levels(data, width, file.name).reshape(-1, parameters.nchannels).T[chosen]
+        ends += ((levels <= -steps) | (levels >= steps - 1.0)).sum(axis=1)
+        samples[:, first : first + levels.shape[1]] = levels / steps
+        first += levels.shape[1]
     return SoundRecording(
-        samples=levels / steps,
+        samples=samples,
         sample_rate=float(parameters.framerate),
         clipped=(int(ends[0]), int(ends[1]), int(ends[2])),
     )
