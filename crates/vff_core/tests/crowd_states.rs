@@ -154,7 +154,7 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     let people = all
         .iter()
         .map(|(walker, robot)| (!robot).then_some(*walker));
-    let mut people: Vec<_> = people.collect();
+    let people: Vec<_> = people.collect();
     let robots = all.iter().filter(|(_, robot)| *robot);
     let robots: Vec<_> = robots.map(|(walker, _)| walker.agent).collect();
     let setting = Setting {
@@ -167,8 +167,9 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     let mut decisions = Vec::new();
     let mut snapshot = Snapshot::default();
     let models = Models::Shared(&model);
-    snapshot.decide(&setting, &mut people, &robots, models, &mut decisions);
-    decisions
+    let everybody = (people.len(), |number: usize| people[number]);
+    snapshot.decide(&setting, everybody, &robots, models, &mut decisions);
+    decisions.iter().map(|decision| decision.order).collect()
 }
 
 #[test]

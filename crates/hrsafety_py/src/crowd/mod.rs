@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::circle;
 use vff_core::crowd::neighbors::grid::Period;
-use vff_core::crowd::pedestrian::{Groupings, Walker};
+use vff_core::crowd::pedestrian::{Decision, Groupings, Walker};
 use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
@@ -422,17 +422,16 @@ pub fn crowd_decisions<'py>(
     let mut snapshot = Snapshot::default();
     snapshot.decide(
         &setting,
-        &mut people,
+        (people.len(), |number| people[number]),
         &robots,
         Models::Shared(&model.0),
         &mut decisions,
     );
-    for (decision, person) in decisions.iter_mut().zip(&people) {
-        if person.is_none() {
-            *decision = Vector2::repeat(f64::NAN);
-        }
-    }
-    let flat = decisions.iter().flat_map(|each| [each.x, each.y]).collect();
+    let shown = |(decision, person): (&Decision, &Option<Walker>)| match person {
+        Some(_) => [decision.order.x, decision.order.y],
+        None => [f64::NAN; 2],
+    };
+    let flat = decisions.iter().zip(&people).flat_map(shown).collect();
     let fields = Fields::new(py);
     fields.matrix("decision", flat, decisions.len(), 2)?;
     Ok(fields.finish())

@@ -30,6 +30,26 @@ pub struct Walker {
     pub awareness: f64,
 }
 
+/// What a person has decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Decision {
+    /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
+    pub order: Vector2<f64>,
+    /// Direction in which the person walks now, of models that keep it.
+    pub heading: Vector2<f64>,
+}
+
+impl Decision {
+    /// An order that leaves the heading of a person as it is.
+    #[inline(always)]
+    pub(super) fn of(own: &Walker, order: Vector2<f64>) -> Self {
+        Self {
+            order,
+            heading: own.heading,
+        }
+    }
+}
+
 /// Members of the person's group, relative to the person.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Company {

@@ -175,9 +175,20 @@ impl PersonState {
         (self.position + self.velocity).norm_squared().is_finite()
     }
 
-    /// The person as one who decides.
+    /// Whether the person is there and decides.
     #[inline]
-    pub(super) fn walker(&self, number: u32) -> Walker {
+    pub(super) fn decides(&self) -> bool {
+        self.is_present() && !self.recorded
+    }
+
+    /// The person as one who decides, if there.
+    // Where the place alone is asked for, nothing else is computed.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation)] // there are at most a million people
+    pub(super) fn walker(&self, number: usize) -> Option<Walker> {
+        if !self.is_present() {
+            return None;
+        }
         let (mut direction, mut to_go) = (Vector::zeros(), 0.0);
         if self.recorded {
             direction = direction_of(self.velocity);
@@ -190,13 +201,13 @@ impl PersonState {
                 way / to_go
             };
         }
-        Walker {
+        Some(Walker {
             agent: Agent {
                 position: self.position,
                 velocity: self.velocity,
                 direction,
                 radius: self.radius,
-                number,
+                number: number as u32,
             },
             desired_speed: self.desired_speed,
             decides: !self.recorded,
@@ -204,7 +215,7 @@ impl PersonState {
             stays: self.presence != Presence::Walking,
             heading: self.heading,
             awareness: self.awareness,
-        }
+        })
     }
 
     /// Moves for a time in s by a decision of the person's model.

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use crate::crowd::agent::Agent;
-use crate::crowd::pedestrian::Walker;
+use crate::crowd::pedestrian::Decision;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
@@ -15,7 +15,6 @@ use crate::crowd::snapshot::{Models, Setting, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
-use crate::lanes::Vector2;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
 
 /// Whose state is no longer finite.
@@ -40,8 +39,7 @@ pub struct Divergence {
 /// stepped in turn can share it and find it in the cache.
 #[derive(Clone, Debug, Default)]
 pub struct DecisionRoom {
-    walkers: Vec<Option<Walker>>,
-    decisions: Vec<Vector2<f64>>,
+    decisions: Vec<Decision>,
     snapshot: Snapshot,
 }
 
@@ -147,15 +145,9 @@ impl CrowdParts {
             return true;
         }
         let DecisionRoom {
-            walkers,
             decisions,
             snapshot,
         } = &mut *self.room;
-        walkers.clear();
-        let numbered = people.iter().zip(0_u32..);
-        walkers.extend(
-            numbered.map(|(person, number)| person.is_present().then(|| person.walker(number))),
-        );
         let setting = Setting {
             walls: &world.walls,
             company: &Companions {
@@ -172,14 +164,15 @@ impl CrowdParts {
             [model] => Models::Shared(model),
             _ => Models::Of(&model_of),
         };
-        snapshot.decide(&setting, walkers, &self.bodies, models, decisions);
-        let decided = decisions.iter().zip(&*walkers);
+        let walker_of = |number: usize| people[number].walker(number);
+        let everybody = (people.len(), walker_of);
+        snapshot.decide(&setting, everybody, &self.bodies, models, decisions);
         let mut finite = true;
-        for (person, (decision, walker)) in people.iter_mut().zip(decided) {
-            if let Some(walker) = walker.as_ref().filter(|walker| walker.decides) {
-                person.heading = walker.heading;
+        for (person, decision) in people.iter_mut().zip(&*decisions) {
+            if person.decides() {
+                person.heading = decision.heading;
                 let model = &world.models[person.model as usize];
-                person.move_by(*decision, model, part);
+                person.move_by(decision.order, model, part);
                 finite &= person.is_finite();
             }
         }

@@ -4,9 +4,9 @@ use crate::crowd::agent::Agent;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::{Grid, Period};
-use crate::crowd::pedestrian::{Around, Fellows, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Decision, Fellows, Pedestrian, Room, Walker};
 use crate::crowd::walls::Wall;
-use crate::lanes::{Vector2, vectors};
+use crate::lanes::vectors;
 
 /// What is the same for everybody.
 #[derive(Clone, Copy, Debug)]
@@ -68,24 +68,30 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Decides for everybody: `walkers` by number, `None` for people who are absent. Decisions come back under
-    /// the same number, in m/s^2 or m/s; headings change in place.
+    /// Decides for everybody: how many people there may be, and who they are by number, `None` for people who are
+    /// absent. Decisions come back under the same number.
+    #[allow(clippy::cast_possible_truncation)] // at most a million people
     pub fn decide(
         &mut self,
         setting: &Setting<'_>,
-        walkers: &mut [Option<Walker>],
+        (count, walker_of): (usize, impl Fn(usize) -> Option<Walker>),
         robots: &[Agent],
         models: Models<'_, '_>,
-        decisions: &mut Vec<Vector2<f64>>,
+        decisions: &mut Vec<Decision>,
     ) {
         let Setting { reach, period, .. } = *setting;
-        let present = walkers.iter().flatten();
-        let present = present.map(|walker| (&walker.agent, walker));
-        self.placed.resize(walkers.len(), Walker::default());
-        self.people
-            .place(present, (reach, period), |place, walker: &Walker| {
-                self.placed[place] = *walker;
-            });
+        let present = (0..count).filter_map(|number| {
+            let position = walker_of(number)?.agent.position;
+            Some((number as u32, position))
+        });
+        self.people.order(present, reach, period);
+        self.placed.clear();
+        self.people.seat(|number| {
+            // Who came first is still there.
+            let walker = walker_of(number).unwrap_or_default();
+            self.placed.push(walker);
+            walker.agent
+        });
         self.robots.fill(robots, reach, period);
         let Self {
             people,
@@ -100,11 +106,10 @@ impl Snapshot {
             step: setting.step,
         };
         decisions.clear();
-        decisions.resize(walkers.len(), Vector2::zeros());
+        decisions.resize(count, Decision::default());
         let job = Job {
             around: &around,
-            placed: &mut placed[..people.agents().len()],
-            walkers,
+            placed,
             models,
             decisions,
             room,
@@ -120,9 +125,8 @@ impl Snapshot {
 struct Job<'a, 'm> {
     around: &'a Around<'a>,
     placed: &'a mut [Walker],
-    walkers: &'a mut [Option<Walker>],
     models: Models<'a, 'm>,
-    decisions: &'a mut [Vector2<f64>],
+    decisions: &'a mut [Decision],
     room: &'a mut Room,
 }
 
@@ -158,14 +162,9 @@ impl<'m> Job<'_, 'm> {
     #[inline(always)]
     fn one_by_one(self) {
         for own in self.placed.iter_mut().filter(|own| own.decides) {
-            let (number, heading) = (own.agent.number as usize, own.heading);
-            let model = self.models.of(number);
-            self.decisions[number] = model.decide(own, self.around, self.room);
-            if own.heading != heading
-                && let Some(walker) = &mut self.walkers[number]
-            {
-                walker.heading = own.heading;
-            }
+            let number = own.agent.number as usize;
+            let order = self.models.of(number).decide(own, self.around, self.room);
+            self.decisions[number] = Decision::of(own, order);
         }
     }
 }
@@ -176,6 +175,7 @@ mod tests {
     use crate::crowd::agent::{FIRST_ROBOT, direction_of};
     use crate::crowd::models::of_pairs;
     use crate::crowd::pedestrian::Groupings;
+    use crate::lanes::Vector2;
     use numeric::random::Stream;
 
     type Vector = Vector2<f64>;
@@ -253,8 +253,8 @@ mod tests {
                 };
                 let decide = |snapshot: &mut Snapshot, models: Models<'_, '_>| {
                     let mut decisions = Vec::new();
-                    let mut walkers = walkers.clone();
-                    snapshot.decide(&setting, &mut walkers, &robots, models, &mut decisions);
+                    let people = (walkers.len(), |number: usize| walkers[number]);
+                    snapshot.decide(&setting, people, &robots, models, &mut decisions);
                     decisions
                 };
                 let (of_one, another) = (|_: usize| &model, model);

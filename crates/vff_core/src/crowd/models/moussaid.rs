@@ -11,7 +11,7 @@ use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{
-    Around, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+    Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::walls::pushes;
 use crate::lanes::{Planar, Real, Vector2};
@@ -146,7 +146,7 @@ impl Moussaid {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Vector],
+        decisions: &mut [Decision],
     ) {
         let awareness = awareness_of(walkers);
         let Room { pairs, sums, .. } = room;
@@ -164,7 +164,7 @@ impl Moussaid {
         let grouped = around.company.any();
         for (place, own) in deciding(walkers) {
             let decision = self.beside_others(sums[place], own, (around, grouped));
-            decisions[own.agent.number as usize] = decision;
+            decisions[own.agent.number as usize] = Decision::of(own, decision);
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::crowd::agent_lanes::{self, AgentLanes};
 use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
 use crate::crowd::neighbors::mutual::Known;
 use crate::crowd::neighbors::pairs::Each;
-use crate::crowd::pedestrian::{Around, Room, Walker, awareness_of, deciding};
+use crate::crowd::pedestrian::{Around, Decision, Room, Walker, awareness_of, deciding};
 use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
@@ -23,7 +23,7 @@ impl ReciprocalPeople {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Vector],
+        decisions: &mut [Decision],
     ) {
         self.meet(walkers, around, room);
         for (place, own) in deciding(walkers) {
@@ -47,7 +47,8 @@ impl ReciprocalPeople {
                     direction,
                 });
             }
-            decisions[own.agent.number as usize] = permitted(own, hard, around.step, room);
+            let order = permitted(own, hard, around.step, room);
+            decisions[own.agent.number as usize] = Decision::of(own, order);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::pedestrian::{
-    Around, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+    Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::walls::pushes;
 use crate::lanes::{Mask, Planar, Real, Vector2};
@@ -107,7 +107,7 @@ impl SocialForce1995 {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Vector],
+        decisions: &mut [Decision],
     ) {
         let neighbors = &around.neighbors;
         let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
@@ -124,7 +124,7 @@ impl SocialForce1995 {
         self.push_together(neighbors, awareness_of(walkers), room);
         for (place, own) in deciding(walkers) {
             let decision = room.sums[place] + self.walls(own.agent.position, around);
-            decisions[own.agent.number as usize] = decision;
+            decisions[own.agent.number as usize] = Decision::of(own, decision);
         }
     }
 

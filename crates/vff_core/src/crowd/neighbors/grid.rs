@@ -103,35 +103,6 @@ fn whole(count: f64) -> usize {
     count as usize
 }
 
-/// Where some agents are.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    /// Least coordinates in m.
-    low: Vector,
-    /// Greatest ones.
-    high: Vector,
-    count: usize,
-}
-
-impl Default for Extent {
-    fn default() -> Self {
-        Self {
-            low: Vector::repeat(f64::INFINITY),
-            high: Vector::repeat(f64::NEG_INFINITY),
-            count: 0,
-        }
-    }
-}
-
-impl Extent {
-    #[inline]
-    fn add(&mut self, position: Vector) {
-        self.low = self.low.inf(&position);
-        self.high = self.high.sup(&position);
-        self.count += 1;
-    }
-}
-
 /// Agents by the cells they are in.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
@@ -139,9 +110,13 @@ pub struct Grid {
     pub(crate) period: Period,
     /// First agent of every cell, and the number of agents.
     starts: Vec<u32>,
-    /// Cell of every agent as they came.
+    /// Numbers, positions and cells of the agents as they came.
+    came: Vec<u32>,
+    spots: Vec<Vector>,
     cells: Vec<u32>,
-    /// The agents, sorted by cell, then number.
+    /// Their numbers, sorted by cell, then number.
+    order: Vec<u32>,
+    /// The agents in this order.
     agents: Vec<Agent>,
     /// Their coordinates and numbers, side by side.
     x: Vec<f64>,
@@ -153,65 +128,73 @@ pub struct Grid {
 impl Grid {
     /// Sorts agents, given by rising number, into cells of a size in m; infinite: everybody is looked at.
     pub fn fill(&mut self, agents: &[Agent], reach: f64, period: Period) {
-        let agents = agents.iter().map(|agent| (agent, ()));
-        self.place(agents, (reach, period), |_, ()| ());
+        let positions = agents.iter().map(|agent| agent.position);
+        self.order((0..).zip(positions), reach, period);
+        self.seat(|index| agents[index]);
     }
 
-    /// The same for agents who have something; `told`: the place of each.
-    pub(crate) fn place<'a, T>(
+    /// Finds the order of agents at positions, which come with rising numbers.
+    pub(crate) fn order(
         &mut self,
-        owners: impl Iterator<Item = (&'a Agent, T)> + Clone,
-        (reach, period): (f64, Period),
-        mut told: impl FnMut(usize, T),
+        agents: impl Iterator<Item = (u32, Vector)>,
+        reach: f64,
+        period: Period,
     ) {
-        let mut extent = Extent::default();
-        for (agent, _) in owners.clone() {
-            extent.add(agent.position);
-        }
         self.period = period;
-        self.all_pairs = extent.count <= FEW || !reach.is_finite();
-        self.agents.resize(extent.count, Agent::default());
-        self.x.resize(extent.count, 0.0);
-        self.y.resize(extent.count, 0.0);
-        self.numbers.resize(extent.count, 0);
+        self.came.clear();
+        self.spots.clear();
+        let (mut low, mut high) = (
+            Vector::repeat(f64::INFINITY),
+            Vector::repeat(-f64::INFINITY),
+        );
+        for (number, position) in agents {
+            low = low.inf(&position);
+            high = high.sup(&position);
+            self.came.push(number);
+            self.spots.push(position);
+        }
+        self.all_pairs = self.came.len() <= FEW || !reach.is_finite();
+        self.order.clone_from(&self.came);
         if self.all_pairs {
-            for (place, (agent, owned)) in owners.enumerate() {
-                self.put(place, agent);
-                told(place, owned);
-            }
             return;
         }
-        self.lay(&extent, reach);
-        self.count(owners.clone().map(|(agent, _)| agent.position));
-        for (index, (agent, owned)) in owners.enumerate() {
-            let next = &mut self.starts[self.cells[index] as usize];
-            let place = *next as usize;
+        self.lay([low, high], reach);
+        self.count();
+        for (number, cell) in self.came.iter().zip(&self.cells) {
+            let next = &mut self.starts[*cell as usize];
+            self.order[*next as usize] = *number;
             *next += 1;
-            self.put(place, agent);
-            told(place, owned);
         }
         // Every start has become the next one.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }
 
-    /// Puts an agent at a place.
-    #[inline(always)]
-    fn put(&mut self, place: usize, agent: &Agent) {
-        self.agents[place] = *agent;
-        self.x[place] = agent.position.x;
-        self.y[place] = agent.position.y;
-        self.numbers[place] = agent.number;
+    /// Takes the agents by their numbers to their places. They are read across memory and written one after the
+    /// other: the other way round each would wait for several writes.
+    pub(crate) fn seat(&mut self, mut agent_of: impl FnMut(usize) -> Agent) {
+        let count = self.order.len();
+        self.agents.resize(count, Agent::default());
+        self.x.resize(count, 0.0);
+        self.y.resize(count, 0.0);
+        self.numbers.resize(count, 0);
+        let columns = self.x.iter_mut().zip(&mut self.y).zip(&mut self.numbers);
+        let places = self.agents.iter_mut().zip(columns);
+        for (index, (place, ((x, y), number))) in self.order.iter().zip(places) {
+            let agent = agent_of(*index as usize);
+            (*x, *y, *number) = (agent.position.x, agent.position.y, agent.number);
+            *place = agent;
+        }
     }
 
-    /// Finds the cells of positions, and the first place of each cell.
-    fn count(&mut self, positions: impl Iterator<Item = Vector>) {
+    /// Finds the cells of the positions, and the first place of each cell.
+    fn count(&mut self) {
         let cells = self.axes[0].count * self.axes[1].count;
         self.starts.clear();
         self.starts.resize(cells + 1, 0);
         self.cells.clear();
-        for position in positions {
-            let cell = self.cell(position);
+        for position in &self.spots {
+            let cell = self.cell(*position);
             self.cells.push(cell);
             self.starts[cell as usize + 1] += 1;
         }
@@ -220,10 +203,9 @@ impl Grid {
         }
     }
 
-    /// Chooses the cells.
-    fn lay(&mut self, extent: &Extent, reach: f64) {
-        let Extent { low, high, count } = *extent;
-        let most = 4.0 * count as f64 + SPARE_CELLS;
+    /// Chooses the cells between the least and the greatest coordinates.
+    fn lay(&mut self, [low, high]: [Vector; 2], reach: f64) {
+        let most = 4.0 * self.came.len() as f64 + SPARE_CELLS;
         let mut size = reach;
         loop {
             let axis = |index: usize| match self.period.0[index] {
