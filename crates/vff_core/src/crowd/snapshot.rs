@@ -86,6 +86,7 @@ impl Snapshot {
         });
         self.people.order(present, reach, period);
         self.placed.clear();
+        self.placed.reserve(count);
         self.people.seat(|number| {
             // Who came first is still there.
             let walker = walker_of(number).unwrap_or_default();

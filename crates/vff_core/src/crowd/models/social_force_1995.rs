@@ -113,7 +113,9 @@ impl SocialForce1995 {
         let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
         let (ways, aheads) = (&mut room.ways, &mut room.aheads);
         ways.clear();
+        ways.reserve(people.len() + robots.len());
         aheads.clear();
+        aheads.reserve(people.len() + robots.len());
         for agent in people.iter().chain(robots) {
             ways.push(agent.direction * (agent.velocity.norm() * self.step_time));
             aheads.push(agent.direction);

@@ -141,8 +141,11 @@ impl Grid {
         period: Period,
     ) {
         self.period = period;
+        let most = agents.size_hint().1.unwrap_or(0);
         self.came.clear();
+        self.came.reserve(most);
         self.spots.clear();
+        self.spots.reserve(most);
         let (mut low, mut high) = (
             Vector::repeat(f64::INFINITY),
             Vector::repeat(-f64::INFINITY),
@@ -193,6 +196,7 @@ impl Grid {
         self.starts.clear();
         self.starts.resize(cells + 1, 0);
         self.cells.clear();
+        self.cells.reserve(self.spots.len());
         for position in &self.spots {
             let cell = self.cell(*position);
             self.cells.push(cell);

@@ -109,9 +109,13 @@ impl PairQueue {
         debug_assert!(neighbors.people.period == Period::default());
         (self.waiting, self.shown, self.row) = (0, 0, 0);
         let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
+        let everybody = people.len() + robots.len();
         self.motions.clear();
+        self.motions.reserve(everybody);
         self.numbers.clear();
+        self.numbers.reserve(everybody);
         self.radii.clear();
+        self.radii.reserve(everybody);
         for agent in people.iter().chain(robots) {
             let Agent {
                 position, velocity, ..
