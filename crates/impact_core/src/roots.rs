@@ -68,19 +68,48 @@ pub fn stationary(
     }
 }
 
-/// Place where the slope changes sign, by halving.
+/// Place where the slope changes sign: secants between both ends, the weight of an end that stays is
+/// halved, and so is a bracket that three of them leave longer than half.
 pub fn turning_point(function: &impl Fn(f64) -> [f64; 2], from: f64, to: f64) -> f64 {
     let (mut low, mut high) = (from, to);
-    let side = function(low)[1] > 0.0;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if (function(middle)[1] > 0.0) == side {
-            low = middle;
+    let [mut left, mut right] = [from, to].map(|time| function(time)[1]);
+    let side = left > 0.0;
+    let mut x = from;
+    let mut goal = high - low;
+    for step in 0..MAX_STEPS {
+        let mut next = low + (high - low) * (left / (left - right));
+        if step % 3 == 2 {
+            if high - low > 0.5 * goal {
+                next = 0.5 * (low + high);
+            }
+            goal = high - low;
+        }
+        if !(next > low && next < high) {
+            next = 0.5 * (low + high);
+        }
+        let settled = (next - x).abs() <= f64::EPSILON * next.abs();
+        let lasted = x;
+        x = next;
+        if settled {
+            break;
+        }
+        let slope = function(x)[1];
+        if slope == 0.0 {
+            break;
+        }
+        if (slope > 0.0) == side {
+            if lasted == low {
+                right *= 0.5;
+            }
+            (low, left) = (x, slope);
         } else {
-            high = middle;
+            if lasted == high {
+                left *= 0.5;
+            }
+            (high, right) = (x, slope);
         }
     }
-    0.5 * (low + high)
+    x
 }
 
 /// A maximum and where it is.
@@ -141,6 +170,21 @@ mod tests {
         stationary(parabola, 0.0, 1.0, 1, |x| zeros.push(x));
         assert_eq!(zeros.len(), 2);
         assert!((zeros[0] - 0.499).abs() < 1e-12 && (zeros[1] - 0.501).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_turning_point_takes_few_evaluations() {
+        let calls = std::cell::Cell::new(0);
+        for phase in [1e-9, 0.01, 0.3, 1.0, 1.9, 1.999] {
+            let wave = |x: f64| {
+                calls.set(calls.get() + 1);
+                [-(x - phase).cos(), (x - phase).sin() * (1.0 + x * x)]
+            };
+            calls.set(0);
+            let turn = turning_point(&wave, 0.0, 2.0);
+            assert!((turn - phase).abs() <= 4e-16 * phase, "{turn} {phase}");
+            assert!(calls.get() <= 20, "{} {phase}", calls.get());
+        }
     }
 
     #[test]

@@ -98,7 +98,8 @@ pub fn first_fall(
         [value, slope]
     };
     let [low, high] = [jet(from), jet(to)];
-    if high[1] < -noise(to) {
+    // Noise is looked at where something is below zero: it takes longer than everything else.
+    if high[1] < 0.0 && high[1] < -noise(to) {
         return Some(if low[1] > 0.0 {
             root(pair, from, to)
         } else {
@@ -107,7 +108,8 @@ pub fn first_fall(
     }
     if low[2] < 0.0 && high[2] > 0.0 && low[1] > 0.0 {
         let bottom = turning_point(&pair, from, to);
-        if jet(bottom)[1] < -noise(bottom) {
+        let lowest = jet(bottom)[1];
+        if lowest < 0.0 && lowest < -noise(bottom) {
             return Some(root(pair, from, bottom));
         }
     }
