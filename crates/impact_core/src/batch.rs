@@ -8,8 +8,7 @@ use numeric::threads::{Interrupted, on_threads, try_each};
 
 use crate::columns::Columns;
 use crate::error::{Failure, Given, Result};
-use crate::metrics::Searches;
-use crate::metrics::{Criterion, Loads, MetricOptions, Metrics, Status};
+use crate::metrics::{Criterion, Loads, MetricOptions, Metrics, Missing, Status};
 use crate::parameters::GRAVITY;
 
 /// Rows of a task; the bits of a row do not depend on it.
@@ -38,9 +37,9 @@ impl FieldSet {
         Self(Loads::of(asked))
     }
 
-    /// What has to be searched for them.
-    pub(crate) fn searches(&self) -> Searches {
-        self.0.searches()
+    /// What a row misses at first.
+    fn missing(&self) -> Missing {
+        Missing::of(self.0)
     }
 }
 
@@ -167,14 +166,20 @@ impl MetricColumns {
 }
 
 impl Block<'_> {
-    fn put(&mut self, place: usize, metrics: &Metrics) {
+    /// Keeps of some metrics what the row at a place misses.
+    fn put(&mut self, place: usize, metrics: &Metrics, missing: Missing) {
         let columns = self.loads.as_mut().into_array();
-        for (column, value) in columns.into_iter().zip(metrics.loads.into_array()) {
-            if let Some(cell) = column.get_mut(place) {
+        let values = metrics.loads.into_array();
+        for (criterion, (column, value)) in columns.into_iter().zip(values).enumerate() {
+            if missing.has(criterion)
+                && let Some(cell) = column.get_mut(place)
+            {
                 *cell = value;
             }
         }
-        self.status[place] = code(metrics.status);
+        if missing.has_status() {
+            self.status[place] = code(metrics.status);
+        }
     }
 }
 

@@ -240,7 +240,7 @@ impl Impact {
         self.findings_of(manipulator_speed, Searches::ALL)
     }
 
-    /// The peaks and what is searched for, NaN for the rest.
+    /// What is searched for and the period, NaN for the rest.
     #[must_use]
     pub fn findings_of(&self, manipulator_speed: f64, searches: Searches) -> Findings {
         let head = |time: f64| self.motion.head(time);
@@ -272,10 +272,17 @@ impl Impact {
                 no_peak
             }
         };
+        let peak = |asked: bool, of: fn(&Self) -> Peak| if asked { of(self) } else { no_peak };
         // A head that cannot move has no acceleration to look at.
         let free = !self.constrained;
         Findings {
-            peaks: self.peaks(),
+            peaks: Peaks {
+                head_acceleration: peak(searches.acceleration, Self::peak_head_acceleration),
+                contact_force: peak(searches.force, Self::peak_contact_force),
+                compression: peak(searches.compression, Self::max_compression),
+                impact_duration: self.duration,
+                end: self.end,
+            },
             mean: if free && searches.mean {
                 head(self.end)[0] / self.end
             } else {
@@ -315,15 +322,18 @@ pub fn metrics(system: &System, closing_speed: f64, options: &MetricOptions) -> 
     if closing_speed <= 0.0 {
         return Ok(Metrics::none(Status::NoImpact));
     }
-    match fast::usual(system, closing_speed, options) {
-        // The kernel knows linear ranges only.
-        Some(metrics) if metrics.status == Status::BeyondLinearRange => Ok(Metrics {
-            status: Status::released(metrics.max_compression, &system.foam),
-            ..metrics
-        }),
-        Some(metrics) => Ok(metrics),
-        None => searched(system, closing_speed, options),
+    let (mut found, missing) = fast::usual(system, closing_speed, options);
+    if !missing.is_nothing() {
+        let impact = Impact::new(system, closing_speed, options.horizon)?;
+        let speed = options.manipulator_speed.unwrap_or(closing_speed);
+        let findings = impact.findings_of(speed, missing.searches());
+        found.take(&findings.metrics(system, options.gravity), missing);
     }
+    if found.status == Status::BeyondLinearRange {
+        // The kernel knows linear ranges only.
+        found.status = Status::released(found.max_compression, &system.foam);
+    }
+    Ok(found)
 }
 
 /// The same by the general search, whatever the shape of the response.

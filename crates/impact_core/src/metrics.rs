@@ -14,9 +14,15 @@ pub const FREE_HORIZON: f64 = 0.2;
 /// Default time over which a constrained impact is looked at, in s.
 pub const CONSTRAINED_HORIZON: f64 = 0.05;
 
-/// What is searched on a response besides its peaks.
+/// What is searched on a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Searches {
+    /// Largest acceleration of the head.
+    pub acceleration: bool,
+    /// Largest contact force.
+    pub force: bool,
+    /// Largest compression, which the status needs.
+    pub compression: bool,
     /// Mean acceleration.
     pub mean: bool,
     /// Windows of the injury criteria.
@@ -30,14 +36,20 @@ pub struct Searches {
 impl Searches {
     /// Everything.
     pub const ALL: Self = Self {
+        acceleration: true,
+        force: true,
+        compression: true,
         mean: true,
         injury: [true; 2],
         held: true,
         powers: true,
     };
 
-    /// Nothing but peaks.
-    pub const NONE: Self = Self {
+    /// Nothing.
+    const NONE: Self = Self {
+        acceleration: false,
+        force: false,
+        compression: false,
         mean: false,
         injury: [false; 2],
         held: false,
@@ -48,7 +60,10 @@ impl Searches {
     #[must_use]
     fn with(mut self, search: Search) -> Self {
         match search {
-            Search::Peaks => {}
+            Search::Duration => {}
+            Search::Acceleration => self.acceleration = true,
+            Search::Force => self.force = true,
+            Search::Compression => self.compression = true,
             Search::Mean => self.mean = true,
             Search::Injury15 => self.injury[0] = true,
             Search::Injury36 => self.injury[1] = true,
@@ -58,10 +73,10 @@ impl Searches {
         self
     }
 
-    /// Whether nothing but peaks is wanted.
+    /// Whether nothing but peaks and the mean is wanted.
     #[must_use]
     pub fn only_peaks(self) -> bool {
-        !(self.mean || self.windows() || self.powers)
+        !(self.windows() || self.powers)
     }
 
     /// Whether any window is wanted.
@@ -74,8 +89,14 @@ impl Searches {
 /// What a criterion follows from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Search {
-    /// The peaks and the impact period, which are always known.
-    Peaks,
+    /// The impact period, which is always known.
+    Duration,
+    /// Largest acceleration.
+    Acceleration,
+    /// Largest contact force.
+    Force,
+    /// Largest compression.
+    Compression,
     /// Mean acceleration.
     Mean,
     /// Windows up to 15 ms.
@@ -86,6 +107,91 @@ enum Search {
     Held,
     /// Powers.
     Powers,
+}
+
+impl Search {
+    /// Whether the peaks and the impact period are enough for it.
+    const fn is_peak(self) -> bool {
+        matches!(
+            self,
+            Self::Duration | Self::Acceleration | Self::Force | Self::Compression
+        )
+    }
+}
+
+/// What a row still misses: criteria by their place in [`CRITERIA`], and the status behind them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Missing(u32);
+
+impl Missing {
+    /// Bit of the status.
+    const STATUS: u32 = 1 << CRITERIA.len();
+    /// Nothing.
+    pub const NOTHING: Self = Self(0);
+    /// The status and all criteria.
+    pub const ALL: Self = Self(2 * Self::STATUS - 1);
+
+    /// The status and the criteria that are asked for.
+    #[must_use]
+    pub fn of(asked: Loads<bool>) -> Self {
+        let mut found = Self::STATUS;
+        for (place, asked) in asked.into_array().into_iter().enumerate() {
+            found |= u32::from(asked) << place;
+        }
+        Self(found)
+    }
+
+    /// Notes whether a criterion is among them, by its place; the status comes behind all criteria.
+    #[inline(always)]
+    pub fn insert(&mut self, place: usize, also: bool) {
+        self.0 |= u32::from(also) << place;
+    }
+
+    /// Those of both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// What is left when some are known.
+    #[must_use]
+    pub fn without(self, known: Self) -> Self {
+        Self(self.0 & !known.0)
+    }
+
+    /// Whether all is known.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_nothing(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether a criterion is missing, by its place.
+    #[inline(always)]
+    #[must_use]
+    pub fn has(self, place: usize) -> bool {
+        self.0 >> place & 1 == 1
+    }
+
+    /// Whether the status is missing.
+    #[must_use]
+    pub fn has_status(self) -> bool {
+        self.0 & Self::STATUS != 0
+    }
+
+    /// What has to be searched for it.
+    #[must_use]
+    pub fn searches(self) -> Searches {
+        let mut place = 0;
+        let missing = Loads::of(|_| {
+            place += 1;
+            self.has(place - 1)
+        });
+        let mut searches = missing.searches();
+        // The status follows from it.
+        searches.compression |= self.has_status();
+        searches
+    }
 }
 
 /// What is known about a criterion.
@@ -117,7 +223,7 @@ macro_rules! criteria {
             label: $label,
             unit: $unit,
             symbol: $symbol,
-            is_peak: matches!(Search::$search, Search::Peaks),
+            is_peak: Search::$search.is_peak(),
         },)*];
 
         impl<T> Loads<T> {
@@ -151,6 +257,13 @@ macro_rules! criteria {
                 Loads { $($field: function(self.$field),)* }
             }
 
+            /// Each value by shared reference.
+            #[inline(always)]
+            #[must_use]
+            pub fn each_ref(&self) -> Loads<&T> {
+                Loads { $($field: &self.$field,)* }
+            }
+
             /// Each value by reference.
             #[inline(always)]
             pub fn as_mut(&mut self) -> Loads<&mut T> {
@@ -161,7 +274,7 @@ macro_rules! criteria {
         impl Loads<bool> {
             /// What has to be searched for the criteria that are asked for.
             #[must_use]
-            pub(crate) fn searches(&self) -> Searches {
+            fn searches(&self) -> Searches {
                 let mut needed = Searches::NONE;
                 $(if self.$field {
                     needed = needed.with(Search::$search);
@@ -180,12 +293,12 @@ macro_rules! count {
 // To add a criterion is to add a line here, with what it follows from; the compiler then asks for it
 // wherever loads are computed.
 criteria! {
-    peak_head_acceleration: "largest acceleration of the head", "m/s^2", "a_h,max", Peaks;
-    peak_head_acceleration_g: "largest acceleration of the head", "g", "a_h,max", Peaks;
+    peak_head_acceleration: "largest acceleration of the head", "m/s^2", "a_h,max", Acceleration;
+    peak_head_acceleration_g: "largest acceleration of the head", "g", "a_h,max", Acceleration;
     mean_head_acceleration_g: "mean acceleration of the head over the impact", "g", "", Mean;
-    peak_contact_force: "largest contact force", "N", "f_c,max", Peaks;
-    max_compression: "largest compression of the foam", "m", "eps_max", Peaks;
-    impact_duration: "impact period, to the first zero of the head's acceleration", "s", "", Peaks;
+    peak_contact_force: "largest contact force", "N", "f_c,max", Force;
+    max_compression: "largest compression of the foam", "m", "eps_max", Compression;
+    impact_duration: "impact period, to the first zero of the head's acceleration", "s", "", Duration;
     hic15: "head injury criterion, windows up to 15 ms", "", "HIC", Injury15;
     hic36: "head injury criterion, windows up to 36 ms", "", "HIC", Injury36;
     average_3ms_g: "largest mean over 3 ms", "g", "", Held;
@@ -295,6 +408,26 @@ impl Metrics {
         Self {
             loads: Loads::none(),
             status,
+        }
+    }
+
+    /// Takes what is missing from others.
+    pub fn take(&mut self, others: &Self, missing: Missing) {
+        let values = others.loads.into_array();
+        for (place, (own, value)) in self
+            .loads
+            .as_mut()
+            .into_array()
+            .into_iter()
+            .zip(values)
+            .enumerate()
+        {
+            if missing.has(place) {
+                *own = value;
+            }
+        }
+        if missing.has_status() {
+            self.status = others.status;
         }
     }
 }

@@ -3,7 +3,7 @@
 use impact_core::batch::{BatchOptions, FieldSet, MetricColumns, Width, metrics_batch};
 use impact_core::columns::{Column, Columns, HeadColumns};
 use impact_core::criteria::{metrics, searched};
-use impact_core::metrics::{MetricOptions, Status};
+use impact_core::metrics::{CRITERIA, MetricOptions, Status};
 
 /// Agreement of the two searches, relative: rounding, and what a Newton step is stopped at.
 const AGREEMENT: f64 = 1e-11;
@@ -70,26 +70,27 @@ fn run(inputs: &Inputs, options: &BatchOptions) -> MetricColumns {
 
 #[test]
 fn rows_equal_single_impacts() {
-    compare(4000);
+    compare(&Inputs::random(4000));
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn a_million_rows_equal_single_impacts() {
-    compare(1_000_000);
+    compare(&Inputs::random(1_000_000));
 }
 
 /// Compares every field of a batch with the general search.
-fn compare(rows: usize) {
-    let inputs = Inputs::random(rows);
-    let batch = run(&inputs, &BatchOptions::default());
+fn compare(inputs: &Inputs) {
+    let batch = run(inputs, &BatchOptions::default());
     let mut worst = 0.0_f64;
     for row in 0..batch.rows {
         let system = inputs.columns().system(row);
         let options = MetricOptions::default();
         let one = searched(&system, inputs.0[8][row], &options).unwrap();
         let single = metrics(&system, inputs.0[8][row], &options).unwrap();
-        assert_eq!(single.hic15.to_bits(), batch.hic15[row].to_bits());
+        let bits = |value: f64| value.to_bits();
+        let columns = batch.loads.each_ref().map(|column| bits(column[row]));
+        assert_eq!(single.loads.map(bits), columns, "row {row}");
         assert_eq!(
             Status::ALL[usize::from(batch.status[row])],
             one.status,
@@ -153,19 +154,47 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
         };
         assert_eq!(format!("{:?}", run(&inputs, &options)), format!("{base:?}"));
     }
-    let options = BatchOptions {
-        fields: FieldSet::peaks(),
-        ..BatchOptions::default()
-    };
-    let peaks = run(&inputs, &options);
-    for (few, all) in [
-        (&peaks.max_compression, &base.max_compression),
-        (&peaks.impact_duration, &base.impact_duration),
-    ] {
-        for (few, all) in few.iter().zip(all) {
-            assert!(few == all || (few / all - 1.0).abs() < AGREEMENT);
+    let some: [FieldSet; 4] = [
+        FieldSet::peaks(),
+        FieldSet::of(|criterion| criterion.name.starts_with("hic")),
+        FieldSet::of(|criterion| criterion.name.ends_with("_g")),
+        FieldSet::of(|_| false),
+    ];
+    let alone = CRITERIA.map(|only| FieldSet::of(|criterion| criterion.name == only.name));
+    for fields in some.into_iter().chain(alone) {
+        for width in [Width::One, Width::Eight] {
+            let options = BatchOptions {
+                fields,
+                width: Some(width),
+                ..BatchOptions::default()
+            };
+            let few = run(&inputs, &options);
+            assert_eq!(few.status, base.status);
+            let all = base.loads.each_ref().into_array();
+            for (place, (few, all)) in few.loads.into_array().iter().zip(all).enumerate() {
+                for (row, (few, all)) in few.iter().zip(all).enumerate() {
+                    let name = CRITERIA[place].name;
+                    assert_eq!(few.to_bits(), all.to_bits(), "{name} of row {row}");
+                }
+            }
         }
     }
+}
+
+#[test]
+fn impacts_without_a_release_equal_the_general_search() {
+    let mut inputs = Inputs::random(4000);
+    // Necks that hardly hold the head, so that the torso carries it along.
+    for damping in &mut inputs.0[6] {
+        *damping *= 3.0;
+    }
+    for stiffness in &mut inputs.0[7] {
+        *stiffness *= 0.05;
+    }
+    let batch = run(&inputs, &BatchOptions::default());
+    let lasting = batch.status.iter().filter(|&&status| status == 1).count();
+    assert!(lasting > 400, "{lasting}");
+    compare(&inputs);
 }
 
 #[test]

@@ -4,16 +4,19 @@ use super::{BatchOptions, Block, Width, code};
 use crate::columns::{Columns, HeadColumns};
 use crate::criteria::Impact;
 use crate::fast::apart::apart;
-use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, Side, Walk, Workspace, one_row};
-use crate::metrics::{FREE_HORIZON, Metrics, Status};
+use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, MOST_LANES, Side, Walk, Workspace};
+use crate::metrics::{FREE_HORIZON, Metrics, Missing, Status};
 use numeric::lanes::{Lanes, Mask, Real};
 use pulp::{Simd, WithSimd};
+
+/// A row by its place in a block, and what it misses.
+type Open = (usize, Missing);
 
 /// Fills a block.
 pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Block<'_>) {
     if matches!(columns.head, HeadColumns::Constrained) {
         for place in 0..block.status.len() {
-            block.put(place, &alone(columns, options, block.first + place));
+            finish_alone(columns, options, block, (place, options.fields.missing()));
         }
         return;
     }
@@ -64,7 +67,7 @@ fn by_width<S: Simd, R: Real>(
     block: &mut Block<'_>,
 ) {
     // Bodies of their own: an unoptimized build keeps room on the stack for every call.
-    if options.fields.searches().only_peaks() {
+    if options.fields.missing().searches().only_peaks() {
         apart(
             simd,
             #[inline(always)]
@@ -89,12 +92,14 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
     let rows = block.status.len();
     let mut space = Workspace::new();
     // Rows whose response has two humps or a shelf, when others are beside them.
-    let mut put_off = Vec::new();
+    let mut put_off: Vec<Open> = Vec::new();
+    let mut refused: Vec<Open> = Vec::new();
+    let asked = options.fields.missing();
     let walk = Walk {
         horizon: options.horizon.unwrap_or(FREE_HORIZON),
         cell_angle: CELL_ANGLE,
         humps: R::WIDTH == 1,
-        searches: options.fields.searches(),
+        searches: asked.searches(),
     };
     for place in (0..rows).step_by(R::WIDTH) {
         let count = R::WIDTH.min(rows - place);
@@ -111,56 +116,92 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
         for lane in 0..count {
             block.status[place + lane] = code(found.status(lane));
         }
-        for lane in 0..count {
-            if found.is_put_off(lane) {
-                put_off.push(place + lane);
-            } else if !found.accepted.lane(lane) {
-                block.put(place + lane, &alone(columns, options, first + lane));
+        let lacking = found.lacking(asked);
+        if lacking.any() {
+            let known = found.known(options.gravity);
+            for lane in (0..count).filter(|&lane| lacking.lane(lane)) {
+                let open = (place + lane, asked.without(known[lane]));
+                if found.is_put_off(lane) {
+                    put_off.push(open);
+                } else {
+                    refused.push(open);
+                }
             }
         }
     }
-    if !put_off.is_empty() {
-        apart(
-            simd,
-            #[inline(always)]
-            || followed::<S, R, ALL>(simd, &mut space, columns, options, block, &put_off),
-        );
+    let followed = Walk {
+        humps: true,
+        ..walk
+    };
+    let finer = Walk {
+        cell_angle: FINE_CELL_ANGLE,
+        ..followed
+    };
+    let mut open = Vec::new();
+    for (walk, mut more) in [(followed, put_off), (finer, refused)] {
+        open.append(&mut more);
+        if !open.is_empty() {
+            apart(
+                simd,
+                #[inline(always)]
+                || again::<S, R, ALL>(simd, &mut space, columns, options, block, walk, &mut open),
+            );
+        }
+    }
+    for open in open {
+        finish_alone(columns, options, block, open);
     }
 }
 
-/// Deferred rows, side by side.
+/// Looks once more at rows that miss something, side by side; those that still do remain.
 #[inline(always)]
-fn followed<S: Simd, R: Real, const ALL: bool>(
+#[allow(clippy::too_many_arguments)]
+fn again<S: Simd, R: Real, const ALL: bool>(
     simd: S,
     space: &mut Workspace<R>,
     columns: &Columns<'_>,
     options: &BatchOptions,
     block: &mut Block<'_>,
-    put_off: &[usize],
+    walk: Walk,
+    open: &mut Vec<Open>,
 ) {
-    let walk = Walk {
-        horizon: options.horizon.unwrap_or(FREE_HORIZON),
-        cell_angle: CELL_ANGLE,
-        humps: true,
-        searches: options.fields.searches(),
-    };
-    for places in put_off.chunks(R::WIDTH) {
-        let row = |lane: usize| block.first + places[lane.min(places.len() - 1)];
+    for rows in open.chunks_mut(R::WIDTH) {
+        let row = |lane: usize| block.first + rows[lane.min(rows.len() - 1)].0;
+        let wanted = rows.iter().fold(Missing::NOTHING, |wanted, (_, missing)| {
+            wanted.with(*missing)
+        });
+        let walk = Walk {
+            searches: wanted.searches(),
+            ..walk
+        };
         let found = Side::<R>::of::<S, ALL>(simd, space, columns, walk, row);
-        for (lane, place) in places.iter().enumerate() {
-            let metrics = if found.accepted.lane(lane) {
-                found.lane(lane, options.gravity)
-            } else {
-                alone(columns, options, block.first + place)
-            };
-            block.put(*place, &metrics);
+        let known: [Missing; MOST_LANES] = found.known(options.gravity);
+        for ((lane, (place, missing)), known) in rows.iter_mut().enumerate().zip(known) {
+            let left = missing.without(known);
+            block.put(
+                *place,
+                &found.lane(lane, options.gravity),
+                missing.without(left),
+            );
+            *missing = left;
         }
     }
+    open.retain(|(_, missing)| !missing.is_nothing());
 }
 
-/// One row in finer cells, or by the general search.
+/// What a row misses, by the general search.
 #[inline(never)]
-fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
+fn finish_alone(
+    columns: &Columns<'_>,
+    options: &BatchOptions,
+    block: &mut Block<'_>,
+    (place, missing): Open,
+) {
+    let found = alone(columns, options, block.first + place, missing);
+    block.put(place, &found, missing);
+}
+
+fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize, missing: Missing) -> Metrics {
     let system = columns.system(row);
     let [closing_speed, manipulator_speed] = columns.speeds(row);
     let valid =
@@ -171,25 +212,10 @@ fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize) -> Metrics {
     if closing_speed <= 0.0 {
         return Metrics::none(Status::NoImpact);
     }
-    let walk = Walk {
-        horizon: options.horizon.unwrap_or(FREE_HORIZON),
-        cell_angle: FINE_CELL_ANGLE,
-        humps: true,
-        searches: options.fields.searches(),
-    };
-    let only_peaks = walk.searches.only_peaks();
-    let fine = match (&columns.head, only_peaks) {
-        (HeadColumns::Constrained, _) => None,
-        (_, false) => one_row::<true>(columns, walk, options.gravity, row),
-        (_, true) => one_row::<false>(columns, walk, options.gravity, row),
-    };
-    if let Some(metrics) = fine {
-        return metrics;
-    }
     let Ok(impact) = Impact::new(&system, closing_speed, options.horizon) else {
         return Metrics::none(Status::TooStiff);
     };
     impact
-        .findings_of(manipulator_speed, walk.searches)
+        .findings_of(manipulator_speed, missing.searches())
         .metrics(&system, options.gravity)
 }

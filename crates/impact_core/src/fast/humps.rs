@@ -4,7 +4,7 @@ use super::apart::apart;
 use super::arithmetic::{Each, MapWith};
 use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
-use super::{MAX_STEPS, Solved};
+use super::{Known, MAX_STEPS, Solved};
 use crate::metrics::INJURY_WINDOWS;
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
@@ -31,7 +31,7 @@ struct Seed<R: Real> {
 impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// The same where the acceleration has a valley: there may be several good windows.
     #[inline(always)]
-    pub(super) fn full_of_humps(&mut self, mask: R::Mask, width: R) -> Window<R> {
+    pub(super) fn full_of_humps(&self, mask: R::Mask, width: R) -> Window<R> {
         apart(
             self.simd,
             #[inline(always)]
@@ -40,18 +40,22 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn full_of_humps_here(&mut self, mask: R::Mask, width: R) -> Window<R> {
+    fn full_of_humps_here(&self, mask: R::Mask, width: R) -> Window<R> {
         let room = self.end - width;
         let difference = |solved: &Self, time: R| {
             let [left, right] = [solved.head(time), solved.head(time + width)];
             [right[1] - left[1], right[2] - left[2]]
         };
-        let tops = self.tops_along(mask, room, difference);
-        let trough = self.trough(mask);
+        let (tops, lost) = self.tops_along(mask, room, difference);
+        let ([time, value], missed) = self.trough(mask);
+        let trough = [time, value];
+        let refused = lost | missed;
+        let mask = mask & !refused;
         let mut best = self.full(mask, width, R::zero(), SETTLED);
         best.level = best.level_with(width, trough);
+        best.restless = best.restless | refused;
         for place in &tops.places {
-            let also = mask & place.found & self.accepted;
+            let also = mask & place.found & !best.restless;
             if also.any() {
                 let window = self.full(also, width, place.piece.zero(), SETTLED);
                 let level = window.level_with(width, trough);
@@ -59,19 +63,21 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 best.rise = R::select(better, window.rise, best.rise);
                 best.edge = R::select(better, window.edge, best.edge);
                 best.level = R::select(also & level.gt(best.level), level, best.level);
+                best.restless = best.restless | window.restless;
             }
         }
         best
     }
 
-    /// Tops of a function between 0 and an end whose derivative with its slope is given.
+    /// Tops of a function between 0 and an end whose derivative with its slope is given, and lanes that
+    /// have more of them or may hide one.
     #[inline(always)]
     fn tops_along(
-        &mut self,
+        &self,
         mask: R::Mask,
         end: R,
         derivative: impl Fn(&Self, R) -> [R; 2],
-    ) -> Tops<R> {
+    ) -> (Tops<R>, R::Mask) {
         let mut tops = Tops::new();
         let mut from = R::zero();
         let mut left = derivative(self, from);
@@ -91,16 +97,16 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 break;
             }
         }
-        self.accepted = self.accepted & !(mask & (tops.odd | tops.hidden.0));
-        tops
+        let lost = mask & (tops.odd | tops.hidden.0);
+        (tops, lost)
     }
 
-    /// Time and acceleration of the valley.
+    /// Time and acceleration of the valley, and lanes in which it was not found.
     #[inline(always)]
-    fn trough(&mut self, mask: R::Mask) -> [R; 2] {
+    fn trough(&self, mask: R::Mask) -> ([R; 2], R::Mask) {
         let mut time = self.space.found.valley.piece.zero();
         let mask = mask & self.space.found.valley.found;
-        let mut open = mask & self.accepted;
+        let mut open = mask;
         let mut value = R::zero();
         let mut bent_up = R::Mask::none();
         for _ in 0..MAX_STEPS {
@@ -119,35 +125,39 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let past = time - self.space.found.valley.piece.from;
         let slack = R::splat(SETTLED);
         let inside = past.ge(-slack) & past.le(self.space.found.valley.piece.width + slack);
-        self.accepted = self.accepted & !(mask & (open | !bent_up | !inside));
+        let missed = mask & (open | !bent_up | !inside);
         // Without a valley, a time that no window holds.
-        [R::select(mask, time, R::splat(-1.0)), value]
+        ([R::select(mask, time, R::splat(-1.0)), value], missed)
     }
 
     /// The same where there may be several good windows: those that are better than their
     /// neighbors among the windows between nodes are where Newton steps set out.
     #[inline(always)]
-    pub(super) fn injuries_of_humps(&mut self, humps: R::Mask, values: &mut [R; 2]) {
+    pub(super) fn injuries_of_humps(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
         apart(
             self.simd,
             #[inline(always)]
-            || self.injuries_of_humps_here(humps, values),
+            || self.injuries_of_humps_here(humps, known),
         );
     }
 
     #[inline(always)]
-    fn injuries_of_humps_here(&mut self, humps: R::Mask, values: &mut [R; 2]) {
+    fn injuries_of_humps_here(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
         let zero = R::zero();
         let length = self.motion.modes.length;
         let mut best = [zero; 2];
         let mut shrinks = [R::Mask::none(); 2];
+        let mut holds = [humps; 2];
+        // What the narrower windows give tells where the wider ones are not looked for.
+        let asked = [true, self.searches.injury[1]];
         for (index, width) in INJURY_WINDOWS.into_iter().enumerate() {
             let width = R::splat(width) / length;
-            let full = humps & width.lt(self.end) & self.accepted;
-            if full.any() {
+            let full = humps & width.lt(self.end);
+            if asked[index] && full.any() {
                 let window = self.full_of_humps(full, width);
                 let value = criterion(window.rise, width, length);
-                best[index] = R::select(full, value, zero);
+                best[index] = R::select(full & !window.restless, value, zero);
+                holds[index] = holds[index] & !window.restless;
                 // A shorter window nearby is better, so one with free ends has to be found.
                 shrinks[index] = full & (window.edge * width).lt(R::splat(0.6) * window.rise);
             }
@@ -171,13 +181,14 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 slope - R::splat(0.6) * R::select(started, bend, R::splat(0.5) * slope),
             ]
         };
-        let tops = self.tops_along(humps, self.end, from_contact);
-        let seeds = self.seeds(humps);
+        let (tops, lost) = self.tops_along(humps, self.end, from_contact);
+        let (seeds, more) = self.seeds(humps);
+        let mut refused = lost | more;
         for place in &tops.places {
-            let held = humps & place.found & self.accepted;
+            let held = humps & place.found & !refused;
             if held.any() {
                 let window = self.free_window(held, [zero, place.piece.zero()], held);
-                self.accepted = self.accepted & !(held & !(window.settled & window.concave));
+                refused = refused | (held & !(window.settled & window.concave));
                 self.offer(&mut best, held, &window);
             }
         }
@@ -185,26 +196,26 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             // One that is far below what is known already needs no steps.
             let value = seed.square.sqrt() / (length * length * length * length);
             let good = (value * R::splat(NEAR)).gt(full[0]);
-            let mask = humps & seed.found & good & self.accepted;
+            let mask = humps & seed.found & good & !refused;
             if mask.any() {
                 let window = self.free_window(mask, seed.ends, R::Mask::none());
                 let [start, end] = window
                     .ends
                     .map_with(seed.ends, |end, guess| (end - guess).abs());
                 let far = start.gt(R::splat(FAR)) | end.gt(R::splat(FAR));
-                self.accepted = self.accepted & !(mask & (far | !window.settled));
+                refused = refused | (mask & (far | !window.settled));
                 let flat = mask & !window.concave;
                 self.offer(&mut best, mask & !flat, &window);
-                let rival = window.value.gt(R::splat(CLOSE) * best[0].min(best[1]));
-                self.accepted = self.accepted & !(flat & rival);
+                for (holds, best) in holds.iter_mut().zip(best) {
+                    let rival = window.value.gt(R::splat(CLOSE) * best);
+                    *holds = *holds & !(flat & rival);
+                }
             }
         }
-        for index in 0..2 {
+        for (index, known) in known.iter_mut().enumerate() {
             let missed = shrinks[index] & best[index].le(full[index]);
-            self.accepted = self.accepted & !missed;
-        }
-        for (value, best) in values.iter_mut().zip(best) {
-            *value = R::select(humps, best, *value);
+            known.value = R::select(humps, best[index], known.value);
+            known.holds = known.holds | (holds[index] & !missed & !refused);
         }
     }
 
@@ -219,15 +230,16 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     }
 
     /// Pairs of cells in which a window is stationary: both derivatives of the criterion change
-    /// sign in them.
+    /// sign in them. Lanes that have more of them.
     #[inline(always)]
-    fn seeds(&mut self, humps: R::Mask) -> [Seed<R>; SEEDS] {
+    fn seeds(&mut self, humps: R::Mask) -> ([Seed<R>; SEEDS], R::Mask) {
         let zero = R::zero();
         let mut seeds = [Seed {
             found: R::Mask::none(),
             ends: [zero; 2],
             square: zero,
         }; SEEDS];
+        let mut more = R::Mask::none();
         let last = [self.motion.head[0].at(&self.at_end), zero];
         let end = self.end;
         let node = |index: usize, head: &[[R; 2]]| {
@@ -287,9 +299,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                         break;
                     }
                 }
-                self.accepted = self.accepted & !left;
+                more = more | left;
             }
         }
-        seeds
+        (seeds, more)
     }
 }

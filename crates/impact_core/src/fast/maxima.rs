@@ -4,7 +4,7 @@ use super::apart::apart;
 use super::arithmetic::{MapWith, product, third_order};
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
-use super::{GroupPeaks, MAX_STEPS, Solved};
+use super::{GroupPeaks, Known, MAX_STEPS, Solved};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 
@@ -99,39 +99,62 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             accepted = accepted & !(hidden & (near + excess).ge(best));
         }
         Largest {
-            value: best,
+            known: Known {
+                value: best,
+                holds: accepted,
+            },
             top,
-            accepted,
         }
     }
 
-    /// The peaks.
+    /// Peaks that are wanted, duration and mean.
     #[inline(always)]
-    pub fn peaks(&mut self) -> GroupPeaks<R> {
+    pub fn peaks(&self) -> GroupPeaks<R> {
         let zero = R::zero();
+        let searches = self.searches;
         let length = self.motion.modes.length;
         let first = self.space.head[0][1];
         let at_end = self.motion.compression(&self.at_end, self.end);
-        let acceleration = self.largest(
-            Quantity::Acceleration,
-            &self.space.found.acceleration,
-            [first, zero],
-        );
-        let compression = self.largest(
-            Quantity::Compression,
-            &self.space.found.compression,
-            [zero, at_end[0]],
-        );
-        let ends = [self.first_force(), self.motion.force(&at_end)[0]];
-        let force = self.largest(Quantity::Force, &self.space.found.force, ends);
-        self.accepted = acceleration.accepted & compression.accepted & force.accepted;
+        let mut acceleration = Known::nothing();
+        let mut top = [zero; 3];
+        // A window needs its top.
+        if searches.acceleration || searches.windows() {
+            let tops = &self.space.found.acceleration;
+            let last = self.motion.head[1].at(&self.at_end);
+            let last = R::select(self.lasting, last, zero);
+            let largest = self.largest(Quantity::Acceleration, tops, [first, last]);
+            acceleration = largest.known.over(length * length);
+            top = largest.top;
+        }
+        let mut compression = Known::nothing();
+        if searches.compression {
+            let tops = &self.space.found.compression;
+            let ends = [zero, at_end[0]];
+            compression = self.largest(Quantity::Compression, tops, ends).known;
+        }
+        let mut force = Known::nothing();
+        if searches.force {
+            let ends = [self.first_force(), self.motion.force(&at_end)[0]];
+            let tops = &self.space.found.force;
+            force = self.largest(Quantity::Force, tops, ends).known;
+        }
+        let velocity = self.motion.head[0];
+        let gained = velocity.at(&self.at_end) - velocity.at_contact();
+        let known = |value: R| Known {
+            value,
+            holds: self.accepted,
+        };
         GroupPeaks {
-            head_acceleration: acceleration.value / (length * length),
-            contact_force: force.value,
-            compression: compression.value,
-            duration: self.end * length,
-            accepted: self.accepted,
-            top: acceleration.top,
+            head_acceleration: acceleration,
+            contact_force: force,
+            compression,
+            duration: known(R::select(
+                self.lasting,
+                R::splat(f64::INFINITY),
+                self.end * length,
+            )),
+            mean: known(gained / (self.end * length * length)),
+            top,
         }
     }
 
@@ -147,9 +170,10 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         self.motion.compression[1].at_contact() + self.motion.ramp[1]
     }
 
-    /// Largest powers from the manipulator and of compression, per cell.
+    /// Largest powers from the manipulator and of compression, in W.
     #[inline(always)]
-    pub(super) fn powers(&mut self) -> [R; 2] {
+    pub(super) fn powers(&self) -> [Known<R>; 2] {
+        let length = self.motion.modes.length;
         let at_end = self.motion.compression(&self.at_end, self.end);
         let force = self.motion.force(&at_end)[0];
         let [speed, ..] = self.manipulator::<1>(&self.at_end);
@@ -158,16 +182,13 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let manipulator = self.largest(Quantity::ManipulatorPower, tops, ends);
         let ends = [self.first_force() * self.first_rate(), force * at_end[1]];
         let foam = self.largest(Quantity::FoamPower, &self.space.found.foam_power, ends);
-        self.accepted = manipulator.accepted & foam.accepted;
-        [manipulator.value, foam.value]
+        [manipulator.known.over(length), foam.known.over(length)]
     }
 }
 
 /// The largest value of a quantity.
 struct Largest<R: Real> {
-    value: R,
+    known: Known<R>,
     /// Time, second and third derivative of the top that it is at, if it is one.
     top: [R; 3],
-    /// Lanes in which it holds.
-    accepted: R::Mask,
 }

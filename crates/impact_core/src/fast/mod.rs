@@ -3,9 +3,10 @@
 //! The response is a sum over two pairs of roots ([`modes`]). A walk in steps of the fastest root
 //! notes where slopes change sign ([`scan`]), Newton steps finish what it found. Impacts whose
 //! pairs of roots are too close to each other, whose slopes may hide a pair of zeros between
-//! two nodes, or whose Newton steps have not settled are refused; the caller takes the general
-//! search for them. What a lane does depends on its own numbers only, so its bits are the same at
-//! any width.
+//! two nodes, or whose Newton steps have not settled are refused, criterion by criterion; the caller
+//! takes the general search for them. What a lane does depends on its own numbers only, and whether
+//! a criterion holds on nothing that another one alone needs, so its bits are the same at any width
+//! and whatever else is asked for.
 
 pub(crate) mod apart;
 mod arithmetic;
@@ -26,7 +27,7 @@ use modes::{Basis, Motion, Wave};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
 use scan::{Place, touching};
-pub(crate) use side::{Side, Walk, one_row, usual};
+pub(crate) use side::{MOST_LANES, Side, Walk, usual};
 pub use space::Workspace;
 use space::{NODES, Node, Step};
 
@@ -68,42 +69,63 @@ pub struct Group<R> {
     /// Whether lanes with two humps or a shelf are followed; else they are deferred: it takes so
     /// many steps that they better share them with their like.
     pub humps: bool,
-    /// What is wanted besides peaks.
+    /// What is wanted.
     pub searches: Searches,
 }
 
-/// Peaks and duration.
+/// A number of each lane.
+#[derive(Clone, Copy)]
+pub struct Known<R: Real> {
+    /// The number.
+    pub value: R,
+    /// Lanes in which it holds.
+    pub holds: R::Mask,
+}
+
+impl<R: Real> Known<R> {
+    /// What was not asked for.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        Self {
+            value: R::splat(f64::NAN),
+            holds: R::Mask::none(),
+        }
+    }
+
+    /// The number over another one.
+    #[inline(always)]
+    pub fn over(self, divisor: R) -> Self {
+        Self {
+            value: self.value / divisor,
+            ..self
+        }
+    }
+}
+
+/// Peaks, duration and mean, accelerations in m/s^2.
 pub struct GroupPeaks<R: Real> {
-    /// Acceleration of the head, in m/s^2.
-    pub head_acceleration: R,
+    /// Acceleration of the head.
+    pub head_acceleration: Known<R>,
     /// Contact force, in N.
-    pub contact_force: R,
+    pub contact_force: Known<R>,
     /// Compression, in m.
-    pub compression: R,
+    pub compression: Known<R>,
     /// Impact period, in s.
-    pub duration: R,
-    /// Lanes whose numbers hold.
-    pub accepted: R::Mask,
+    pub duration: Known<R>,
+    /// Mean acceleration.
+    pub mean: Known<R>,
     /// Time of the peak acceleration and two derivatives after it.
     top: [R; 3],
 }
 
 /// All other metrics, accelerations in m/s^2.
 pub struct GroupRest<R: Real> {
-    /// Mean acceleration.
-    pub mean: R,
     /// Injury criteria for both windows.
-    pub injury: [R; 2],
-    /// Largest 3 ms mean.
-    pub average: R,
-    /// Largest level held for 3 ms.
-    pub clip: R,
-    /// Power from the manipulator, in W.
-    pub manipulator_power: R,
-    /// Power of compression, in W.
-    pub foam_power: R,
-    /// Lanes whose numbers hold.
-    pub accepted: R::Mask,
+    pub injury: [Known<R>; 2],
+    /// Largest 3 ms mean and largest level held for 3 ms.
+    pub held: [Known<R>; 2],
+    /// Power from the manipulator and power of compression, in W.
+    pub powers: [Known<R>; 2],
     /// Deferred lanes.
     pub put_off: R::Mask,
 }
@@ -114,8 +136,10 @@ pub struct Solved<'a, S, R: Real> {
     motion: Motion<S, R>,
     /// `v_r`, in m per cell.
     manipulator_speed: R,
-    /// Impact period, in cells.
+    /// Impact period, in cells; the horizon in lanes without a release before it.
     end: R,
+    /// Such lanes.
+    lasting: R::Mask,
     at_end: Basis<R>,
     /// Nodes before the end, at most.
     nodes: usize,
@@ -130,8 +154,9 @@ pub struct Solved<'a, S, R: Real> {
     shelf: R::Mask,
     /// Whether such lanes are followed.
     humps: bool,
-    /// What is wanted besides peaks.
+    /// What is wanted.
     searches: Searches,
+    /// Lanes whose walk and end hold.
     accepted: R::Mask,
 }
 
@@ -152,6 +177,7 @@ impl<R: Real> Group<R> {
             motion: Motion::new(simd, &self.plant, self.closing_speed, self.cell_angle),
             manipulator_speed: zero,
             end: zero,
+            lasting: R::Mask::none(),
             at_end: [one, zero, one, zero],
             nodes: 0,
             space,
@@ -185,12 +211,13 @@ impl<R: Real> Group<R> {
             solved.space.head[index] = solved.space.pair[index % 2].head();
             let fall = Step::ending(&solved.space.pair, index).piece(Node::fall);
             let ends = alive & fall.values[1].lt(zero);
-            if ends.any() {
-                end.note(ends, fall);
+            let lasts = alive & !ends & time.ge(horizon);
+            if (ends | lasts).any() {
+                end.note(ends | lasts, fall);
+                solved.lasting = solved.lasting | lasts;
             }
-            alive = alive & !ends;
+            alive = alive & !(ends | lasts);
             solved.look::<POWERS>(alive, index);
-            alive = alive & time.lt(horizon);
             if !alive.any() {
                 break;
             }
@@ -296,9 +323,13 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             self.shelf = self.shelf | (inside & (fall | rise));
         }
         found.acceleration.look(inside, &bend);
-        found.force.look(inside, &step.piece(|node| node.force));
         let closing = step.piece(|node| node.compression);
-        found.compression.look(inside, &closing);
+        if self.searches.force {
+            found.force.look(inside, &step.piece(|node| node.force));
+        }
+        if self.searches.compression {
+            found.compression.look(inside, &closing);
+        }
         if POWERS && self.searches.powers {
             let power = step.piece(|node| node.manipulator_power);
             found.manipulator_power.look(inside, &power);
@@ -310,7 +341,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }
     }
 
-    /// Newton steps to the end of the impact, and a look at the piece before it.
+    /// Newton steps to the end of the impact, and a look at the piece before it, or before the horizon
+    /// if that comes first.
     #[inline(always)]
     fn finish<const POWERS: bool>(&mut self, end: &Place<R>, horizon: R) {
         apart(
@@ -323,7 +355,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     #[inline(always)]
     fn finish_here<const POWERS: bool>(&mut self, end: &Place<R>, horizon: R) {
         let mut time = end.piece.zero();
-        let mut open = self.accepted & end.found;
+        let mut open = self.accepted & end.found & !self.lasting;
         let mut steep = R::Mask::none();
         self.at_end = self.motion.modes.basis(time);
         for _ in 0..MAX_STEPS {
@@ -347,14 +379,19 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }
         let past = time - end.piece.from;
         let slack = R::splat(1e-9);
-        self.accepted = self.accepted
-            & end.found
-            & !open
-            & steep
-            & (self.motion.modes.slow() * time * time).gt(R::splat(SLOWEST))
-            & past.ge(-slack)
-            & past.le(end.piece.width + slack)
-            & time.lt(horizon);
+        let released =
+            !open & steep & past.ge(-slack) & past.le(end.piece.width + slack) & !self.lasting;
+        self.accepted = self.accepted & end.found & (released | self.lasting);
+        self.lasting = self.accepted & (self.lasting | time.ge(horizon));
+        if self.lasting.any() {
+            time = R::select(self.lasting, horizon, time);
+            let at_horizon = self.motion.modes.basis(horizon);
+            for (function, anew) in self.at_end.iter_mut().zip(at_horizon) {
+                *function = R::select(self.lasting, anew, *function);
+            }
+        }
+        let slow = self.motion.modes.slow() * time * time;
+        self.accepted = self.accepted & slow.gt(R::splat(SLOWEST));
         self.end = time;
         let before = self.motion.modes.basis(end.piece.from);
         let at_end = self.at_end;
@@ -366,44 +403,36 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// The other metrics.
     #[inline(always)]
     pub fn rest(&mut self, peaks: &GroupPeaks<R>) -> GroupRest<R> {
-        let length = self.motion.modes.length;
-        let velocity = self.motion.head[0];
-        let gained = velocity.at(&self.at_end) - velocity.at_contact();
         let searches = self.searches;
-        let put_off = if self.humps || !searches.windows() {
-            R::Mask::none()
-        } else {
-            self.accepted & (self.space.found.valley.found | self.shelf)
-        };
-        self.accepted = self.accepted & !put_off;
-        let nothing = [R::splat(f64::NAN); 2];
+        let nothing = [Known::nothing(); 2];
         let powers = if searches.powers {
             self.powers()
         } else {
             nothing
         };
-        if searches.windows() {
-            let hidden = self.space.found.acceleration.hidden.0;
-            self.accepted = self.accepted & !self.ragged & !hidden;
-        }
-        let [average, clip] = if searches.held {
-            self.held(&peaks.top)
+        let found = &self.space.found;
+        let hidden = found.acceleration.hidden.0;
+        let course = peaks.head_acceleration.holds & !self.ragged & !hidden;
+        let put_off = if self.humps || !searches.windows() {
+            R::Mask::none()
+        } else {
+            course & (found.valley.found | self.shelf)
+        };
+        let course = course & !put_off;
+        let held = if searches.held {
+            self.held(course, &peaks.top)
         } else {
             nothing
         };
         let injury = if searches.injury == [false; 2] {
             nothing
         } else {
-            self.injuries()
+            self.injuries(course)
         };
         GroupRest {
-            mean: gained / (self.end * length * length),
             injury,
-            average,
-            clip,
-            manipulator_power: powers[0] / length,
-            foam_power: powers[1] / length,
-            accepted: self.accepted,
+            held,
+            powers,
             put_off,
         }
     }
@@ -442,7 +471,9 @@ mod tests {
             };
             let mut solved = group.solve::<_, true>(Scalar, &mut space, true);
             let peaks = solved.peaks();
-            refused += i32::from(!solved.rest(&peaks).accepted);
+            let rest = solved.rest(&peaks);
+            let all = [rest.injury, rest.held, rest.powers];
+            refused += i32::from(!all.iter().flatten().all(|known| known.holds));
         }
         // One in a hundred costs about as much as all the others.
         assert!(refused * 500 < nodes * nodes, "{refused}");

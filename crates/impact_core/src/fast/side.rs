@@ -2,14 +2,18 @@
 
 use std::ops::Range;
 
-use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Workspace};
+use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Known, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
-use crate::metrics::Searches;
-use crate::metrics::{FREE_HORIZON, Loads, MetricOptions, Metrics, Status};
+use crate::metrics::{
+    CRITERIA, FREE_HORIZON, Loads, MetricOptions, Metrics, Missing, Searches, Status,
+};
 use crate::parameters::{System, Target};
 use crate::series::Plant;
 use numeric::lanes::{Mask, Real};
 use pulp::{Scalar, Simd};
+
+/// Most rows side by side.
+pub const MOST_LANES: usize = 8;
 
 /// How the responses of rows side by side are walked along.
 #[derive(Clone, Copy)]
@@ -20,7 +24,7 @@ pub struct Walk {
     pub cell_angle: f64,
     /// Whether rows with two humps or a shelf are followed.
     pub humps: bool,
-    /// What is wanted besides peaks.
+    /// What is wanted.
     pub searches: Searches,
 }
 
@@ -28,8 +32,6 @@ pub struct Walk {
 pub struct Side<R: Real> {
     peaks: GroupPeaks<R>,
     rest: Option<GroupRest<R>>,
-    /// Lanes that need no general search.
-    pub accepted: R::Mask,
     /// Lanes whose compression stays in the linear range.
     within: R::Mask,
 }
@@ -103,8 +105,7 @@ impl<R: Real> Side<R> {
         let peaks = solved.peaks();
         let rest = ALL.then(|| solved.rest(&peaks));
         Self {
-            accepted: rest.as_ref().map_or(peaks.accepted, |rest| rest.accepted),
-            within: peaks.compression.le(range),
+            within: peaks.compression.value.le(range),
             peaks,
             rest,
         }
@@ -120,13 +121,13 @@ impl<R: Real> Side<R> {
 
     /// The criteria; NaN where they were not asked for.
     #[inline(always)]
-    fn loads(&self, gravity: f64) -> Loads<R> {
+    fn loads(&self, gravity: f64) -> Loads<Known<R>> {
         let (peaks, per_g) = (&self.peaks, R::splat(gravity));
-        let nothing = R::splat(f64::NAN);
+        let nothing = Known::nothing();
         let loads = Loads {
             peak_head_acceleration: peaks.head_acceleration,
-            peak_head_acceleration_g: peaks.head_acceleration / per_g,
-            mean_head_acceleration_g: nothing,
+            peak_head_acceleration_g: peaks.head_acceleration.over(per_g),
+            mean_head_acceleration_g: peaks.mean.over(per_g),
             peak_contact_force: peaks.contact_force,
             max_compression: peaks.compression,
             impact_duration: peaks.duration,
@@ -143,61 +144,102 @@ impl<R: Real> Side<R> {
         // T mean^2.5 with the mean in g.
         let scale = R::splat(gravity * gravity * gravity.sqrt());
         Loads {
-            mean_head_acceleration_g: rest.mean / per_g,
-            hic15: rest.injury[0] / scale,
-            hic36: rest.injury[1] / scale,
-            average_3ms_g: rest.average / per_g,
-            clip_3ms_g: rest.clip / per_g,
-            peak_power_manipulator: rest.manipulator_power,
-            peak_power_foam: rest.foam_power,
+            hic15: rest.injury[0].over(scale),
+            hic36: rest.injury[1].over(scale),
+            average_3ms_g: rest.held[0].over(per_g),
+            clip_3ms_g: rest.held[1].over(per_g),
+            peak_power_manipulator: rest.powers[0],
+            peak_power_foam: rest.powers[1],
             ..loads
         }
     }
 
-    /// What the row of an accepted lane means.
+    /// Lanes in which the status holds.
+    #[inline(always)]
+    fn status_holds(&self) -> R::Mask {
+        self.peaks.duration.holds & self.peaks.compression.holds
+    }
+
+    /// What the row of a lane means.
     #[inline(always)]
     pub fn status(&self, lane: usize) -> Status {
-        if self.within.lane(lane) {
+        if self.peaks.duration.value.lane(lane) == f64::INFINITY {
+            Status::NoRelease
+        } else if self.within.lane(lane) {
             Status::Released
         } else {
             Status::BeyondLinearRange
         }
     }
 
+    /// Lanes in which something of what is missing does not hold.
+    #[inline(always)]
+    pub fn lacking(&self, missing: Missing) -> R::Mask {
+        let mut holds = R::Mask::splat(true);
+        for (place, criterion) in self.loads(1.0).into_array().into_iter().enumerate() {
+            if missing.has(place) {
+                holds = holds & criterion.holds;
+            }
+        }
+        if missing.has_status() {
+            holds = holds & self.status_holds();
+        }
+        !holds
+    }
+
+    /// What holds in each lane.
+    #[inline(always)]
+    pub fn known(&self, gravity: f64) -> [Missing; MOST_LANES] {
+        let mut known = [Missing::NOTHING; MOST_LANES];
+        let mut note = |place: usize, bits: u32| {
+            for (lane, known) in known.iter_mut().enumerate().take(R::WIDTH) {
+                known.insert(place, bits >> lane & 1 == 1);
+            }
+        };
+        for (place, criterion) in self.loads(gravity).into_array().into_iter().enumerate() {
+            note(place, criterion.holds.bits());
+        }
+        note(CRITERIA.len(), self.status_holds().bits());
+        known
+    }
+
+    /// Writes the first lanes into the columns that are there, beginning with a row.
+    #[inline(always)]
+    pub fn store(&self, columns: Loads<&mut [f64]>, rows: Range<usize>, gravity: f64) {
+        columns.each_with(self.loads(gravity), |column, known| {
+            let cells = column.get_mut(rows.clone()).into_iter().flatten();
+            for (lane, cell) in cells.enumerate() {
+                *cell = known.value.lane(lane);
+            }
+        });
+    }
+
     /// Metrics of a lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize, gravity: f64) -> Metrics {
         Metrics {
-            loads: self.loads(gravity).map(|value| value.lane(lane)),
+            loads: self.loads(gravity).map(|known| known.value.lane(lane)),
             status: self.status(lane),
         }
     }
-
-    /// Writes the first lanes into columns, those that are there.
-    #[inline(always)]
-    pub fn store(&self, columns: Loads<&mut [f64]>, rows: Range<usize>, gravity: f64) {
-        columns.each_with(self.loads(gravity), |column, value| {
-            let cells = column.get_mut(rows.clone()).into_iter().flatten();
-            for (lane, cell) in cells.enumerate() {
-                *cell = value.lane(lane);
-            }
-        });
-    }
 }
 
-/// Metrics of one impact if its response has the usual shape; numbers are in range.
+/// Metrics of one impact as far as its response has the usual shape, and what they miss; numbers are
+/// in range.
 pub(crate) fn usual(
     system: &System,
     closing_speed: f64,
     options: &MetricOptions,
-) -> Option<Metrics> {
+) -> (Metrics, Missing) {
+    let mut found = Metrics::none(Status::InvalidParameter);
+    let mut missing = Missing::ALL;
     let head = match system.head {
         Target::Free(head) => HeadColumns::Free {
             mass: Column::Value(head.mass),
             damping: Column::Value(head.damping),
             stiffness: Column::Value(head.stiffness),
         },
-        Target::Constrained => return None,
+        Target::Constrained => return (found, missing),
     };
     let columns = Columns {
         manipulator_mass: Column::Value(system.manipulator.mass),
@@ -211,28 +253,27 @@ pub(crate) fn usual(
         manipulator_speed: options.manipulator_speed.map(Column::Value),
     };
     let horizon = options.horizon.unwrap_or(FREE_HORIZON);
-    [CELL_ANGLE, FINE_CELL_ANGLE]
-        .into_iter()
-        .find_map(|cell_angle| {
-            let walk = Walk {
-                horizon,
-                cell_angle,
-                humps: true,
-                searches: Searches::ALL,
-            };
-            one_row::<true>(&columns, walk, options.gravity, 0)
-        })
+    for cell_angle in [CELL_ANGLE, FINE_CELL_ANGLE] {
+        let walk = Walk {
+            horizon,
+            cell_angle,
+            humps: true,
+            searches: missing.searches(),
+        };
+        let (metrics, known) = one(&columns, walk, options.gravity);
+        found.take(&metrics, missing.without(missing.without(known)));
+        missing = missing.without(known);
+        if missing.is_nothing() {
+            break;
+        }
+    }
+    (found, missing)
 }
 
-/// Metrics of one row if its response has the usual shape in cells of some length.
+/// Metrics of the first row in cells of some length, and which of them hold.
 #[inline(never)]
-pub(crate) fn one_row<const ALL: bool>(
-    columns: &Columns<'_>,
-    walk: Walk,
-    gravity: f64,
-    row: usize,
-) -> Option<Metrics> {
+fn one(columns: &Columns<'_>, walk: Walk, gravity: f64) -> (Metrics, Missing) {
     let mut space = Workspace::new();
-    let found = Side::<f64>::of::<_, ALL>(Scalar, &mut space, columns, walk, |_| row);
-    found.accepted.then(|| found.lane(0, gravity))
+    let found = Side::<f64>::of::<_, true>(Scalar, &mut space, columns, walk, |_| 0);
+    (found.lane(0, gravity), found.known(gravity)[0])
 }

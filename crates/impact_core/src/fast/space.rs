@@ -4,7 +4,7 @@ use super::scan::{Piece, Place, Tops};
 use numeric::lanes::Real;
 
 /// Nodes after which an impact is refused.
-pub(super) const NODES: usize = 65;
+pub(super) const NODES: usize = 129;
 
 /// Space for the nodes of a group and what is found between them.
 pub struct Workspace<R: Real> {

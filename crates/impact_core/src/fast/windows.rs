@@ -3,7 +3,7 @@
 use super::apart::apart;
 use super::arithmetic::{Each, MapWith, third_order};
 use super::modes::{Basis, Wave};
-use super::{MAX_STEPS, Solved};
+use super::{Known, MAX_STEPS, Solved};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
@@ -17,13 +17,15 @@ pub(super) const SETTLED_MEAN: f64 = 1e-3;
 
 /// What a window gives, for `V` and accelerations per cell.
 #[derive(Clone, Copy)]
-pub(super) struct Window<R> {
+pub(super) struct Window<R: Real> {
     pub(super) start: R,
     pub(super) rise: R,
     /// Smaller acceleration at its ends.
     pub(super) edge: R,
     /// Smallest acceleration in it.
     pub(super) level: R,
+    /// Lanes in which the steps did not come to rest.
+    pub(super) restless: R::Mask,
 }
 
 impl<R: Real> Window<R> {
@@ -50,7 +52,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// The best window of a width for lanes of a mask: equal accelerations at both ends, or it
     /// starts with the impact.
     #[inline(always)]
-    pub(super) fn full(&mut self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
+    pub(super) fn full(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
         apart(
             self.simd,
             #[inline(always)]
@@ -59,17 +61,18 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn full_here(&mut self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
+    fn full_here(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
         let zero = R::zero();
         let half = R::splat(0.5);
         let room = self.end - width;
         let mut start = guess.min(room).max(zero);
-        let mut open = mask & self.accepted;
+        let mut open = mask;
         let mut found = Window {
             start: zero,
             rise: zero,
             edge: zero,
             level: zero,
+            restless: R::Mask::none(),
         };
         let over_the_width = self.motion.modes.basis(width);
         for _ in 0..MAX_STEPS {
@@ -97,15 +100,15 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 break;
             }
         }
-        self.accepted = self.accepted & !(mask & open);
+        found.restless = open;
         found.start = start;
         found.edge = found.level;
         found
     }
 
-    /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2.
+    /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2, in lanes of a mask.
     #[inline(always)]
-    pub(super) fn held(&mut self, [time, curve, third]: &[R; 3]) -> [R; 2] {
+    pub(super) fn held(&mut self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
         let length = self.motion.modes.length;
         let width = R::splat(HELD_WINDOW) / length;
         let exists = width.le(self.end);
@@ -114,36 +117,52 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let skew = half * half * *third / (*curve * R::splat(6.0));
         let skew = R::select(skew.abs().lt(half), skew, R::zero());
         let humps = self.space.found.valley.found;
-        let mut window = self.full(exists & !humps, width, *time - half - skew, SETTLED);
-        let humps = humps & exists & self.accepted;
+        let plain = mask & exists & !humps;
+        let mut window = self.full(plain, width, *time - half - skew, SETTLED);
+        let humps = mask & exists & humps;
         if humps.any() {
+            // The best one may stop with the horizon.
+            window.restless = window.restless | (humps & self.lasting);
+            let humps = humps & !self.lasting;
             let other = self.full_of_humps(humps, width);
             window.rise = R::select(humps, other.rise, window.rise);
             window.level = R::select(humps, other.level, window.level);
+            window.restless = window.restless | other.restless;
         }
         let nan = R::splat(f64::NAN);
         [
             window.rise / (length * R::splat(HELD_WINDOW)),
             window.level / (length * length),
         ]
-        .each(|value| R::select(exists, value, nan))
+        .each(|value| Known {
+            value: R::select(exists, value, nan),
+            holds: mask & !window.restless,
+        })
     }
 
-    /// Injury criteria: the window with free ends where it is not too wide, else the full one.
+    /// Injury criteria in lanes of a mask: the window with free ends where it is not too wide, else
+    /// the full one.
     #[inline(always)]
-    pub(super) fn injuries(&mut self) -> [R; 2] {
+    pub(super) fn injuries(&mut self, mask: R::Mask) -> [Known<R>; 2] {
         let length = self.motion.modes.length;
         let humps = self.space.found.valley.found | self.shelf;
-        let plain = self.accepted & !humps;
+        let plain = mask & !humps;
         let free = self.free_window(plain, self.half_level(), R::Mask::none());
-        self.accepted = self.accepted & !(plain & !(free.settled & free.concave));
         let [start, end] = free.ends;
+        // The horizon cuts off what comes after it like a steep flank: together with one that flattens
+        // before it that is a shelf.
+        let [_, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
+        let cut = slope.ge(R::zero()) | curve.gt(R::zero()) | end.ge(self.end);
+        let plain = plain & free.settled & free.concave & !(self.lasting & cut);
         let free_width = end - start;
-        let mut values = [free.value; 2];
+        let mut found = [Known {
+            value: free.value,
+            holds: plain,
+        }; 2];
         let asked = self.searches.injury;
-        for ((value, width), asked) in values.iter_mut().zip(INJURY_WINDOWS).zip(asked) {
+        for ((known, width), asked) in found.iter_mut().zip(INJURY_WINDOWS).zip(asked) {
             let width = R::splat(width) / length;
-            let wide = free_width.gt(width) & self.accepted & !humps;
+            let wide = plain & free_width.gt(width);
             if !asked || !wide.any() {
                 continue;
             }
@@ -154,24 +173,20 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let share = R::select(possible, share, R::splat(0.5));
             let guess = start + share * (free_width - width);
             let window = self.full(wide, width, guess, SETTLED_MEAN);
-            *value = R::select(wide, criterion(window.rise, width, length), free.value);
+            known.value = R::select(wide, criterion(window.rise, width, length), free.value);
+            known.holds = plain & !window.restless;
         }
-        let humps = humps & self.accepted;
+        let humps = mask & humps & !self.lasting;
         if humps.any() {
-            self.injuries_of_humps(humps, &mut values);
+            self.injuries_of_humps(humps, &mut found);
         }
-        values
+        found
     }
 
     /// Newton steps to the best window without a limit of its width, for lanes of a mask; some may
     /// be held to start with the impact.
     #[inline(always)]
-    pub(super) fn free_window(
-        &mut self,
-        mask: R::Mask,
-        guess: [R; 2],
-        held: R::Mask,
-    ) -> FreeWindow<R> {
+    pub(super) fn free_window(&self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
         apart(
             self.simd,
             #[inline(always)]
@@ -180,12 +195,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn free_window_here(&mut self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
+    fn free_window_here(&self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
         let zero = R::zero();
         let half = R::splat(0.5);
         let length = self.motion.modes.length;
         let [mut start, mut end] = guess;
-        let mut open = mask & self.accepted;
+        let mut open = mask;
         let mut found = FreeWindow {
             ends: [zero; 2],
             slopes: [zero; 2],
