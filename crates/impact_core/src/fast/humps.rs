@@ -2,6 +2,7 @@
 
 use super::apart::apart;
 use super::arithmetic::{Each, MapWith};
+use super::modes::{Basis, Wave};
 use super::scan::{Piece, Tops};
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
 use super::{Known, MAX_STEPS, Solved};
@@ -15,6 +16,9 @@ const SEEDS: usize = 6;
 const NEAR: f64 = 1.5;
 /// How far from the middle of its cells a window may be, in cells.
 const FAR: f64 = 2.0;
+/// Largest acceleration over that in the nodes, at most: only windows that stop with the horizon, of
+/// which nothing else is known, ask for it.
+const BETWEEN: f64 = 1.25;
 /// A stationary window this near to the best one has to be a maximum itself.
 const CLOSE: f64 = 0.99;
 
@@ -31,33 +35,40 @@ struct Seed<R: Real> {
 impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// The same where the acceleration has a valley: there may be several good windows.
     #[inline(always)]
-    pub(super) fn full_of_humps(&self, mask: R::Mask, width: R) -> Window<R> {
+    pub(super) fn full_of_humps(&self, mask: R::Mask, width: R, trough: [R; 2]) -> Window<R> {
         apart(
             self.simd,
             #[inline(always)]
-            || self.full_of_humps_here(mask, width),
+            || self.full_of_humps_here(mask, width, trough),
         )
     }
 
     #[inline(always)]
-    fn full_of_humps_here(&self, mask: R::Mask, width: R) -> Window<R> {
+    fn full_of_humps_here(&self, mask: R::Mask, width: R, trough: [R; 2]) -> Window<R> {
+        let modes = &self.motion.modes;
         let room = self.end - width;
-        let difference = |solved: &Self, time: R| {
-            let [left, right] = [solved.head(time), solved.head(time + width)];
-            [right[1] - left[1], right[2] - left[2]]
-        };
-        let (tops, lost) = self.tops_along(mask, room, difference);
-        let ([time, value], missed) = self.trough(mask);
-        let trough = [time, value];
-        let refused = lost | missed;
-        let mask = mask & !refused;
+        // The mean grows with the start by the difference of the accelerations at both ends.
+        let over_the_width = modes.basis(width);
+        let difference = modes.growth(self.motion.head[1], &over_the_width);
+        let bend = modes.slope(difference);
+        let (tops, lost) = self.tops_along(mask, room, &modes.basis(room), |basis, _| {
+            [difference.at(basis), bend.at(basis)]
+        });
+        let mask = mask & !lost;
         let mut best = self.full(mask, width, R::zero(), SETTLED);
         best.level = best.level_with(width, trough);
-        best.restless = best.restless | refused;
-        for place in &tops.places {
-            let also = mask & place.found & !best.restless;
+        best.restless = best.restless | lost;
+        let [first, second] = tops.places;
+        let others = [
+            (first.found, first.piece.zero()),
+            (second.found, second.piece.zero()),
+            // The best one may stop with the horizon.
+            (self.lasting, room),
+        ];
+        for (found, guess) in others {
+            let also = mask & found & !best.restless;
             if also.any() {
-                let window = self.full(also, width, place.piece.zero(), SETTLED);
+                let window = self.full(also, width, guess, SETTLED);
                 let level = window.level_with(width, trough);
                 let better = also & window.rise.gt(best.rise);
                 best.rise = R::select(better, window.rise, best.rise);
@@ -70,20 +81,31 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     }
 
     /// Tops of a function between 0 and an end whose derivative with its slope is given, and lanes that
-    /// have more of them or may hide one.
+    /// have more of them or may hide one. It is looked at in the nodes and at the end.
     #[inline(always)]
     fn tops_along(
         &self,
         mask: R::Mask,
         end: R,
-        derivative: impl Fn(&Self, R) -> [R; 2],
+        at_end: &Basis<R>,
+        derivative: impl Fn(&Basis<R>, R) -> [R; 2],
     ) -> (Tops<R>, R::Mask) {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let modes = &self.motion.modes;
+        let turn = modes.basis(one);
         let mut tops = Tops::new();
-        let mut from = R::zero();
-        let mut left = derivative(self, from);
+        let mut from = zero;
+        let mut basis = [one, zero, one, zero];
+        let mut left = derivative(&basis, from);
         for index in 1..=self.nodes {
-            let to = R::splat(index as f64).min(end);
-            let right = derivative(self, to);
+            basis = modes.turned(&basis, &turn);
+            let time = R::splat(index as f64);
+            let inside = time.lt(end);
+            let here = basis.map_with(*at_end, |at_node, at_end| {
+                R::select(inside, at_node, at_end)
+            });
+            let to = R::select(inside, time, end);
+            let right = derivative(&here, to);
             let piece = Piece {
                 from,
                 width: to - from,
@@ -103,7 +125,16 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     /// Time and acceleration of the valley, and lanes in which it was not found.
     #[inline(always)]
-    fn trough(&self, mask: R::Mask) -> ([R; 2], R::Mask) {
+    pub(super) fn trough(&self, mask: R::Mask) -> ([R; 2], R::Mask) {
+        apart(
+            self.simd,
+            #[inline(always)]
+            || self.trough_here(mask),
+        )
+    }
+
+    #[inline(always)]
+    fn trough_here(&self, mask: R::Mask) -> ([R; 2], R::Mask) {
         let mut time = self.space.found.valley.piece.zero();
         let mask = mask & self.space.found.valley.found;
         let mut open = mask;
@@ -150,11 +181,13 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let mut holds = [humps; 2];
         // What the narrower windows give tells where the wider ones are not looked for.
         let asked = [true, self.searches.injury[1]];
+        // No level is wanted that a valley would limit.
+        let nowhere = [R::splat(-1.0), zero];
         for (index, width) in INJURY_WINDOWS.into_iter().enumerate() {
             let width = R::splat(width) / length;
             let full = humps & width.lt(self.end);
             if asked[index] && full.any() {
-                let window = self.full_of_humps(full, width);
+                let window = self.full_of_humps(full, width, nowhere);
                 let value = criterion(window.rise, width, length);
                 best[index] = R::select(full & !window.restless, value, zero);
                 holds[index] = holds[index] & !window.restless;
@@ -165,8 +198,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let full = best;
         let before = self.motion.head[0].at_contact();
         // Over the time, as all of it is zero at contact; there it may start to grow from zero.
-        let from_contact = |solved: &Self, time: R| {
-            let [velocity, acceleration, slope, _] = solved.head(time);
+        let from_contact = |basis: &Basis<R>, time: R| {
+            let [velocity, acceleration, slope] = Wave::values(&self.motion.head, 0, basis);
             let started = time.gt(zero);
             let span = R::select(started, time, R::splat(1.0));
             let mean = (velocity - before) / span;
@@ -181,7 +214,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 slope - R::splat(0.6) * R::select(started, bend, R::splat(0.5) * slope),
             ]
         };
-        let (tops, lost) = self.tops_along(humps, self.end, from_contact);
+        let (tops, lost) = self.tops_along(humps, self.end, &self.at_end, from_contact);
         let (seeds, more) = self.seeds(humps);
         let mut refused = lost | more;
         for place in &tops.places {
@@ -212,11 +245,34 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 }
             }
         }
+        let lasting = humps & self.lasting;
+        if lasting.any() {
+            for (index, width) in INJURY_WINDOWS.into_iter().enumerate() {
+                let width = R::splat(width) / length;
+                let steepest = R::splat(BETWEEN) * self.steepest_after(self.end - width);
+                let bound = criterion(steepest * width, width, length);
+                holds[index] = holds[index] & !(lasting & bound.gt(best[index]));
+            }
+        }
         for (index, known) in known.iter_mut().enumerate() {
             let missed = shrinks[index] & best[index].le(full[index]);
             known.value = R::select(humps, best[index], known.value);
             known.holds = known.holds | (holds[index] & !missed & !refused);
         }
+    }
+
+    /// Largest acceleration in the nodes from one before a time on, and at the end.
+    #[inline(always)]
+    fn steepest_after(&self, time: R) -> R {
+        let first = time - R::splat(1.0);
+        let mut steepest = self.motion.head[1].at(&self.at_end);
+        for (index, [_, acceleration]) in self.space.head.iter().enumerate().take(self.nodes) {
+            let node = R::splat(index as f64);
+            let inside = node.ge(first) & node.lt(self.end);
+            let higher = inside & acceleration.gt(steepest);
+            steepest = R::select(higher, *acceleration, steepest);
+        }
+        steepest
     }
 
     /// Takes a window with free ends where it is not too wide.

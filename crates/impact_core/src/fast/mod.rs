@@ -412,7 +412,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         };
         let found = &self.space.found;
         let hidden = found.acceleration.hidden.0;
-        let course = peaks.head_acceleration.holds & !self.ragged & !hidden;
+        let course = peaks.head_acceleration.holds & !hidden;
+        // The horizon cuts off what comes after it like a steep flank: together with one that flattens
+        // before it that is a shelf.
+        let [_, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
+        let cut = self.lasting & (slope.ge(R::zero()) | curve.gt(R::zero()));
+        self.shelf = self.shelf | cut;
         let put_off = if self.humps || !searches.windows() {
             R::Mask::none()
         } else {
@@ -420,7 +425,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         };
         let course = course & !put_off;
         let held = if searches.held {
-            self.held(course, &peaks.top)
+            self.held(course & !self.ragged, &peaks.top)
         } else {
             nothing
         };

@@ -95,6 +95,19 @@ impl<S: Simd, R: Real> Modes<S, R> {
         self.modulus[1]
     }
 
+    /// By how much a wave grows over the time from first contact to another one, of which the functions
+    /// are given: a wave again.
+    #[inline(always)]
+    pub fn growth(&self, wave: Wave<R>, by: &Basis<R>) -> Wave<R> {
+        wave.by_pairs(|pair, p, q| {
+            let (c, s) = (by[2 * pair], by[2 * pair + 1]);
+            [
+                (p * c + q * s) - p,
+                (q * c - p * (self.square[pair] * s)) - q,
+            ]
+        })
+    }
+
     /// Derivative of a wave.
     #[inline(always)]
     pub fn slope(&self, wave: Wave<R>) -> Wave<R> {

@@ -108,7 +108,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2, in lanes of a mask.
     #[inline(always)]
-    pub(super) fn held(&mut self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
+    pub(super) fn held(&self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
         let length = self.motion.modes.length;
         let width = R::splat(HELD_WINDOW) / length;
         let exists = width.le(self.end);
@@ -121,13 +121,11 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let mut window = self.full(plain, width, *time - half - skew, SETTLED);
         let humps = mask & exists & humps;
         if humps.any() {
-            // The best one may stop with the horizon.
-            window.restless = window.restless | (humps & self.lasting);
-            let humps = humps & !self.lasting;
-            let other = self.full_of_humps(humps, width);
+            let (trough, missed) = self.trough(humps);
+            let other = self.full_of_humps(humps & !missed, width, trough);
             window.rise = R::select(humps, other.rise, window.rise);
             window.level = R::select(humps, other.level, window.level);
-            window.restless = window.restless | other.restless;
+            window.restless = window.restless | other.restless | missed;
         }
         let nan = R::splat(f64::NAN);
         [
@@ -149,11 +147,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let plain = mask & !humps;
         let free = self.free_window(plain, self.half_level(), R::Mask::none());
         let [start, end] = free.ends;
-        // The horizon cuts off what comes after it like a steep flank: together with one that flattens
-        // before it that is a shelf.
-        let [_, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
-        let cut = slope.ge(R::zero()) | curve.gt(R::zero()) | end.ge(self.end);
-        let plain = plain & free.settled & free.concave & !(self.lasting & cut);
+        let cut = self.lasting & end.ge(self.end);
+        let plain = plain & free.settled & free.concave & !cut;
         let free_width = end - start;
         let mut found = [Known {
             value: free.value,
@@ -176,7 +171,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             known.value = R::select(wide, criterion(window.rise, width, length), free.value);
             known.holds = plain & !window.restless;
         }
-        let humps = mask & humps & !self.lasting;
+        let humps = mask & humps;
         if humps.any() {
             self.injuries_of_humps(humps, &mut found);
         }
