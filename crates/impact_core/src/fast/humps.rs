@@ -4,6 +4,7 @@ use super::apart::apart;
 use super::arithmetic::{Each, MapWith};
 use super::modes::{Basis, Wave};
 use super::scan::{Piece, Tops};
+use super::space::Workspace;
 use super::windows::{FreeWindow, SETTLED, Window, criterion};
 use super::{Known, MAX_STEPS, Solved};
 use crate::metrics::INJURY_WINDOWS;
@@ -290,61 +291,72 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     #[inline(always)]
     fn seeds(&mut self, humps: R::Mask) -> ([Seed<R>; SEEDS], R::Mask) {
         let zero = R::zero();
+        let half = R::splat(0.5);
         let mut seeds = [Seed {
             found: R::Mask::none(),
             ends: [zero; 2],
             square: zero,
         }; SEEDS];
         let mut more = R::Mask::none();
-        let last = [self.motion.head[0].at(&self.at_end), zero];
+        let at_end = [self.end, self.motion.head[0].at(&self.at_end), zero];
         let end = self.end;
-        let node = |index: usize, head: &[[R; 2]]| {
+        let rows = self.nodes + 1;
+        let Workspace {
+            head,
+            clipped,
+            signs,
+            ..
+        } = &mut *self.space;
+        clipped.clear();
+        for (index, [velocity, acceleration]) in head.iter().enumerate().take(rows) {
             let time = R::splat(index as f64);
             let past = time.ge(end);
-            let [velocity, acceleration] =
-                [0, 1].each(|order: usize| R::select(past, last[order], head[index][order]));
-            [R::select(past, end, time), velocity, acceleration]
-        };
-        let share = R::splat(0.6);
-        let half = R::splat(0.5);
-        let rows = self.nodes + 1;
-        self.space.windows.clear();
-        self.space.windows.resize(rows * rows, [zero; 2]);
-        for i in 0..rows {
-            let [start, before, first] = node(i, &self.space.head);
-            for j in i..rows {
-                let [stop, after, last] = node(j, &self.space.head);
-                let (rise, width) = (share * (after - before), stop - start);
-                // As the width goes to zero only the sign is wanted.
-                let signs =
-                    [first, last].each(|at: R| R::select(width.gt(zero), at * width - rise, at));
-                self.space.windows[i * rows + j] = signs;
-            }
+            let node = [time, *velocity, *acceleration];
+            clipped.push(node.map_with(at_end, |node, end| R::select(past, end, node)));
         }
-        for i in 0..rows - 1 {
-            let [start, before, _] = node(i, &self.space.head);
-            let [next_start, next_before, _] = node(i + 1, &self.space.head);
-            for j in i + 1..rows - 1 {
-                let [stop, after, _] = node(j, &self.space.head);
-                let corner = |di: usize, dj: usize| {
-                    self.space.windows[(i + di) * rows + j + dj].each(|sign| sign.gt(zero))
-                };
-                let corners = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
-                let mut here = humps & stop.lt(end);
+        for row in signs.iter_mut() {
+            row.resize(rows, [R::Mask::none(); 2]);
+        }
+        let [above, here] = signs;
+        for (i, &[start, before, first]) in clipped.iter().enumerate() {
+            // Signs of both derivatives of the criterion, times something positive; as the width goes to
+            // zero they are those of the acceleration.
+            std::mem::swap(above, here);
+            here[i] = [first.gt(zero); 2];
+            for (&[stop, after, last], signs) in clipped[i + 1..].iter().zip(&mut here[i + 1..]) {
+                let (rise, width) = (R::splat(0.6) * (after - before), stop - start);
+                *signs = [first, last].each(|at: R| (at * width).gt(rise));
+            }
+            if i == 0 {
+                continue;
+            }
+            let [last_start, last_before, _] = clipped[i - 1];
+            let column = |j: usize| {
+                let [up, down]: [[R::Mask; 2]; 2] = [above[j], here[j]];
+                (
+                    [up[0] | down[0], up[1] | down[1]],
+                    [up[0] & down[0], up[1] & down[1]],
+                )
+            };
+            let (mut any, mut all) = column(i);
+            for j in i..rows - 1 {
+                let (next_any, next_all) = column(j + 1);
+                let [stop, after, _] = clipped[j];
+                let mut found = humps & stop.lt(end);
                 for side in 0..2 {
-                    let [a, b, c, d] = corners.each(|corner| corner[side]);
-                    here = here & (a | b | c | d) & !(a & b & c & d);
+                    found = found & (any[side] | next_any[side]) & !(all[side] & next_all[side]);
                 }
-                if !here.any() {
+                (any, all) = (next_any, next_all);
+                if !found.any() {
                     continue;
                 }
-                let [next_stop, next_after, _] = node(j + 1, &self.space.head);
-                let rise = half * (after + next_after - before - next_before);
-                let ends = [half * (start + next_start), half * (stop + next_stop)];
+                let [next_stop, next_after, _] = clipped[j + 1];
+                let rise = half * (after + next_after - last_before - before);
+                let ends = [half * (last_start + start), half * (stop + next_stop)];
                 let width = ends[1] - ends[0];
                 let square = rise * rise;
                 let square = square * square * rise / (width * width * width);
-                let mut left = here;
+                let mut left = found;
                 for seed in &mut seeds {
                     let new = left & !seed.found;
                     seed.found = seed.found | new;

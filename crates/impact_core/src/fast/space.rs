@@ -10,9 +10,11 @@ pub(super) const NODES: usize = 129;
 pub struct Workspace<R: Real> {
     /// Velocity of the head, up to a constant, and its acceleration.
     pub(super) head: [[R; 2]; NODES],
-    /// Derivatives of the criterion of windows between nodes by their start and end, times
-    /// something positive.
-    pub(super) windows: Vec<[R; 2]>,
+    /// Time, velocity and acceleration in the nodes before the end of the impact and there.
+    pub(super) clipped: Vec<[R; 3]>,
+    /// Where the criterion of windows from a node to the others grows with their start and with their
+    /// end, and the same from the node before it.
+    pub(super) signs: [Vec<[R::Mask; 2]>; 2],
     /// Two nodes that follow each other, by turns.
     pub(super) pair: [Node<R>; 2],
     pub(super) found: Found<R>,
@@ -58,7 +60,8 @@ impl<R: Real> Workspace<R> {
     pub fn new() -> Self {
         Self {
             head: [[R::zero(); 2]; NODES],
-            windows: Vec::new(),
+            clipped: Vec::new(),
+            signs: [Vec::new(), Vec::new()],
             pair: [Node::at_rest(); 2],
             found: Found::new(),
         }
