@@ -13,7 +13,7 @@ mod view;
 use std::cell::Cell;
 
 use best::{Best, Place, Room};
-use cones::{Cone, ConeBase};
+use cones::{Cone, ConeBase, LegGroup};
 use lines::{Line, Reachable, where_circles_meet};
 use view::View;
 
@@ -23,7 +23,7 @@ use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
 use crate::laws::outlook::Attention;
 use crate::laws::planning::Planner;
-use crate::laws::planning::outline::{Legs, Outline};
+use crate::laws::planning::outline::Outline;
 use crate::world::geometry::Body;
 use crate::world::obstacle::Shape;
 use crate::world::scenario::Scenario;
@@ -116,17 +116,19 @@ pub struct VelocityObstaclePlanner {
     max_speed: f64,
     max_acceleration: f64,
     cones: Vec<Cone>,
+    legs: Vec<LegGroup>,
     /// Outlines that are no discs.
     edged: Vec<Outline>,
     /// As they are seen now, those that are so near that the way to a new velocity may touch them.
     close: Vec<Outline>,
-    lines: Vec<Line>,
+    /// Lines from standstill, which follow the two of each cone.
+    ahead: Vec<Line>,
     /// Place of the last velocity that was chosen.
     chosen: Place,
     /// The cone that forbade the last velocity.
     blocking: Cell<usize>,
     /// For decisions with the margin, and without it: what forbids something differs.
-    rooms: [Room; 2],
+    rooms: [Option<Box<Room>>; 2],
     /// What it is told of.
     view: View,
 }
@@ -143,9 +145,10 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.max_acceleration,
             cones: Vec::with_capacity(count),
+            legs: Vec::new(),
             edged: Vec::new(),
             close: Vec::new(),
-            lines: Vec::new(),
+            ahead: Vec::new(),
             chosen: (0, 0),
             blocking: Cell::new(0),
             rooms: Default::default(),
@@ -189,7 +192,7 @@ impl VelocityObstaclePlanner {
                 self.look_at(body, situation, (margin, farthest, before));
             }
         }
-        cones::draw_legs(&mut self.cones);
+        cones::draw_legs(&mut self.cones, &mut self.legs);
     }
 
     #[inline]
@@ -225,18 +228,10 @@ impl VelocityObstaclePlanner {
         });
     }
 
-    /// Draws every line on which a rule of selection can have its optimum.
+    /// Draws the lines from standstill on which a rule of selection can have its optimum.
     fn draw_lines(&mut self, aim: Vector) {
-        let lines = &mut self.lines;
+        let lines = &mut self.ahead;
         lines.clear();
-        lines.reserve(2 * self.cones.len());
-        for cone in &self.cones {
-            if let Some(Legs { left, right, .. }) = cone.legs {
-                let from = cone.tip;
-                lines.push(Line { from, along: left });
-                lines.push(Line { from, along: right });
-            }
-        }
         let mut ahead = |along| {
             let from = Vector::zeros();
             lines.push(Line { from, along });
@@ -248,6 +243,44 @@ impl VelocityObstaclePlanner {
                 ahead(aim * cosine + aim.left_normal() * side);
             }
         }
+    }
+
+    /// How many places there are for lines on which a rule of selection can have its optimum: the left and the right
+    /// leg of every cone, then the others.
+    fn line_count(&self) -> usize {
+        2 * self.cones.len() + self.ahead.len()
+    }
+
+    /// The line at a place; none where a cone has no legs.
+    #[inline]
+    fn line(&self, place: usize) -> Option<Line> {
+        let Some(cone) = self.cones.get(place / 2) else {
+            return self.ahead.get(place - 2 * self.cones.len()).copied();
+        };
+        let legs = cone.legs.as_ref()?;
+        let along = if place.is_multiple_of(2) {
+            legs.left
+        } else {
+            legs.right
+        };
+        let from = cone.tip;
+        Some(Line { from, along })
+    }
+
+    /// The same with no numbers where there is none.
+    #[inline]
+    fn line_or_none(&self, place: usize) -> Line {
+        let none = Vector::new(f64::NAN, f64::NAN);
+        self.line(place).unwrap_or(Line {
+            from: none,
+            along: none,
+        })
+    }
+
+    /// All lines with their places.
+    fn lines(&self) -> impl Iterator<Item = (usize, Line)> {
+        let places = 0..self.line_count();
+        places.filter_map(|place| Some((place, self.line(place)?)))
     }
 
     /// The velocity that reaches the goal soonest, if nothing is in between.
@@ -278,12 +311,13 @@ impl VelocityObstaclePlanner {
         let aim = self.direction_to_goal(situation);
         let wanted = self.wanted(situation, aim);
         let mut found = self.first_candidates(situation, aim).to_vec();
-        for (index, line) in self.lines.iter().enumerate() {
+        let lines: Vec<Line> = self.lines().map(|(_, line)| line).collect();
+        for (index, line) in lines.iter().enumerate() {
             if reachable.chord(line).is_none() {
                 continue;
             }
             found.extend(line.own(wanted, &reachable).into_iter().flatten());
-            let crossings = self.lines[..index].iter();
+            let crossings = lines[..index].iter();
             found.extend(crossings.filter_map(|other| line.crossing(other)));
         }
         found.extend(Self::last_candidates(&reachable, aim));
@@ -308,7 +342,7 @@ impl VelocityObstaclePlanner {
         let aim = self.direction_to_goal(situation);
         self.draw_lines(aim);
         let wanted = self.wanted(situation, aim);
-        let room = std::mem::take(&mut self.rooms[pass]);
+        let room = self.rooms[pass].take().unwrap_or_default();
         let mut best = Best::new(self, situation, (reachable, aim), room);
         for (number, velocity) in self
             .first_candidates(situation, aim)
@@ -325,14 +359,15 @@ impl VelocityObstaclePlanner {
         if let Some(velocity) = self.candidate(self.chosen, wanted, &reachable) {
             best.offer(self.chosen, velocity);
         }
-        let cap = best.cap();
+        let wide = [best.cap()];
+        let cap = wide[0];
         let told = self.view.holds(&cap, &reachable);
         if told {
-            best.narrow(&cap);
+            best.narrow(&wide);
             best.look_along_lines(wanted);
         }
         let (chosen, room) = best.ended();
-        self.rooms[pass] = room;
+        self.rooms[pass] = Some(room);
         self.view.note(cap, told);
         let (place, velocity) = chosen.filter(|_| told)?;
         self.chosen = place;
@@ -346,10 +381,10 @@ impl VelocityObstaclePlanner {
         wanted: Vector,
         reachable: &Reachable,
     ) -> Option<Vector> {
-        let line = self.lines.get(line.checked_sub(1)?)?;
+        let line = self.line(line.checked_sub(1)?)?;
         match number.checked_sub(best::OWN) {
             None => line.own(wanted, reachable)[number],
-            Some(other) => line.crossing(self.lines.get(other)?),
+            Some(other) => line.crossing(&self.line(other)?),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::cover::Covers;
 use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
-use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
+use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
@@ -34,16 +34,18 @@ pub(super) type Place = (usize, usize);
 /// The best free velocity of those that were offered, in any order: the same as in the order of
 /// their places.
 pub(super) struct Best<'a> {
-    planner: &'a VelocityObstaclePlanner,
+    pub(super) planner: &'a VelocityObstaclePlanner,
     situation: &'a Situation<'a, f64>,
-    reachable: Reachable,
-    aim: Vector,
+    pub(super) reachable: Reachable,
+    pub(super) aim: Vector,
     /// What it is worth by the first number: whatever promises less is not looked at.
     least: f64,
     found: Option<((f64, f64), Place, Vector)>,
     /// Whether the cones that may forbid any velocity that may be worth enough have been sorted out.
     narrow: bool,
-    room: Room,
+    /// Discs that hold all velocities that may be worth enough, once they have been.
+    caps: &'a [Cap],
+    room: Box<Room>,
 }
 
 /// Room for what is sorted out, kept from one control period to the next.
@@ -66,7 +68,7 @@ impl<'a> Best<'a> {
         planner: &'a VelocityObstaclePlanner,
         situation: &'a Situation<'a, f64>,
         (reachable, aim): (Reachable, Vector),
-        room: Room,
+        room: Box<Room>,
     ) -> Self {
         Self {
             planner,
@@ -76,12 +78,13 @@ impl<'a> Best<'a> {
             least: f64::NEG_INFINITY,
             found: None,
             narrow: false,
+            caps: &[],
             room,
         }
     }
 
     /// The best velocity and its place, and the room.
-    pub fn ended(self) -> (Option<(Place, Vector)>, Room) {
+    pub fn ended(self) -> (Option<(Place, Vector)>, Box<Room>) {
         let chosen = self.found.map(|(_, place, velocity)| (place, velocity));
         (chosen, self.room)
     }
@@ -114,40 +117,31 @@ impl<'a> Best<'a> {
     fn is_free(&self, velocity: Vector) -> bool {
         let (planner, situation) = (self.planner, self.situation);
         if self.narrow {
-            planner.free_of(self.room.near.iter().copied(), situation, velocity)
+            // Whatever is elsewhere is forbidden, or worth less.
+            let caps = &mut self.caps.iter();
+            caps.any(|cap| cap.may_hold(velocity))
+                && planner.free_of(self.room.near.iter().copied(), situation, velocity)
         } else {
             planner.free(situation, velocity)
         }
     }
 
-    /// Sorts out the cones that can forbid nothing that may be worth more than what was found, and the
-    /// legs on which there is nothing of that kind.
-    pub fn narrow(&mut self, cap: &Cap) {
+    /// Sorts out the cones that can forbid nothing within some discs, which hold all velocities that may be worth
+    /// more than what was found, and the legs on which there is nothing of that kind.
+    pub fn narrow(&mut self, caps: &'a [Cap]) {
         self.narrow = true;
-        let Room { near, lines, .. } = &mut self.room;
-        near.clear();
-        lines.clear();
-        let mut line = 0;
-        for (index, cone) in self.planner.cones.iter().enumerate() {
-            let Some(legs) = &cone.legs else {
-                near.push(index);
-                continue;
-            };
-            let offset = cap.center - cone.tip;
-            let reach = cap.reach(offset);
-            let across = [legs.left, legs.right].map(|leg| leg.perp(&offset));
-            // Also where a number is not one.
-            if !(across[0] > reach || across[1] < -reach) {
-                near.push(index);
-            }
-            for side in across {
-                if !(side > reach || side < -reach) {
-                    lines.push(line);
-                }
-                line += 1;
-            }
-        }
-        lines.extend(line..self.planner.lines.len());
+        self.caps = caps;
+        let VelocityObstaclePlanner { cones, legs, .. } = self.planner;
+        let Room { near, lines, .. } = &mut *self.room;
+        cones::sort_out((cones, legs), caps, (near, lines));
+        let ahead = 2 * cones.len();
+        lines.extend(ahead..ahead + self.planner.ahead.len());
+    }
+
+    /// What is worth less than this is worth less than what was found, whatever the roundings, where worth is the
+    /// component toward the goal.
+    pub fn floor(&self) -> f64 {
+        self.least - SLACK * (1.0 + self.least.abs())
     }
 
     /// The smallest disc that is known to hold everything reachable that may be worth enough.
@@ -157,8 +151,7 @@ impl<'a> Best<'a> {
             if self.planner.settings.selection != Selection::ToGoal {
                 return wide;
             }
-            let least = self.least - SLACK * (1.0 + self.least.abs());
-            wide.beyond(least, self.aim)
+            wide.beyond(self.floor(), self.aim)
         });
         let [one, other] = wide;
         if one.radius < other.radius {
@@ -191,14 +184,27 @@ impl<'a> Best<'a> {
             if self.least > least && self.is_covered(&line) {
                 continue;
             }
-            let own = line.line.own(wanted, &self.reachable);
-            for (number, velocity) in own.into_iter().enumerate() {
-                if let Some(velocity) = velocity {
-                    self.offer((1 + line.index, number), velocity);
-                }
-            }
+            self.offer_own(line.index, &line.line, wanted);
             self.look_at_crossings(&line);
             self.room.open.push(line);
+        }
+    }
+
+    /// Offers what is on a line by itself.
+    pub fn offer_own(&mut self, index: usize, line: &Line, wanted: Vector) {
+        let own = line.own(wanted, &self.reachable);
+        for (number, velocity) in own.into_iter().enumerate() {
+            if let Some(velocity) = velocity {
+                self.offer((1 + index, number), velocity);
+            }
+        }
+    }
+
+    /// Offers the crossing of a line with an earlier one.
+    #[inline]
+    pub fn offer_crossing(&mut self, later: (usize, &Line), earlier: (usize, &Line)) {
+        if let Some(velocity) = later.1.crossing(earlier.1) {
+            self.offer((1 + later.0, OWN + earlier.0), velocity);
         }
     }
 
@@ -213,10 +219,8 @@ impl<'a> Best<'a> {
             } else {
                 (other, line)
             };
-            if let Some(velocity) = later.line.crossing(&earlier.line) {
-                let place = (1 + later.index, OWN + earlier.index);
-                self.offer(place, velocity);
-            }
+            let (later, earlier) = ((later.index, later.line), (earlier.index, earlier.line));
+            self.offer_crossing((later.0, &later.1), (earlier.0, &earlier.1));
         }
     }
 
@@ -232,7 +236,7 @@ impl<'a> Best<'a> {
         // The lines follow each other by their places, so that equal promises are told apart by the order.
         let Room {
             promising, order, ..
-        } = &mut self.room;
+        } = &mut *self.room;
         let promises = promising.iter().enumerate();
         order.clear();
         order.extend(promises.map(|(place, line)| (line.promise, place)));
@@ -245,7 +249,7 @@ impl<'a> Best<'a> {
         let count = GROUP.min(self.room.lines.len() - first);
         let chosen = &self.room.lines[first..first + count];
         let group: [Line; GROUP] =
-            std::array::from_fn(|lane| self.planner.lines[chosen[lane.min(count - 1)]]);
+            std::array::from_fn(|lane| self.planner.line_or_none(chosen[lane.min(count - 1)]));
         let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&group[lane]));
         let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
         let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
@@ -321,7 +325,7 @@ impl<'a> Best<'a> {
         let VelocityObstaclePlanner {
             cones, settings, ..
         } = self.planner;
-        let Room { near, covers, .. } = &mut self.room;
+        let Room { near, covers, .. } = &mut *self.room;
         covers.cover((cones, near), (line, ends, asked), settings.horizon)
     }
 

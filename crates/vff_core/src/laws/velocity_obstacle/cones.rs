@@ -1,7 +1,8 @@
 //! Velocities that obstacles forbid.
 
 use super::Vector;
-use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use super::lines::Cap;
+use crate::lanes::{Lanes, Mask, Planar, Real, Vector2, Zero};
 use crate::laws::planning::outline::Legs;
 
 /// Discs that are looked at side by side.
@@ -27,14 +28,59 @@ pub(super) enum ConeBase {
     Edges(usize),
 }
 
-/// Draws the legs of all discs.
-pub(super) fn draw_legs(cones: &mut [Cone]) {
-    pulp::Arch::new().dispatch(Drawing(cones));
+/// Legs of cones side by side, in the order of the cones; numbers that are none where a cone has none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LegGroup {
+    tip: Vector2<Group>,
+    left: Vector2<Group>,
+    right: Vector2<Group>,
+}
+
+impl LegGroup {
+    /// How far velocities are within each leg, in m/s.
+    #[inline(always)]
+    fn within(&self, velocity: Vector) -> [Group; 2] {
+        let relative = Vector2::splat([velocity.x, velocity.y]) - self.tip;
+        [-self.left.perp(&relative), self.right.perp(&relative)]
+    }
+}
+
+/// Draws the legs of all discs; those of all cones go side by side as well.
+pub(super) fn draw_legs(cones: &mut [Cone], legs: &mut Vec<LegGroup>) {
+    legs.clear();
+    pulp::Arch::new().dispatch(Drawing(cones, legs));
+}
+
+/// Finds the first of the cones that may forbid a velocity of which something is true.
+pub(super) fn find_near(
+    legs: &[LegGroup],
+    velocity: Vector,
+    is_so: impl Fn(usize) -> bool,
+) -> Option<usize> {
+    pulp::Arch::new().dispatch(Finding(legs, velocity, is_so))
+}
+
+/// Notes the cones that may forbid velocities of any of some discs, and the places of the legs on which some of
+/// these lie.
+pub(super) fn sort_out(
+    (cones, legs): (&[Cone], &[LegGroup]),
+    caps: &[Cap],
+    (near, lines): (&mut Vec<usize>, &mut Vec<usize>),
+) {
+    near.clear();
+    lines.clear();
+    pulp::Arch::new().dispatch(Sorting {
+        cones,
+        legs,
+        caps,
+        near,
+        lines,
+    });
 }
 
 /// Draws the legs of discs side by side, compiled for the instructions of the processor; their bits are the same
 /// for all.
-struct Drawing<'a>(&'a mut [Cone]);
+struct Drawing<'a>(&'a mut [Cone], &'a mut Vec<LegGroup>);
 
 impl pulp::NullaryFnOnce for Drawing<'_> {
     type Output = ();
@@ -42,13 +88,13 @@ impl pulp::NullaryFnOnce for Drawing<'_> {
     #[inline(always)]
     fn call(self) {
         for group in self.0.chunks_mut(GROUP) {
-            draw_group(group);
+            self.1.push(draw_group(group));
         }
     }
 }
 
 #[inline(always)]
-fn draw_group(cones: &mut [Cone]) {
+fn draw_group(cones: &mut [Cone]) -> LegGroup {
     let disc = |lane: usize| match cones.get(lane).map(|cone| cone.base) {
         Some(ConeBase::Disc(center, radius)) => [center.x, center.y, radius],
         // In place of what is no disc.
@@ -59,6 +105,20 @@ fn draw_group(cones: &mut [Cone]) {
     let center = Vector2::new(x, y);
     let touched = center.dot(&center).le(radius * radius);
     let legs = Legs::of_disc(center, radius);
+    let tip = |lane: usize| {
+        cones
+            .get(lane)
+            .map_or(Vector2::new(0.0, 0.0), |cone| cone.tip)
+    };
+    let tips: [Vector; GROUP] = std::array::from_fn(tip);
+    let mut side_by_side = LegGroup {
+        tip: Vector2::new(
+            Group::from_fn(|lane| tips[lane].x),
+            Group::from_fn(|lane| tips[lane].y),
+        ),
+        left: legs.left,
+        right: legs.right,
+    };
     for (lane, cone) in cones.iter_mut().enumerate() {
         if matches!(cone.base, ConeBase::Disc(..)) && !touched.lane(lane) {
             cone.legs = Some(Legs {
@@ -67,6 +127,95 @@ fn draw_group(cones: &mut [Cone]) {
                 left_reach: legs.left_reach.lane(lane),
                 right_reach: legs.right_reach.lane(lane),
             });
+        } else {
+            let nothing = Vector2::new(f64::NAN, f64::NAN);
+            let own = cone
+                .legs
+                .map_or([nothing; 2], |legs| [legs.left, legs.right]);
+            side_by_side.set(lane, own);
+        }
+    }
+    for lane in cones.len()..GROUP {
+        side_by_side.set(lane, [Vector2::new(f64::NAN, f64::NAN); 2]);
+    }
+    side_by_side
+}
+
+impl LegGroup {
+    /// Changes the legs of one lane.
+    fn set(&mut self, lane: usize, [left, right]: [Vector; 2]) {
+        for (all, own) in [(&mut self.left, left), (&mut self.right, right)] {
+            all.x.set(lane, own.x);
+            all.y.set(lane, own.y);
+        }
+    }
+}
+
+struct Finding<'a, F>(&'a [LegGroup], Vector, F);
+
+impl<F: Fn(usize) -> bool> pulp::NullaryFnOnce for Finding<'_, F> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn call(self) -> Option<usize> {
+        for (place, group) in self.0.iter().enumerate() {
+            let [left, right] = group.within(self.1);
+            let beside = left.le(Group::zero()) | right.le(Group::zero());
+            // Also where a number is not one.
+            let near = !beside;
+            if near.any() {
+                let lanes = (0..GROUP).filter(|lane| near.lane(*lane));
+                let mut places = lanes.map(|lane| place * GROUP + lane);
+                if let Some(index) = places.find(|index| (self.2)(*index)) {
+                    return Some(index);
+                }
+            }
+        }
+        None
+    }
+}
+
+struct Sorting<'a> {
+    cones: &'a [Cone],
+    legs: &'a [LegGroup],
+    caps: &'a [Cap],
+    near: &'a mut Vec<usize>,
+    lines: &'a mut Vec<usize>,
+}
+
+impl pulp::NullaryFnOnce for Sorting<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (place, group) in self.legs.iter().enumerate() {
+            let mut near = [<Group as Real>::Mask::none(); 3];
+            for cap in self.caps {
+                // Also where a number is not one.
+                let [left, right] = group.within(cap.center);
+                let reach = cap.reach(group.tip);
+                let beside = [left.lt(-reach), right.lt(-reach)];
+                let within = [left.gt(reach), right.gt(reach)];
+                near[0] = near[0] | !(beside[0] | beside[1]);
+                near[1] = near[1] | !(beside[0] | within[0]);
+                near[2] = near[2] | !(beside[1] | within[1]);
+            }
+            if !(near[0] | near[1] | near[2]).any() {
+                continue;
+            }
+            for lane in 0..GROUP {
+                let index = place * GROUP + lane;
+                let Some(cone) = self.cones.get(index) else {
+                    break;
+                };
+                if near[0].lane(lane) {
+                    self.near.push(index);
+                }
+                if cone.legs.is_some() {
+                    let sides = (0..2).filter(|side| near[1 + side].lane(lane));
+                    self.lines.extend(sides.map(|side| 2 * index + side));
+                }
+            }
         }
     }
 }

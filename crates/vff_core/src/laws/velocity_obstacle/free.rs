@@ -1,5 +1,6 @@
 //! Whether a velocity is free: no contact within the horizon, and none on the way to it.
 
+use super::cones::find_near;
 use super::{Cone, ConeBase, Vector, VelocityObstaclePlanner};
 use crate::lanes::Planar;
 use crate::laws::Situation;
@@ -68,7 +69,9 @@ impl VelocityObstaclePlanner {
 
     /// Whether a reachable velocity is free.
     pub(super) fn free(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
-        self.free_of(0..self.cones.len(), situation, velocity)
+        self.is_late(situation, velocity, || {
+            find_near(&self.legs, velocity, |index| self.forbids(index, velocity))
+        })
     }
 
     /// The same for a velocity that only some cones may forbid.
@@ -79,19 +82,39 @@ impl VelocityObstaclePlanner {
         situation: &Situation<'_, f64>,
         velocity: Vector,
     ) -> bool {
-        let late = |cone: &Cone| {
-            if cone.is_beside(velocity) {
-                return true;
-            }
-            let time = cone.time_to_contact(velocity, &self.edged);
-            time == f64::INFINITY || time > self.settings.horizon
+        self.is_late(situation, velocity, || {
+            cones.find(|index| self.forbids(*index, velocity))
+        })
+    }
+
+    /// Whether a cone forbids a velocity.
+    #[inline]
+    fn forbids(&self, index: usize, velocity: Vector) -> bool {
+        let Some(cone) = self
+            .cones
+            .get(index)
+            .filter(|cone| !cone.is_beside(velocity))
+        else {
+            return false;
         };
+        let time = cone.time_to_contact(velocity, &self.edged);
+        let late = time == f64::INFINITY || time > self.settings.horizon;
+        !late
+    }
+
+    /// Whether nothing forbids a velocity, given how to find a cone that does.
+    #[inline]
+    fn is_late(
+        &self,
+        situation: &Situation<'_, f64>,
+        velocity: Vector,
+        find: impl FnOnce() -> Option<usize>,
+    ) -> bool {
         // What forbids a velocity mostly forbids its neighbors.
-        let known = self.cones.get(self.blocking.get());
-        if known.is_some_and(|cone| !late(cone)) {
+        if self.forbids(self.blocking.get(), velocity) {
             return false;
         }
-        if let Some(blocking) = cones.find(|index| !late(&self.cones[*index])) {
+        if let Some(blocking) = find() {
             self.blocking.set(blocking);
             return false;
         }

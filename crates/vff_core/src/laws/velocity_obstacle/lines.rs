@@ -99,12 +99,20 @@ impl Cap {
         }
     }
 
-    /// How far its center, given from a point of a line, is from that where it is beside it whatever the
-    /// roundings.
+    /// Whether a velocity is in it, generously.
     #[inline]
-    pub fn reach(&self, offset: Vector) -> f64 {
-        let room = BESIDE * (1.0 + offset.x.abs() + offset.y.abs());
-        self.radius * (1.0 + BESIDE) + room
+    pub fn may_hold(&self, velocity: Vector) -> bool {
+        let offset = velocity - self.center;
+        let wide = self.radius * (1.0 + 0.5 * BESIDE) + 0.5 * BESIDE;
+        offset.dot(&offset) <= wide * wide
+    }
+
+    /// How far its center is from lines through some velocities where it is beside them whatever the roundings.
+    #[inline(always)]
+    pub fn reach<R: Real>(&self, from: Vector2<R>) -> R {
+        let offset = Vector2::splat([self.center.x, self.center.y]) - from;
+        let size = R::splat(1.0) + offset.x.abs() + offset.y.abs();
+        R::splat(self.radius * (1.0 + BESIDE)) + size * R::splat(BESIDE)
     }
 }
 

@@ -45,6 +45,27 @@ fn crowd(draws: &mut Draws, count: usize) -> Scenario {
     Scenario::new(robot, [0.0; 2], [14.0, 0.0], obstacles, Rules::default()).unwrap()
 }
 
+fn bodies_at(scenario: &Scenario, time: f64) -> Vec<Body> {
+    let body = |placed: &PlacedObstacle| Body {
+        shape: placed.obstacle.shape,
+        regions: placed.regions,
+        state: placed.obstacle.motion.at(time, &mut 0),
+    };
+    scenario.obstacles.iter().map(body).collect()
+}
+
+fn situation(bodies: &[Body], robot: RobotState<f64>, time: f64) -> Situation<'_, f64> {
+    Situation {
+        time,
+        bodies,
+        ages: &[],
+        robot,
+        heading: 0.0,
+        interval: INTERVAL,
+        stop: Stop::never(),
+    }
+}
+
 /// The best of all candidates, one after the other.
 fn best_of_all(
     planner: &VelocityObstaclePlanner,
@@ -54,9 +75,10 @@ fn best_of_all(
     let aim = planner.direction_to_goal(situation);
     let wanted = planner.wanted(situation, aim);
     let mut candidates = planner.first_candidates(situation, aim).to_vec();
-    for (index, line) in planner.lines.iter().enumerate() {
+    let lines: Vec<Line> = planner.lines().map(|(_, line)| line).collect();
+    for (index, line) in lines.iter().enumerate() {
         candidates.extend(line.own(wanted, &reachable).into_iter().flatten());
-        let crossings = planner.lines[..index].iter();
+        let crossings = lines[..index].iter();
         candidates.extend(crossings.filter_map(|other| line.crossing(other)));
     }
     candidates.extend(VelocityObstaclePlanner::last_candidates(&reachable, aim));
@@ -100,21 +122,8 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
         };
         // The planner remembers what it chose a control period ago.
         for period in 0..4 {
-            let body = |placed: &PlacedObstacle| Body {
-                shape: placed.obstacle.shape,
-                regions: placed.regions,
-                state: placed.obstacle.motion.at(time, &mut 0),
-            };
-            let bodies: Vec<Body> = scenario.obstacles.iter().map(body).collect();
-            let situation = Situation {
-                time,
-                bodies: &bodies,
-                ages: &[],
-                robot,
-                heading: 0.0,
-                interval: INTERVAL,
-                stop: Stop::never(),
-            };
+            let bodies = bodies_at(&scenario, time);
+            let situation = situation(&bodies, robot, time);
             planner.look(&situation, settings.margin);
             let chosen = planner.select(0, &situation);
             let wanted = best_of_all(&planner, &situation);
