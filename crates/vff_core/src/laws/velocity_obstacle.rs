@@ -6,6 +6,8 @@ mod cones;
 mod cover;
 mod free;
 mod lines;
+mod parts;
+mod remaining;
 #[cfg(test)]
 pub(crate) mod tests;
 mod view;
@@ -342,7 +344,8 @@ impl VelocityObstaclePlanner {
         let aim = self.direction_to_goal(situation);
         self.draw_lines(aim);
         let wanted = self.wanted(situation, aim);
-        let room = self.rooms[pass].take().unwrap_or_default();
+        let mut room = self.rooms[pass].take().unwrap_or_default();
+        let mut remaining = std::mem::take(&mut room.remaining);
         let mut best = Best::new(self, situation, (reachable, aim), room);
         for (number, velocity) in self
             .first_candidates(situation, aim)
@@ -360,13 +363,14 @@ impl VelocityObstaclePlanner {
             best.offer(self.chosen, velocity);
         }
         let wide = [best.cap()];
-        let cap = wide[0];
+        best.narrow_down(&wide, &mut remaining, wanted);
+        let cap = best.cap();
         let told = self.view.holds(&cap, &reachable);
         if told {
-            best.narrow(&wide);
             best.look_along_lines(wanted);
         }
-        let (chosen, room) = best.ended();
+        let (chosen, mut room) = best.ended();
+        room.remaining = remaining;
         self.rooms[pass] = Some(room);
         self.view.note(cap, told);
         let (place, velocity) = chosen.filter(|_| told)?;

@@ -2,6 +2,7 @@
 
 use super::cover::Covers;
 use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
+use super::remaining::Remaining;
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
 
@@ -61,6 +62,7 @@ pub(super) struct Room {
     order: Vec<(f64, usize)>,
     /// Those that no single obstacle forbids.
     open: Vec<Promising>,
+    pub remaining: Remaining,
 }
 
 impl<'a> Best<'a> {
@@ -136,6 +138,11 @@ impl<'a> Best<'a> {
         cones::sort_out((cones, legs), caps, (near, lines));
         let ahead = 2 * cones.len();
         lines.extend(ahead..ahead + self.planner.ahead.len());
+    }
+
+    /// Whether no more than a few lines have anything on them that may be worth enough, as far as they were sorted out.
+    pub fn few_lines(&self, few: usize) -> bool {
+        self.narrow && self.room.lines.len() <= few
     }
 
     /// What is worth less than this is worth less than what was found, whatever the roundings, where worth is the

@@ -51,6 +51,11 @@ pub(super) fn draw_legs(cones: &mut [Cone], legs: &mut Vec<LegGroup>) {
     pulp::Arch::new().dispatch(Drawing(cones, legs));
 }
 
+/// The cone whose legs a velocity is farthest within.
+pub(super) fn deepest(legs: &[LegGroup], velocity: Vector) -> Option<usize> {
+    pulp::Arch::new().dispatch(Deepest(legs, velocity))
+}
+
 /// Finds the first of the cones that may forbid a velocity of which something is true.
 pub(super) fn find_near(
     legs: &[LegGroup],
@@ -148,6 +153,36 @@ impl LegGroup {
             all.x.set(lane, own.x);
             all.y.set(lane, own.y);
         }
+    }
+}
+
+struct Deepest<'a>(&'a [LegGroup], Vector);
+
+impl pulp::NullaryFnOnce for Deepest<'_> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn call(self) -> Option<usize> {
+        let mut deepest = Group::zero();
+        let mut places = Group::splat(-1.0);
+        for (place, group) in self.0.iter().enumerate() {
+            let [left, right] = group.within(self.1);
+            // Where a number is none, nothing is deeper.
+            let depth = Group::select(left.lt(right), left, right);
+            let deeper = deepest.lt(depth);
+            deepest = Group::select(deeper, depth, deepest);
+            places = Group::select(deeper, Group::splat(place as f64), places);
+        }
+        let mut found: Option<(f64, usize)> = None;
+        for lane in 0..GROUP {
+            let (depth, place) = (deepest.lane(lane), places.lane(lane));
+            if place >= 0.0 && found.is_none_or(|(known, _)| depth > known) {
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let index = place as usize * GROUP + lane;
+                found = Some((depth, index));
+            }
+        }
+        found.map(|(_, index)| index)
     }
 }
 
