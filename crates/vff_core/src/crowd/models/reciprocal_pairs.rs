@@ -9,8 +9,6 @@ use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
-type Vector = Vector2<f64>;
-
 /// Change of the velocity of one of two, and the direction of the line of permitted velocities.
 type Side<R> = (Vector2<R>, Vector2<R>);
 
