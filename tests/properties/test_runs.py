@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -185,6 +186,8 @@ def moved_scene(scene: nav.Scenario, angle: float, shift: tuple[float, float], h
         elif isinstance(body, nav.Rectangle):
             heading = hand * body.heading + angle
             obstacles.append(dataclasses.replace(body, center=point(body.center), heading=heading))
+        elif isinstance(body, nav.MovingDisc):
+            obstacles.append(dataclasses.replace(body, center=point(body.center), velocity=free(body.velocity)))
         elif isinstance(body, nav.Disc):
             obstacles.append(dataclasses.replace(body, center=point(body.center)))
     return dataclasses.replace(
@@ -208,3 +211,23 @@ def test_paths_without_stabilizing_force_move_with_the_world(seed: int, hand: in
     assert np.abs(there.min_distance - here.min_distance).max() <= PATH
     if hand == 1:
         assert there.energy == pytest.approx(here.energy, rel=1e-6)
+
+
+@pytest.mark.parametrize("hand", [1, -1], ids=["turned", "mirrored"])
+@pytest.mark.parametrize("parts", [{"shield": nav.Shield()}, {"shield": nav.Shield(), "yielding": nav.Yielding()}])
+def test_safe_navigation_moves_with_the_world(parts: dict[str, Any], hand: int) -> None:
+    """The search of the shield took its directions from the x axis, and ended otherwise in half of the worlds."""
+    law = nav.SafeNavigation(nav.VirtualForceField(stabilizing="off"), **parts)
+    apart = []
+    for seed in range(20):
+        scene = scenarios.random_traffic(6, seed=seed)
+        angle = random.Random(seed).uniform(-math.pi, math.pi)
+        here = nav.simulate(scene, law)
+        there = nav.simulate(moved_scene(scene, angle, (0.0, 0.0), hand), law)
+        c, s = math.cos(angle), math.sin(angle)
+        x, y = there.position[: len(here.position)].T
+        back = np.column_stack([c * x + s * y, hand * (c * y - s * x)])
+        apart.append(np.abs(back - here.position[: len(back)]).max())
+    # Rounding may send a robot another way where two ways cost the same.
+    assert np.median(apart) < 1e-6
+    assert sum(each > 1e-3 for each in apart) <= 1, apart

@@ -31,6 +31,15 @@ use crate::world::geometry::RobotState;
 /// Rounding of speeds, relative.
 const SPEED_ROUNDING: f64 = 1e-9;
 
+/// A wanted velocity below this share of the change to it tells no direction.
+const RESTING: f64 = 0.07;
+
+/// Sides that differ by less than this share are alike.
+const ALIKE: f64 = 1e-9;
+
+/// Walls farther away than this tell no side, in m.
+const FARTHEST: f64 = 1e3;
+
 /// Shares of the wanted velocity that are always tried.
 const SHARES: [f64; 10] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.0];
 
@@ -292,7 +301,7 @@ impl Guard {
             };
         }
         let near: Vec<Person> = self.near(view).copied().collect();
-        self.project(verifier.among(&near), view.robot.velocity, wanted)
+        self.project(verifier.among(&near), view, wanted)
             .map_or_else(
                 || Decision {
                     velocity: braking(view.robot.velocity, &self.limits),
@@ -305,13 +314,47 @@ impl Guard {
             )
     }
 
+    /// From where the search takes angles: from the direction of slowing down, toward the side on which
+    /// people are, or walls where there is nobody. Where both sides are alike the left one comes first.
+    fn frame(&self, view: &View<'_>, wanted: Vector2<f64>) -> search::Frame {
+        let before = view.robot.velocity;
+        let away = before - wanted;
+        let slower = if wanted.norm() > RESTING * away.norm() {
+            -wanted
+        } else {
+            away
+        };
+        let length = slower.norm();
+        let axis = if length > 0.0 {
+            slower / length
+        } else {
+            Vector2::x()
+        };
+        let (mut left, mut all) = (0.0, 0.0);
+        for person in view.people {
+            let offset = person.placed.center - view.robot.position;
+            let square = offset.norm_squared().max(f64::MIN_POSITIVE);
+            // Who is near counts most.
+            left += axis.perp(&offset) / square;
+            all += square.sqrt().recip();
+        }
+        let beside = Vector2::new(-axis.y, axis.x) * self.limits.radius;
+        let room = |place| view.walls.clearance_up_to(place, FARTHEST);
+        if left.abs() <= ALIKE * all && !view.walls.is_empty() {
+            let place = view.robot.position;
+            (left, all) = (room(place - beside) - room(place + beside), beside.norm());
+        }
+        search::Frame::new(axis, left >= -ALIKE * all)
+    }
+
     /// The verified velocity nearest to one that is reachable but not verified.
     fn project(
         &self,
         mut verifier: Verifier<'_>,
-        before: Vector2<f64>,
+        view: &View<'_>,
         wanted: Vector2<f64>,
     ) -> Option<Vector2<f64>> {
+        let before = view.robot.velocity;
         let tried = SHARES.iter().map(|share| wanted * *share);
         let tried = tried.chain([before, braking(before, &self.limits)]);
         let mut first: Option<(f64, Vector2<f64>)> = None;
@@ -324,6 +367,7 @@ impl Guard {
         }
         let farthest = (wanted - before).norm() + self.limits.change();
         search::nearest(
+            self.frame(view, wanted),
             wanted,
             farthest,
             first.map(|(_, velocity)| velocity),

@@ -173,6 +173,49 @@ fn the_search_is_nearly_as_near_as_a_fine_grid() {
 }
 
 #[test]
+fn a_world_that_is_turned_or_mirrored_is_decided_alike() {
+    let mut stream = numeric::random::Stream::new(9, 0);
+    let mut changed = 0;
+    for round in 0..600 {
+        let (guard, robot, people) = drawn(&mut stream);
+        let angle = stream.uniform(0.0, std::f64::consts::TAU);
+        let wanted = Vector2::new(angle.cos(), angle.sin()) * guard.limits.max_speed;
+        let hand = if round % 2 == 0 { 1.0 } else { -1.0 };
+        let (sin, cos) = stream.uniform(0.0, std::f64::consts::TAU).sin_cos();
+        let moved = |way: Vector2<f64>| {
+            let across = hand * way.y;
+            Vector2::new(cos * way.x - sin * across, sin * way.x + cos * across)
+        };
+        let others: Vec<Person> = people
+            .iter()
+            .map(|person| Person {
+                max_speed: person.max_speed,
+                ..Person::disc(moved(person.placed.center).into(), 0.3)
+            })
+            .collect();
+        let decide = |robot: RobotState<f64>, people: &[Person], wanted| {
+            let view = View {
+                robot,
+                people,
+                walls: Walls::NONE,
+            };
+            guard.decide(&view, wanted)
+        };
+        let here = decide(robot, &people, wanted);
+        let there = RobotState {
+            position: moved(robot.position),
+            velocity: moved(robot.velocity),
+        };
+        let there = decide(there, &others, moved(wanted));
+        changed += u32::from(here.status == Status::Changed);
+        assert_eq!(here.status, there.status, "{round}");
+        let off = (moved(here.velocity) - there.velocity).norm();
+        assert!(off < 1e-9, "{round}: {off}");
+    }
+    assert!(changed > 30, "{changed}");
+}
+
+#[test]
 fn braking_continues_a_verified_plan() {
     let mut stream = numeric::random::Stream::new(8, 0);
     for _ in 0..200 {
