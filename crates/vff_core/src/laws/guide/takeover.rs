@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use crate::error::{Result, positive};
 use crate::laws::guide::plan::LocalGoal;
 
-/// Rounding of times, in s.
+/// Rounding of times, in s, and of costs, in m.
 const ROUNDING: f64 = 1e-9;
 
 /// When to take over.
@@ -80,7 +80,8 @@ impl Takeover {
     /// Looks at the cost at a time in s, `None` where there is none; returns whether the takeover
     /// is under way.
     pub fn observe(&mut self, time: f64, cost: Option<f64>) -> bool {
-        let progress = |mark: f64| cost.filter(|cost| *cost <= mark - self.rule.progress);
+        let progress =
+            |mark: f64| cost.filter(|cost| *cost <= mark - self.rule.progress + ROUNDING);
         match self.mark {
             None => self.mark = Some((cost.unwrap_or(f64::INFINITY), time)),
             Some((mark, _)) => {
@@ -154,6 +155,16 @@ mod tests {
         assert!(!takeover.observe(1.6, Some(4.7)));
         assert!(!takeover.observe(2.5, Some(4.5)));
         assert!(takeover.observe(2.6, Some(4.5)));
+    }
+
+    #[test]
+    fn rounding_puts_off_no_event() {
+        // A robot at its largest speed covers the progress that counts in a whole number of periods.
+        let mut takeover = Takeover::new(TakeoverRule::with_map());
+        assert!(!takeover.observe(0.0, Some(5.0)));
+        assert!(!takeover.observe(0.9, Some(4.7 + 1e-14)));
+        assert!(!takeover.observe(1.8, Some(4.6)));
+        assert!(takeover.observe(1.9, Some(4.6)));
     }
 
     #[test]
