@@ -34,18 +34,32 @@ def test_a_late_view_of_a_person_is_that_of_one_who_is_farther_behind(latency: f
     assert np.abs(seen.position[:rows] - exact.position[:rows]).max() > 1e-3
 
 
-def test_before_the_start_an_accelerating_person_moves_on_the_parabola_and_a_recording_is_not_there() -> None:
+def test_before_the_start_an_accelerating_person_moves_on_the_parabola() -> None:
     late = nav.Measurement(scale=0.0, latency=0.5)
     quick = nav.Human.from_segments((2.3, 2.0), [(9.0, (0.0, 0.0), (0.0, -2.0))], **REGIONS)
     seen = nav.simulate(scene(quick, measurement=late), LAW)
     # 0.5 s before the start it was at y = 2.0 - 0.25: within 2.1 m of the robot, which feels it at once.
-    recorded = nav.Human.from_path([0.0, 9.0], [[2.3, 1.75], [2.3, 1.75]], **REGIONS)
+    assert seen.force[0][1] < -1e-6
+
+
+@pytest.mark.parametrize("begin", [0.0, -0.2])
+def test_a_recording_that_has_begun_at_the_start_is_seen_from_the_start(begin: float) -> None:
+    late = nav.Measurement(scale=0.0, latency=0.5)
+    path = [begin, 9.0], [[2.3, 1.75], [2.3, 1.75]]
+    seen = nav.simulate(scene(nav.Human.from_path(*path, **REGIONS), measurement=late), LAW)
+    stands = nav.Human(start=(2.3, 1.75), velocity=(0.0, 0.0), **REGIONS)
+    exact = nav.simulate(scene(stands), LAW)
+    assert seen.force[0][1] < -1e-6
+    rows = seen.time < 0.4
+    assert np.abs(seen.position[rows] - exact.position[: rows.sum()]).max() < 1e-9
+
+
+def test_a_recording_that_begins_later_is_seen_late() -> None:
+    late = nav.Measurement(scale=0.0, latency=0.5)
+    recorded = nav.Human.from_path([0.3, 9.0], [[2.3, 1.75], [2.3, 1.75]], **REGIONS)
     unseen = nav.simulate(scene(recorded, measurement=late), LAW)
-    first = [run.force[0] for run in (seen, unseen)]
-    assert first[0][1] < -1e-6
-    assert first[1][1] == pytest.approx(0.0, abs=1e-12)
-    assert np.abs(unseen.force[unseen.time < 0.47][:, 1]).max() < 1e-9
-    assert np.abs(unseen.force[unseen.time < 0.6][:, 1]).max() > 1e-6
+    assert np.abs(unseen.force[unseen.time < 0.77][:, 1]).max() < 1e-9
+    assert np.abs(unseen.force[unseen.time < 0.9][:, 1]).max() > 1e-6
 
 
 @pytest.mark.parametrize("latency", [0.06, 0.035, 0.25])

@@ -158,7 +158,8 @@ impl SampledScene {
                 Some(watched) => {
                     let late = watched.late.as_ref();
                     let cursor = &mut watched.cursor;
-                    let state = late.map_or(body.state, |motion| motion.at(time - latency, cursor));
+                    let ago = |motion: &Motion| motion.at_or_before_start(time - latency, cursor);
+                    let state = late.map_or(body.state, ago);
                     watched.measure(state, period)
                 }
             };

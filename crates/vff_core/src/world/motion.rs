@@ -377,6 +377,20 @@ impl Motion {
             present,
         }
     }
+
+    /// State at an instant as a sensor had it then, which may be before the start of a run at 0: whoever is
+    /// there at the start was there before, and moved as the first piece of the motion has it.
+    #[inline]
+    #[must_use]
+    pub fn at_or_before_start(&self, time: f64, cursor: &mut usize) -> BodyState {
+        let state = self.at(time, cursor);
+        let (from, until) = self.presence;
+        let before = time < from && from <= 0.0 && until >= 0.0;
+        BodyState {
+            present: state.present || before,
+            ..state
+        }
+    }
 }
 
 #[cfg(test)]
