@@ -14,6 +14,8 @@ pub const SCANNED: [f64; 2] = [1e-3, 20.0];
 const SCANS: usize = 48;
 /// Loads that the energy bounds below this share of their limits need no simulation.
 const WELL_INSIDE: f64 = 0.99;
+/// First step from a crossing into the limits, as a share of the way to what is known to be within.
+const FIRST_STEP: f64 = 1e-12;
 /// Lowest speed that is looked for, in m/s.
 const LOWEST: f64 = 1e-12;
 
@@ -226,11 +228,15 @@ fn scanned(of: &impl Fn(f64) -> [f64; 3]) -> Vec<f64> {
     found
 }
 
-/// Where the largest share is 1, by secants on logarithms, in which it is nearly a line.
+/// Where the largest share is 1, by secants on logarithms, in which it is nearly a line: a speed at which it
+/// is at most 1, if it is so at one of the ends.
 fn refined(of: &impl Fn(f64) -> [f64; 3], ends: [f64; 2]) -> f64 {
     let value = |speed: f64| worst(of(speed)).ln();
     let [mut low, mut high] = ends.map(f64::ln);
     let (mut at_low, mut at_high) = (value(ends[0]), value(ends[1]));
+    // The innermost speeds within the limits and beyond them.
+    let mut inside = if at_low <= 0.0 { ends[0] } else { ends[1] };
+    let mut found = inside;
     let mut side = 0;
     for _ in 0..100 {
         let width = high - low;
@@ -244,9 +250,13 @@ fn refined(of: &impl Fn(f64) -> [f64; 3], ends: [f64; 2]) -> f64 {
         } else {
             0.5 * (low + high)
         };
-        let now = value(x.exp());
+        found = x.exp();
+        let now = value(found);
+        if now <= 0.0 {
+            inside = found;
+        }
         if now.abs() < 1e-13 || width.abs() < 1e-13 {
-            return x.exp();
+            break;
         }
         // The end that stays twice loses half of its weight (Illinois).
         if (now > 0.0) == (at_high > 0.0) {
@@ -263,5 +273,45 @@ fn refined(of: &impl Fn(f64) -> [f64; 3], ends: [f64; 2]) -> f64 {
             side = -1;
         }
     }
-    (0.5 * (low + high)).exp()
+    within(of, found, inside)
+}
+
+/// The speed, or one next to it on the way to a speed that is within the limits, at which all loads are:
+/// a crossing is found to rounding only, and where a load jumps it is found on either side.
+fn within(of: &impl Fn(f64) -> [f64; 3], found: f64, inside: f64) -> f64 {
+    let mut share = FIRST_STEP;
+    let mut speed = found;
+    while worst(of(speed)) > 1.0 && share < 1.0 {
+        speed = found + (inside - found) * share;
+        share *= 4.0;
+    }
+    if worst(of(speed)) > 1.0 {
+        inside
+    } else {
+        speed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{refined, worst};
+
+    #[test]
+    fn a_speed_is_never_beyond_a_limit() {
+        for part in 0..200 {
+            let place = 0.2 + 1e-3 * f64::from(part);
+            let smooth = |speed: f64| [(speed / place).powf(1.7), f64::NAN, 0.3 * speed];
+            // A load that jumps past its limit, and one that does not reach it before.
+            let jump = |speed: f64| {
+                let share = if speed < place { 0.8 } else { 1.2 };
+                [f64::NAN, share * speed / place, f64::NAN]
+            };
+            let far = |speed: f64| [if speed < place { 1e-9 } else { 1e9 }; 3];
+            for load in [&smooth as &dyn Fn(f64) -> [f64; 3], &jump, &far] {
+                let found = refined(&load, [0.1, 2.0]);
+                assert!(worst(load(found)) <= 1.0, "{found} {place}");
+                assert!((found / place - 1.0).abs() < 1e-11, "{found} {place}");
+            }
+        }
+    }
 }
