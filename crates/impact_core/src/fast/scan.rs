@@ -52,17 +52,20 @@ impl<R: Real> Piece<R> {
         self.from + x * self.width
     }
 
-    /// Value of the cubic near its extremum if its slopes differ in sign.
+    /// Value of the cubic at its extremum if its slopes differ in sign.
     #[inline(always)]
     fn turn(&self) -> R {
         let [c0, c1, c2, c3] = self.cubic();
-        let difference = (self.slopes[0] - self.slopes[1]) * self.width;
-        let mut x = c1 / difference;
-        for _ in 0..2 {
-            let slope = (R::splat(3.0) * c3 * x + c2 + c2) * x + c1;
-            let bend = R::splat(6.0) * c3 * x + c2 + c2;
-            x = (x - slope / bend).max(R::zero()).min(R::splat(1.0));
-        }
+        let zero = R::zero();
+        // Where the slope c1 + 2 c2 x + 3 c3 x^2 changes sign the way that it does over the piece. Steps
+        // from the secant may run out of a piece in which it bends.
+        let rises = self.slopes[1].gt(zero);
+        let [a, b, c] = [c1, c2, c3].each(|number| R::select(rises, number, -number));
+        let triple = R::splat(3.0) * c;
+        let root = (b * b - a * triple).max(zero).sqrt();
+        let early = b.ge(zero);
+        let x = R::select(early, -a, root - b) / R::select(early, root + b, triple);
+        let x = x.max(zero).min(R::splat(1.0));
         ((c3 * x + c2) * x + c1) * x + c0
     }
 }
@@ -200,6 +203,50 @@ impl<R: Real> Tops<R> {
         let first = top & !again;
         if first.any() {
             self.places[0].note(first, *piece);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_that_bends_within_a_piece_cannot_hide_a_top() {
+        // The slope of an acceleration with tops on both sides of a low valley: below zero at both ends
+        // and above it by 0.005 between them, where steps from the secant run out of the piece.
+        let piece = Piece {
+            from: 4.0,
+            width: 1.0,
+            values: [-0.0016, -0.0348],
+            slopes: [0.0155, -0.1669],
+        };
+        assert!((piece.turn() - 0.005_019_4).abs() < 1e-6);
+        let mut tops = Tops::<f64>::new();
+        tops.look(true, &piece);
+        let (hidden, time, excess) = tops.hidden;
+        assert!(hidden && time == 4.0 && excess > 0.005, "{excess}");
+    }
+
+    #[test]
+    fn the_extremum_of_a_cubic_is_found_wherever_it_bends() {
+        for index in 0..2000 {
+            let mix = |factor: usize| ((index * factor) % 997) as f64 / 997.0;
+            let slopes = [-mix(31) - 1e-9, mix(577) + 1e-9];
+            for sign in [1.0, -1.0] {
+                let piece = Piece {
+                    from: 0.0,
+                    width: 1.0,
+                    values: [sign * mix(113), sign * mix(293)],
+                    slopes: slopes.map(|slope| sign * slope),
+                };
+                let [c0, c1, c2, c3] = piece.cubic();
+                let least = (0..=10_000)
+                    .map(|step| f64::from(step) * 1e-4)
+                    .map(|x| sign * (((c3 * x + c2) * x + c1) * x + c0))
+                    .fold(f64::INFINITY, f64::min);
+                assert!((sign * piece.turn() - least).abs() < 1e-7, "{index}");
+            }
         }
     }
 }
