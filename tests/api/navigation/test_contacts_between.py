@@ -124,7 +124,12 @@ def test_walls_within_steps_are_found_as_by_small_steps() -> None:
 def test_a_table_tells_what_each_of_its_episodes_tells() -> None:
     rules = {"position": np.zeros((3, 2)), "step": 0.5, "goal": (9.0, 0.0), "robot_radius": 0.3}
     near = {"people": [[[2.0, 0.1]], [[0.0, 0.1]], [[-2.0, 0.1]]]}
-    odd = ({"step": 500.0}, {"robot_radius": 300.0}, {"person_radius": [25.0], **near}, {"person_radius": [1e-3], **near})
+    odd = (
+        {"step": 500.0},
+        {"robot_radius": 300.0},
+        {"person_radius": [25.0], **near},
+        {"person_radius": [1e-3], **near},
+    )
     both = {"people": [[[-20.0, 0.1]], [[20.0, 0.1]], [[20.0, 0.1]]]}
     far = ({"people": [[[0.0, 3.0]], [[8.0, 3.0]], [[x, 3.0]]]} for x in (12.6, 12.4))
     episodes = [

@@ -13,7 +13,7 @@ const PERIODS: (f64, f64) = (8.0, 64.0);
 const ROOM: (f64, f64) = (4e-3, 0.25);
 
 /// By how much the room grows where it was too small, and shrinks where it was not.
-const GROWTH: (f64, f64) = (4.0, 0.5);
+const GROWTH: (f64, f64) = (2.0, 0.25);
 
 /// How far off its way the robot may be, as a share of the distance that it keeps.
 const OFF: f64 = 0.1;
