@@ -1,5 +1,6 @@
 //! The people of a world as they are now, and what is drawn for each.
 
+use numeric::order::sort_indices;
 use numeric::random::Stream;
 
 use crate::crowd::agent::{Agent, SHORTEST, direction_of};
@@ -309,14 +310,15 @@ impl Groups {
         if people.iter().all(|person| person.group.is_none()) {
             return;
         }
-        let mut names: Vec<u32> = people.iter().filter_map(|person| person.group).collect();
-        names.sort_unstable();
+        let named = people.iter().filter_map(|person| person.group);
+        let mut names: Vec<usize> = named.map(|name| name as usize).collect();
+        sort_indices(&mut names, &mut Ord::cmp);
         names.dedup();
         self.members.resize(names.len(), Vec::new());
         for (number, person) in (0_u32..).zip(people) {
             let place = person
                 .group
-                .and_then(|name| names.binary_search(&name).ok());
+                .and_then(|name| names.binary_search(&(name as usize)).ok());
             if let Some(place) = place {
                 self.members[place].push(number);
             }

@@ -4,6 +4,7 @@ mod discs;
 mod side_by_side;
 
 use discs::{front, nearer_leg, pass_disc};
+use numeric::order::sort_pairs;
 
 use crate::arguments::{Arguments, Named};
 use crate::error::Result;
@@ -244,7 +245,7 @@ impl ReciprocalPlanner {
 
     /// The permitted velocity nearest to a wanted one, for neighbors with their half-planes.
     fn solve(&mut self, wanted: Vector, plane: impl Fn(&Self, usize) -> HalfPlane) -> Vector {
-        self.neighbors.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_pairs(&mut self.neighbors);
         let mut planes = std::mem::take(&mut self.planes);
         planes.clear();
         planes.extend(self.neighbors.iter().map(|(_, index)| plane(self, *index)));

@@ -3,6 +3,7 @@
 use crate::search::evaluated::Evaluated;
 use crate::search::pareto::{dominates, non_dominated};
 use crate::search::problem::Problem;
+use numeric::order::sort_indices;
 
 /// A feasible point that no other one beats.
 #[derive(Clone, Debug)]
@@ -112,14 +113,16 @@ impl Archive {
     }
 
     /// Points and values row by row, the best in the first objective first.
-    pub fn rows(&mut self) -> (Vec<f64>, Vec<f64>) {
-        self.entries.sort_by(|one, other| {
+    pub fn rows(&self) -> (Vec<f64>, Vec<f64>) {
+        let mut order: Vec<usize> = (0..self.entries.len()).collect();
+        sort_indices(&mut order, &mut |one, other| {
+            let (one, other) = (&self.entries[*one], &self.entries[*other]);
             let (a, b) = (one.values[0] + 0.0, other.values[0] + 0.0);
             b.total_cmp(&a).then(one.number.cmp(&other.number))
         });
         let mut points = Vec::with_capacity(self.entries.len() * self.dimension);
         let mut values = Vec::with_capacity(self.entries.len() * self.objectives);
-        for entry in &self.entries {
+        for entry in order.iter().map(|index| &self.entries[*index]) {
             points.extend_from_slice(&entry.point);
             values.extend_from_slice(&entry.values);
         }

@@ -72,14 +72,17 @@ pub(crate) fn answer_together<T: Send>(
         let mut stopped = false;
         while running > 0 {
             match questions.recv() {
-                Ok(Message::Ask(who, point)) => asked.push((who, point)),
+                Ok(Message::Ask(who, point)) => {
+                    // In the order of the solvers, whoever asked first.
+                    let place = asked.partition_point(|(known, _)| *known < who);
+                    asked.insert(place, (who, point));
+                }
                 Ok(Message::Done) => running -= 1,
                 Err(_) => break,
             }
             if asked.is_empty() || asked.len() < running {
                 continue;
             }
-            asked.sort_unstable_by_key(|(who, _)| *who);
             let values = if stopped { None } else { answer(&asked) };
             stopped = values.is_none();
             let mut values = values.unwrap_or_default().into_iter();

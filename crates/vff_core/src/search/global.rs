@@ -1,6 +1,7 @@
 //! Global methods with a budget of evaluations: islands that do not know of each other, stepped
 //! together so that their points share vector lanes and threads.
 
+use numeric::order::sort_indices;
 use numeric::random::Stream;
 
 use crate::error::{Failure, Given, Result};
@@ -165,8 +166,12 @@ fn joined(islands: Vec<Found>) -> GlobalSearch {
         }
         search.islands.push(own);
     }
-    steps.sort_by_key(|step| step.0);
-    for (evaluations, value) in steps {
+    let mut order: Vec<usize> = (0..steps.len()).collect();
+    sort_indices(&mut order, &mut |a, b| {
+        steps[*a].0.cmp(&steps[*b].0).then(a.cmp(b))
+    });
+    for index in order {
+        let (evaluations, value) = steps[index];
         if search.history.last().is_none_or(|last| value > last.1) {
             search.history.push((evaluations, value));
         }

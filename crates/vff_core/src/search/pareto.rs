@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use numeric::order::{sort_indices, sort_pairs};
+
 /// Whether a row is at least as good in every objective and better in one; all maximized.
 pub(crate) fn dominates(one: &[f64], other: &[f64]) -> bool {
     let pairs = || one.iter().zip(other);
@@ -28,7 +30,9 @@ pub fn non_dominated(values: &[f64], objectives: usize) -> Vec<usize> {
     let sound = |index: &usize| row(*index).iter().all(|value| *value > f64::NEG_INFINITY);
     let count = values.len() / objectives.max(1);
     let mut sorted: Vec<usize> = (0..count).filter(sound).collect();
-    sorted.sort_unstable_by(|one, other| order(values, objectives, *one, *other));
+    sort_indices(&mut sorted, &mut |one, other| {
+        order(values, objectives, *one, *other)
+    });
     // A row can only be dominated by, or equal to, one before it.
     let mut front: Vec<usize> = Vec::new();
     for index in sorted {
@@ -41,7 +45,7 @@ pub fn non_dominated(values: &[f64], objectives: usize) -> Vec<usize> {
             front.push(index);
         }
     }
-    front.sort_unstable();
+    sort_indices(&mut front, &mut Ord::cmp);
     front
 }
 
@@ -64,32 +68,36 @@ pub fn hypervolume(values: &[f64], objectives: usize, reference: &[f64]) -> f64 
         .chunks_exact(objectives.max(1))
         .filter(above)
         .map(gains);
-    volume(rows.collect(), objectives)
+    volume(&rows.collect::<Vec<_>>(), objectives)
 }
 
 /// Volume of a union of boxes from the origin.
-fn volume(mut rows: Vec<Vec<f64>>, dimension: usize) -> f64 {
+fn volume(rows: &[Vec<f64>], dimension: usize) -> f64 {
     if rows.is_empty() || dimension == 0 {
         return 0.0;
     }
     let last = dimension - 1;
-    rows.sort_by(|one, other| other[last].total_cmp(&one[last]));
+    let pairs = rows.iter().enumerate();
+    let mut order: Vec<(f64, usize)> = pairs.map(|(index, row)| (-row[last], index)).collect();
+    sort_pairs(&mut order);
     if last == 0 {
-        return rows[0][0];
+        return rows[order[0].1][0];
     }
     let mut total = 0.0;
     let mut slice: Vec<Vec<f64>> = Vec::new();
-    for index in 0..rows.len() {
-        let own = &rows[index][..last];
+    for (place, (_, index)) in order.iter().enumerate() {
+        let own = &rows[*index][..last];
         let covered = |known: &Vec<f64>| known.iter().zip(own).all(|(a, b)| a >= b);
         if !slice.iter().any(covered) {
             slice.retain(|known| !own.iter().zip(known).all(|(a, b)| a >= b));
             slice.push(own.to_vec());
         }
-        let next = rows.get(index + 1).map_or(0.0, |row| row[last]);
-        let depth = rows[index][last] - next;
+        let next = order
+            .get(place + 1)
+            .map_or(0.0, |(_, next)| rows[*next][last]);
+        let depth = rows[*index][last] - next;
         if depth > 0.0 {
-            total += depth * volume(slice.clone(), last);
+            total += depth * volume(&slice, last);
         }
     }
     total

@@ -1,5 +1,7 @@
 //! Contacts with people, and who brought them about; contacts with walls.
 
+use numeric::order::sort_indices;
+
 use crate::lanes::Vector2;
 
 use super::episode::Episode;
@@ -27,7 +29,7 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    pub fn of(episode: &Episode<'_>, end: usize, mut touches: Vec<Touch>) -> Self {
+    pub fn of(episode: &Episode<'_>, end: usize, touches: &[Touch]) -> Self {
         let (walls, wall_clearance) = at_walls(episode, end);
         let mut contacts = Self {
             robot_on_person: 0,
@@ -37,9 +39,12 @@ impl Contacts {
             walls,
             wall_clearance,
         };
-        touches.sort_unstable();
+        let mut order: Vec<usize> = (0..touches.len()).collect();
+        sort_indices(&mut order, &mut |one, other| {
+            touches[*one].cmp(&touches[*other])
+        });
         let mut before: Option<Touch> = None;
-        for Touch { person, instant } in touches {
+        for Touch { person, instant } in order.iter().map(|index| touches[*index]) {
             let goes_on =
                 before.is_some_and(|last| last.person == person && last.instant + 1 == instant);
             if !goes_on {

@@ -48,7 +48,7 @@ pub fn evaluate_checked(episode: &Episode<'_>) -> RobotMetrics {
 pub fn evaluate_with_extremes(episode: &Episode<'_>) -> (RobotMetrics, Extremes) {
     let travel = Travel::of(episode);
     let (near, touches) = Proximity::of(episode, travel.end);
-    let contacts = Contacts::of(episode, travel.end, touches);
+    let contacts = Contacts::of(episode, travel.end, &touches);
     let effect = Effect::of(episode);
     let success = travel.arrived && contacts.none();
     let extremes = Extremes::of(episode, near.may_be_passed);

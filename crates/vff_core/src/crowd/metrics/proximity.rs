@@ -1,5 +1,7 @@
 //! How near people are: clearances, zones, time to a collision, groups, social forces.
 
+use numeric::order::sort_indices;
+
 use crate::crowd::neighbors::grid::Period;
 use crate::lanes::Vector2;
 
@@ -204,20 +206,15 @@ fn time_to_collision(offset: Vector2<f64>, closing: Vector2<f64>, reach: f64) ->
 
 /// Members of each group of two or more.
 fn members(groups: &[i64]) -> Vec<Vec<usize>> {
-    let mut numbers: Vec<i64> = groups
-        .iter()
-        .copied()
-        .filter(|number| *number >= 0)
+    let mut order: Vec<usize> = (0..groups.len())
+        .filter(|person| groups[*person] >= 0)
         .collect();
-    numbers.sort_unstable();
-    numbers.dedup();
-    let of = |number: i64| -> Vec<usize> {
-        (0..groups.len())
-            .filter(|person| groups[*person] == number)
-            .collect()
-    };
-    let all = numbers.into_iter().map(of);
-    all.filter(|group| group.len() >= 2).collect()
+    sort_indices(&mut order, &mut |one, other| {
+        (groups[*one], one).cmp(&(groups[*other], other))
+    });
+    let all = order.chunk_by(|one, other| groups[*one] == groups[*other]);
+    let more = all.filter(|group| group.len() >= 2);
+    more.map(<[usize]>::to_vec).collect()
 }
 
 /// Whether the robot is in the personal zone of a group, all of whom are present.

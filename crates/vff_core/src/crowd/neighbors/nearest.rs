@@ -76,7 +76,7 @@ impl Nearest {
     fn first(&mut self, most: usize, number: impl Fn(u32) -> u32) -> &[u32] {
         let count = self.distances.len();
         if count > MOST_RANKED || !self.rank(count) {
-            self.sort(count, most, number);
+            self.sort(count, most, &number);
         }
         self.order.truncate(most.min(count));
         &self.order
@@ -108,7 +108,7 @@ impl Nearest {
     /// Sorts by distance, then by number.
     #[allow(clippy::cast_possible_truncation)] // at most a million agents
     #[cold]
-    fn sort(&mut self, count: usize, most: usize, number: impl Fn(u32) -> u32) {
+    fn sort(&mut self, count: usize, most: usize, number: &dyn Fn(u32) -> u32) {
         let Self {
             distances, order, ..
         } = self;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector2;
+use numeric::order::sort_pairs;
 
 use crate::error::{Failure, Given, Result};
 use crate::laws::Stop;
@@ -222,7 +223,7 @@ impl Plan {
                 }
             }
             let near = &mut near[..count];
-            near.sort_unstable_by(|one, two| one.0.total_cmp(&two.0).then(one.1.cmp(&two.1)));
+            sort_pairs(near);
             let mut seen = near.iter().filter(|(_, node)| {
                 let place = self.nodes.place(*node);
                 self.map.segment_keeps(position, place, least)

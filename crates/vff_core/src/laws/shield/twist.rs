@@ -10,6 +10,7 @@ use crate::laws::shield::person::Person;
 use crate::laws::shield::walls::{ROUNDING, Walls};
 use crate::laws::shield::{Limits, Shield, Status};
 use crate::robots::differential::{DifferentialLimits, Twist};
+use numeric::order::sort_pairs;
 use plan::{STILL, TwistPlan, unit};
 
 /// Speeds and turn rates that are tried on each side.
@@ -113,13 +114,13 @@ impl TwistGuard {
         if self.verified(view, wanted) {
             return (wanted, Status::Kept);
         }
-        let mut tried = self.candidates(&view.robot, wanted);
-        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut verified = tried
-            .into_iter()
-            .filter(|(_, twist)| self.verified(view, *twist));
-        match verified.next() {
-            Some((_, twist)) => (twist, Status::Changed),
+        let tried = self.candidates(&view.robot, wanted);
+        let priced = tried.iter().enumerate();
+        let mut order: Vec<(f64, usize)> = priced.map(|(place, tried)| (tried.0, place)).collect();
+        sort_pairs(&mut order);
+        let mut twists = order.iter().map(|(_, place)| tried[*place].1);
+        match twists.find(|twist| self.verified(view, *twist)) {
+            Some(twist) => (twist, Status::Changed),
             None => (self.limits.braking(view.robot.twist), Status::Braking),
         }
     }

@@ -5,6 +5,7 @@ use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
 use super::remaining::Remaining;
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use numeric::order::sort_pairs;
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
 pub(super) const OWN: usize = 5;
@@ -246,8 +247,8 @@ impl<'a> Best<'a> {
         } = &mut *self.room;
         let promises = promising.iter().enumerate();
         order.clear();
-        order.extend(promises.map(|(place, line)| (line.promise, place)));
-        order.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        order.extend(promises.map(|(place, line)| (-line.promise, place)));
+        sort_pairs(order);
     }
 
     /// The lines of a group, that from some place on among those that may hold anything.

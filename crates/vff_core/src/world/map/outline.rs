@@ -1,6 +1,7 @@
 //! Outlines of filled polygons.
 
 use nalgebra::Vector2;
+use numeric::order::sort_indices;
 
 use crate::error::{Failure, Given, Result, finite_pair};
 use crate::world::map::capsule::Capsule;
@@ -54,11 +55,11 @@ fn doubled_area(edges: &[Capsule]) -> f64 {
 /// Checks that no two corners are the same point.
 fn check_corners(points: &[[f64; 2]]) -> Result<()> {
     let mut order: Vec<usize> = (0..points.len()).collect();
-    let before = |one: &usize, two: &usize| {
+    let mut before = |one: &usize, two: &usize| {
         let ([x, y], [u, v]) = (points[*one], points[*two]);
         x.total_cmp(&u).then(y.total_cmp(&v)).then(one.cmp(two))
     };
-    order.sort_unstable_by(before);
+    sort_indices(&mut order, &mut before);
     let twice = order
         .windows(2)
         .find(|pair| points[pair[0]] == points[pair[1]]);
