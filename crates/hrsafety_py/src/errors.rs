@@ -1,8 +1,7 @@
 //! The one map from core errors to Python exceptions.
 
-use std::borrow::Cow;
-
-use numeric::error::{Failure, Given};
+use numeric::error::{Failure, Given, InvalidParameter};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
@@ -22,52 +21,42 @@ impl From<Failure> for CoreError {
 }
 
 impl From<CoreError> for PyErr {
+    #[cold]
     fn from(CoreError(failure): CoreError) -> Self {
         match failure {
-            Failure::InvalidParameter {
-                name,
-                requirement,
-                value,
-                remedy,
-            } => match value {
-                Given::Number(number) => {
-                    InvalidParameterError::new_err((name, requirement, number, remedy))
-                }
-                Given::Pair([x, y]) => {
-                    InvalidParameterError::new_err((name, requirement, (x, y), remedy))
-                }
-                Given::Count(count) => {
-                    InvalidParameterError::new_err((name, requirement, count, remedy))
-                }
-                Given::Word(word) => {
-                    InvalidParameterError::new_err((name, requirement, word, remedy))
-                }
-                Given::Found(words) => found(name, requirement, &words, remedy),
-            },
+            Failure::InvalidParameter(refused) => invalid(*refused),
             Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
-            Failure::NonFinite { run, .. } => SimulationError::new_err((failure.to_string(), run)),
-            Failure::Threads { .. } => SimulationError::new_err(failure.to_string()),
+            Failure::NonFinite(ref lost) => {
+                SimulationError::new_err((failure.to_string(), lost.run))
+            }
+            Failure::Threads(_) => SimulationError::new_err(failure.to_string()),
         }
     }
 }
 
-/// An error whose value are words of ours, which Python prints without quotes.
-fn found(
-    name: String,
-    requirement: Cow<'static, str>,
-    words: &str,
-    remedy: Option<String>,
-) -> PyErr {
-    Python::attach(|py| {
-        let shown = py
-            .import("hrsafety.errors")
-            .and_then(|errors| errors.getattr("Shown"))
-            .and_then(|kind| kind.call1((words,)));
-        match shown {
-            Ok(shown) => {
-                InvalidParameterError::new_err((name, requirement, shown.unbind(), remedy))
-            }
-            Err(error) => error,
+fn invalid(refused: InvalidParameter) -> PyErr {
+    let InvalidParameter {
+        name,
+        requirement,
+        value,
+        remedy,
+    } = refused;
+    match Python::attach(|py| shown(py, value)) {
+        Ok(value) => InvalidParameterError::new_err((name, requirement, value, remedy)),
+        Err(error) => error,
+    }
+}
+
+/// What was given, as Python prints it: words of ours without quotes.
+fn shown(py: Python<'_>, value: Given) -> PyResult<Py<PyAny>> {
+    match value {
+        Given::Number(number) => number.into_py_any(py),
+        Given::Pair([x, y]) => (x, y).into_py_any(py),
+        Given::Count(count) => count.into_py_any(py),
+        Given::Word(word) => word.into_py_any(py),
+        Given::Found(words) => {
+            let kind = py.import("hrsafety.errors")?.getattr("Shown")?;
+            Ok(kind.call1((words.as_ref(),))?.unbind())
         }
-    })
+    }
 }

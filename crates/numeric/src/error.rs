@@ -30,40 +30,68 @@ impl fmt::Display for Given {
     }
 }
 
-/// What can go wrong.
+/// An argument that breaks a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InvalidParameter {
+    /// Name of the argument.
+    pub name: String,
+    /// The rule.
+    pub requirement: Cow<'static, str>,
+    /// What was given.
+    pub value: Given,
+    /// What would mend it, if the rule does not say so already.
+    pub remedy: Option<String>,
+}
+
+impl fmt::Display for InvalidParameter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            requirement,
+            value,
+            remedy,
+        } = self;
+        write!(formatter, "{name} must {requirement}, got {value}")?;
+        match remedy {
+            Some(remedy) => write!(formatter, "; {remedy}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Where a run was no longer finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NonFinite {
+    /// Index of the run.
+    pub run: usize,
+    /// When, in s.
+    pub time: f64,
+}
+
+/// Why there is no thread pool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoThreads {
+    /// Number of threads asked for.
+    pub threads: usize,
+    /// What the system said.
+    pub reason: String,
+}
+
+/// What can go wrong: two words, so that a result with it stays in registers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// An argument breaks a rule.
-    #[error("{name} must {requirement}, got {value}{}", .remedy.as_ref().map_or(String::new(), |remedy| format!("; {remedy}")))]
-    InvalidParameter {
-        /// Name of the argument.
-        name: String,
-        /// The rule.
-        requirement: Cow<'static, str>,
-        /// What was given.
-        value: Given,
-        /// What would mend it, if the rule does not say so already.
-        remedy: Option<String>,
-    },
+    #[error("{0}")]
+    InvalidParameter(Box<InvalidParameter>),
     /// The state of a run, or the force on it, is no longer finite.
-    #[error("the state or the force became non-finite at {time} s (run {run})")]
-    NonFinite {
-        /// Index of the run.
-        run: usize,
-        /// When, in s.
-        time: f64,
-    },
+    #[error("the state or the force became non-finite at {} s (run {})", .0.time, .0.run)]
+    NonFinite(Box<NonFinite>),
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,
     /// The thread pool could not be made.
-    #[error("no thread pool of {threads} threads: {reason}")]
-    Threads {
-        /// Number of threads asked for.
-        threads: usize,
-        /// What the system said.
-        reason: String,
-    },
+    #[error("no thread pool of {} threads: {}", .0.threads, .0.reason)]
+    Threads(Box<NoThreads>),
 }
 
 /// Asked now and then whether to stop.
@@ -87,67 +115,64 @@ pub type Result<T> = std::result::Result<T, Failure>;
 impl Failure {
     /// An argument breaks a rule.
     pub fn invalid(
-        name: impl Into<String>,
+        name: impl AsRef<str>,
         requirement: impl Into<Cow<'static, str>>,
         value: Given,
     ) -> Self {
-        Self::InvalidParameter {
-            name: name.into(),
-            requirement: requirement.into(),
-            value,
-            remedy: None,
-        }
+        invalid(name.as_ref(), requirement.into(), value)
+    }
+
+    /// The state of a run is no longer finite at a time in s.
+    #[cold]
+    #[must_use]
+    pub fn non_finite(run: usize, time: f64) -> Self {
+        Self::NonFinite(Box::new(NonFinite { run, time }))
     }
 
     /// The same error with what would mend it.
     #[must_use]
-    pub fn mended_by(self, advice: impl Into<String>) -> Self {
-        match self {
-            Self::InvalidParameter {
-                name,
-                requirement,
-                value,
-                ..
-            } => Self::InvalidParameter {
-                name,
-                requirement,
-                value,
-                remedy: Some(advice.into()),
-            },
-            other => other,
-        }
+    pub fn mended_by(self, advice: impl AsRef<str>) -> Self {
+        mended(self, advice.as_ref())
     }
 
     /// The same error with the index of the run among more runs.
     #[must_use]
-    pub fn of_run(self, index: impl FnOnce(usize) -> usize) -> Self {
-        match self {
-            Self::NonFinite { run, time } => Self::NonFinite {
-                run: index(run),
-                time,
-            },
-            other => other,
+    pub fn of_run(mut self, index: impl FnOnce(usize) -> usize) -> Self {
+        if let Self::NonFinite(lost) = &mut self {
+            lost.run = index(lost.run);
         }
+        self
     }
 
     /// The same error with the owner of the argument in front of its name.
+    #[cold]
     #[must_use]
-    pub fn within(self, owner: &str) -> Self {
-        match self {
-            Self::InvalidParameter {
-                name,
-                requirement,
-                value,
-                remedy,
-            } => Self::InvalidParameter {
-                name: format!("{owner}.{name}"),
-                requirement,
-                value,
-                remedy,
-            },
-            other => other,
+    pub fn within(mut self, owner: &str) -> Self {
+        if let Self::InvalidParameter(invalid) = &mut self {
+            invalid.name = format!("{owner}.{}", invalid.name);
         }
+        self
     }
+}
+
+// What makes errors is compiled once, away from the code that checks.
+
+#[cold]
+fn invalid(name: &str, requirement: Cow<'static, str>, value: Given) -> Failure {
+    Failure::InvalidParameter(Box::new(InvalidParameter {
+        name: name.to_owned(),
+        requirement,
+        value,
+        remedy: None,
+    }))
+}
+
+#[cold]
+fn mended(mut failure: Failure, advice: &str) -> Failure {
+    if let Failure::InvalidParameter(invalid) = &mut failure {
+        invalid.remedy = Some(advice.to_owned());
+    }
+    failure
 }
 
 /// The error of a number, away from the loops over rows that check them.

@@ -173,14 +173,14 @@ mod tests {
     fn an_error_names_its_run() {
         let failing = |index| {
             if index >= 7 {
-                Err(Failure::NonFinite { run: 0, time: 0.5 })
+                Err(Failure::non_finite(0, 0.5))
             } else {
                 Ok(index)
             }
         };
         for count in [10, 5000] {
             let found = each_run(count, work(Some(2)), failing);
-            assert_eq!(found, Err(Failure::NonFinite { run: 7, time: 0.5 }));
+            assert_eq!(found, Err(Failure::non_finite(7, 0.5)));
         }
     }
 }

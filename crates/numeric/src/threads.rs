@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::error::{Failure, Given, Result};
+use crate::error::{Failure, Given, NoThreads, Result};
 
 /// Whether the caller asks to stop.
 pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
@@ -86,9 +86,11 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(count)
         .build()
-        .map_err(|error| Failure::Threads {
-            threads: count,
-            reason: error.to_string(),
+        .map_err(|error| {
+            Failure::Threads(Box::new(NoThreads {
+                threads: count,
+                reason: error.to_string(),
+            }))
         })
 }
 

@@ -338,7 +338,7 @@ fn refused(change: impl Fn(&mut Case)) -> String {
     let mut case = cases().swap_remove(6);
     change(&mut case);
     match case.metrics() {
-        Err(Failure::InvalidParameter { name, .. }) => name,
+        Err(Failure::InvalidParameter(invalid)) => invalid.name,
         other => panic!("{other:?}"),
     }
 }

@@ -403,7 +403,7 @@ fn gain_options_out_of_range_are_refused() {
     assert!(GainProblem::new(vec![open], law, clear).is_err());
     let problem = make(&[1], mean_performance()).unwrap();
     let bad = evaluate_all(&problem, &[1.0, -1.0, 1.0, 1.0], None, &|| false);
-    assert!(matches!(bad, Err(Failure::InvalidParameter { .. })));
+    assert!(matches!(bad, Err(Failure::InvalidParameter(_))));
     let stopped = evaluate_all(&problem, &PUBLISHED, None, &|| true);
     assert_eq!(stopped, Err(Failure::Interrupted));
     for metric in Metric::ALL {

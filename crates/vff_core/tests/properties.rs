@@ -402,8 +402,8 @@ proptest! {
                 prop_assert!(run.end_time.is_finite() && run.path_length >= 0.0);
                 prop_assert!(run.min_distance.iter().all(|distance| *distance >= 0.0));
             }
-            Err(Failure::NonFinite { run, time }) => {
-                prop_assert!(run == 0 && (0.0..=3.1).contains(&time));
+            Err(Failure::NonFinite(lost)) => {
+                prop_assert!(lost.run == 0 && (0.0..=3.1).contains(&lost.time));
             }
             Err(other) => prop_assert!(false, "{}", other),
         }

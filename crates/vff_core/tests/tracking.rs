@@ -192,7 +192,7 @@ fn arguments_out_of_range_are_named() {
     let named = |tracking: Tracking, start: TrackStart, options: TrackOptions| {
         let error = track(&path, (&tracking, &limits), &start, &options, &|| false).unwrap_err();
         match error {
-            Failure::InvalidParameter { name, .. } => name,
+            Failure::InvalidParameter(invalid) => invalid.name,
             other => panic!("{other}"),
         }
     };

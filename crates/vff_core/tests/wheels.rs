@@ -320,5 +320,5 @@ fn a_caller_can_stop_it_and_runs_repeat() {
     };
     let start = WheelState::default();
     let lost = follow(&drive, start, vec![beyond; 3].into_iter(), &|| false);
-    assert_eq!(lost, Err(Failure::NonFinite { run: 0, time: 0.0 }));
+    assert_eq!(lost, Err(Failure::non_finite(0, 0.0)));
 }

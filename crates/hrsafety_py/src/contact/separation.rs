@@ -47,21 +47,11 @@ impl Rows<'_> {
 }
 
 /// Adds the index to the name of the argument where there are several rows.
-fn of_row(failure: Failure, row: usize, count: usize) -> Failure {
-    match failure {
-        Failure::InvalidParameter {
-            name,
-            requirement,
-            value,
-            remedy,
-        } if count > 1 => Failure::InvalidParameter {
-            name: format!("{name}[{row}]"),
-            requirement,
-            value,
-            remedy,
-        },
-        other => other,
+fn of_row(mut failure: Failure, row: usize, count: usize) -> Failure {
+    if let (Failure::InvalidParameter(invalid), true) = (&mut failure, count > 1) {
+        invalid.name = format!("{}[{row}]", invalid.name);
     }
+    failure
 }
 
 /// Distances with a constant deceleration.

@@ -111,10 +111,12 @@ fn invalid_code(columns: &Columns<'_>, row: usize) -> Option<u8> {
         .checked()
         .and(finite("closing_speed", closing_speed))
         .and(finite("manipulator_speed", manipulator_speed));
-    let Err(Failure::InvalidParameter { name, .. }) = refused else {
+    let Err(Failure::InvalidParameter(invalid)) = refused else {
         return None;
     };
-    let place = NUMBERS.iter().position(|(known, _)| *known == name)?;
+    let place = NUMBERS
+        .iter()
+        .position(|(known, _)| *known == invalid.name)?;
     (Status::ALL.len() + place).try_into().ok()
 }
 

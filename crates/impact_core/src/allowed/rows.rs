@@ -72,9 +72,10 @@ impl Given<'_> {
 
 /// Code of an invalid row: after the words of the results, the first number that is refused.
 fn invalid(setup: &Setup, failure: &Failure, words: usize) -> u8 {
-    let Failure::InvalidParameter { name, .. } = failure else {
+    let Failure::InvalidParameter(invalid) = failure else {
         return u8::MAX;
     };
+    let name = &invalid.name;
     let law = setup
         .kind
         .covering

@@ -189,7 +189,7 @@ fn link(node: Node<'_, '_>) -> Result<LinkText> {
 /// Puts the name of its link before what only knows that a number is wrong.
 fn about(failure: Failure, link: &str) -> Failure {
     match failure {
-        Failure::InvalidParameter { ref name, .. } if name.starts_with("link") => failure,
+        Failure::InvalidParameter(ref invalid) if invalid.name.starts_with("link") => failure,
         other => other.within(&format!("link {link:?}")),
     }
 }

@@ -334,7 +334,7 @@ impl Controller {
         });
         if !command.force.norm().is_finite() {
             let time = told.time;
-            return Err(Failure::NonFinite { run: 0, time });
+            return Err(Failure::non_finite(0, time));
         }
         let point = &self.scenario.robot;
         let reached = robot.velocity + point.acceleration(command.force) * period;

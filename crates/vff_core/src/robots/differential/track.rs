@@ -227,7 +227,7 @@ impl<'a> Course<'a> {
                 goal_phase: tracker.in_goal_phase(),
             };
             if !instant.is_finite() {
-                return Err(Failure::NonFinite { run: 0, time });
+                return Err(Failure::non_finite(0, time));
             }
             show(&instant);
             drive.step(wish, self.options.step);

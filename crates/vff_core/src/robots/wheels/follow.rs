@@ -73,7 +73,7 @@ pub fn follow(
         let sample = wheel.step(&wish);
         if !(sample.angle.is_finite() && sample.speed.is_finite()) {
             let time = index as f64 * drive.period;
-            return Err(Failure::NonFinite { run: 0, time });
+            return Err(Failure::non_finite(0, time));
         }
         history.angle.push(angle);
         history.speed.push(speed);

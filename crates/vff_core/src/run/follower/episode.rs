@@ -401,7 +401,7 @@ where
         if (position.x + position.y).is_finite() {
             return Ok(());
         }
-        Err(Failure::NonFinite { run: 0, time })
+        Err(Failure::non_finite(0, time))
     }
 
     fn time_over(&mut self, _time: f64) {

@@ -107,7 +107,7 @@ impl FollowerSteps {
         }
         if force.is_some_and(|force| !force.iter().all(|part| part.is_finite())) {
             let (run, time) = (0, self.time());
-            return Err(Failure::NonFinite { run, time });
+            return Err(Failure::non_finite(run, time));
         }
         self.0.period(force, interrupted)?;
         if self.0.finished() {

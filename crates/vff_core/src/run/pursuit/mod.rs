@@ -311,7 +311,7 @@ impl Parts for PursuitParts<'_> {
             stop: Stop(interrupted),
         });
         if !command.force.norm().is_finite() {
-            return Err(Failure::NonFinite { run: 0, time });
+            return Err(Failure::non_finite(0, time));
         }
         self.robot.hold(&self.known.order(command.force));
         Ok(true)
@@ -338,7 +338,7 @@ impl Parts for PursuitParts<'_> {
         {
             return Ok(());
         }
-        Err(Failure::NonFinite { run: 0, time })
+        Err(Failure::non_finite(0, time))
     }
 
     fn time_over(&mut self, _time: f64) {

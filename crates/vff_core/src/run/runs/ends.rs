@@ -108,7 +108,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         if lost.any() {
             let run = (0..R::WIDTH).find(|lane| lost.lane(*lane)).unwrap_or(0);
             let time = time.wide().lane(run);
-            return Err(Failure::NonFinite { run, time });
+            return Err(Failure::non_finite(run, time));
         }
         Ok(())
     }
